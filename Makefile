@@ -81,7 +81,7 @@ $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
 	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) $$(addprefix -I,$$(sort $$(dir $$(included)))) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/document_texts.o: $(BUILD)/document_texts.f90 | $(BUILD)/$(1)
 	$$(call say,FC,document_texts.f90,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
-$(BUILD)/$(1)/explanations.o: $(BUILD)/$(1)/document_texts.o
+$(BUILD)/$(1)/command_line.o: $(BUILD)/$(1)/document_texts.o
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
@@ -110,7 +110,7 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 # Nearly all time is spent in `hot`: a step, and its row in a table. In double precision `warm` is optimized by itself,
 # without the link; the rest and what tests/ has of its own are compiled with less optimization, in half the time.
 modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
-hot  := $(filter-out picture% animation canvas drawing outline plot_script svg,\
+hot  := $(filter-out picture% animation canvas drawing plot_script svg,\
    $(call modules_in,base linear mechanism blocks continuation perturbed proof $(if $(filter single,$(KIND)),,results)))
 warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))

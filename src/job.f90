@@ -1,47 +1,71 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later. Sets are independent of
 !> one another, and long jobs compute them in several processes.
+!>
+!> The variants of a set with VARY cards: each is made when its turn comes, starts from the deck's own estimate and
+!> leaves a row. So the row is the same whatever the others are, and memory does not grow with them. Where rows alone
+!> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
 module job
    use, intrinsic :: iso_fortran_env, only: int64
+   use kinds, only: wp
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
-   use mechanism, only: mechanism_t, instant_count, instant, with_all_links
-   use structure, only: findings_t, check_structure, find_groups
-   use deck, only: read_deck, job_share_t, variants_before
+   use mechanism, only: settings_t, mechanism_t, instant_count, instant, with_all_links
+   use independent, only: set_t, request_of, is_printed
+   use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
+   use deck, only: read_deck, job_share_t, variants_before, build_variant
+   use deck_variants, only: variation_t
    use progress, only: progress_t, start_progress, show_progress, end_progress
-   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
-   use listing, only: new_layout, listing_head
-   use listing_diagnostics, only: remarks_text
-   use csv, only: csv_head
-   use table, only: new_table, table_head
+   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
+   use text_output, only: put, turn_lost
+   use processes, only: processor_count, report, end_process, write_in_turn
+   use command_line
+   use outputs, only: outputs_t, open_outputs, flush_files, close_outputs, is_over, set_suffix
+   use shares, only: share_of_job_t, run_shares, next_part
+   use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
+   use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use plot_script, only: put_script
+   use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
-   use picture_page, only: picture_head
+   use svg, only: xml_line
    use picture, only: put_pictures
+   use animation, only: put_animations
    use circuits, only: circuits_t
    use circuits_table, only: find_all_circuits
    use circuits_picture, only: diagrams_t, add_to_page, put_circuit_page
-   use animation, only: put_animations
-   use solver_log, only: log_head
-   use answers, only: answers_t
    use assembly_table, only: draw_assemblies
-   use variant_rows, only: variant_row_t
-   use set_runs, only: writers_t, run_motion, run_variants, are_together, break_off
-   use phrases, only: say_broken_set, say_broken_variant
-   use lane_runs, only: width
+   use answers, only: answers_t, new_answers, take_instant, put_answers
+   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
+   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
+      put_variant_row, put_variants_end
+   use lane_runs, only: lane_run_t, renew_run, begin_run, run_lanes, width
+   use lane_state, only: lanes_t
+   use phrases, only: phrase_t, phrase, say_broken_set, say_broken_variant, say_broken_off
    use numerals, only: whole
-   use independent, only: set_t
-   use set_motion, only: new_set_motion
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
-   use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
-      out_animation, out_circuits, out_table, out_plot_table, out_plot_script, out_last
-   use shares, only: share_of_job_t, run_shares, next_part, end_share
-   use processes, only: processor_count
-   use outputs, only: open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
+   use convergence, only: convergence_t
+   use branch_certificate, only: branch_t
+   use points, only: strides, any_due
+   use motion_proof, only: holds
+   use set_motion, only: new_set_motion, has_words
+   use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
+      set_record, set_errors, set_closure_error, set_closing_diagnostics
    implicit none
    private
    public :: run_job
 
    !> Links times instants from which on more than one process is made: about a hundredth of a second.
    real, parameter :: least_work = 2.0e4
+
+   !> The job's outputs, and what they keep from instant to instant.
+   type, extends(outputs_t) :: writers_t
+      type(options_t) :: options
+      integer :: status = status_solved             !< the exit status of what was computed
+      type(progress_t) :: progress
+      integer :: first = 1, last = 0                !< the sets that were read
+      type(layout_t) :: layout                      !< of the listing of the set at hand
+      type(table_t) :: table                        !< of the set at hand
+      logical :: varies = .false.                   !< the deck has VARY cards
+      type(variation_t), allocatable :: variations(:)   !< of the sets that have them
+      type(drawing_t), allocatable :: drawings(:)   !< (first:last)
+   end type writers_t
 
 contains
 
@@ -60,17 +84,18 @@ contains
       integer :: i
 
       status = status_solved
+      o%options = options
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
       share = job_share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
-      if (.not. allocated(failure) .and. o%varies) call check_variants(options, sets, failure)
+      if (.not. allocated(failure) .and. o%varies) call check_variants()
       if (.not. allocated(failure) .and. allocated(options%files(out_circuits)%text)) then
          if (.not. any(sets%circuits)) call fail(failure, status_rejected, &
             'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
       end if
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
-      if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
+      if (allocated(failure) .and. len(message) == 0) message = said()//' *** '//failure%text
       if (.not. allocated(failure)) then
          o%first = share%first
          o%last = share%last
@@ -84,107 +109,99 @@ contains
          own%first = share%first
          own%last = share%last
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) own%unit = width
-         associate (processes => process_count(options, sets))
+         associate (processes => process_count())
             if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          end associate
          if (own%is_child) o%progress%shown = .false.
          do while (next_part(o, own))
-            call run_sets(options, sets, findings, o, status)
+            call run_sets(sets, findings, o)
          end do
          call end_progress(o%progress)
          call close_outputs(o, failure)
+         status = max(status, o%status)
       end if
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
       else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. own%is_child)) then
-         message = said_of(options, sets)
+         message = said()
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
-      call look_at_signals(o, status, message)
-      if (own%is_child) call end_share(o, status, message)
-   end subroutine run_job
-
-   !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
-   !> Their numbers must be whole numbers of the default kind.
-   subroutine check_variants(options, sets, failure)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: sets(:)
-      type(failure_t), allocatable, intent(out) :: failure
-      integer :: k
-
-      if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
-         'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
-      if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
-         allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
-         'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
-      do k = 1, out_last
-         if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
-            'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
-      end do
-   end subroutine check_variants
-
-   !> How many processes compute `sets`: one where they take no time, or are to be drawn on one page.
-   integer function process_count(options, sets) result(n)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: sets(:)
-      real :: work
-      integer :: i
-
-      n = options%jobs
-      work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
-      if (n == 0) n = merge(processor_count(), 1, work > least_work)
-      if (options%check .or. allocated(options%files(out_svg)%text) .or. &
-         allocated(options%files(out_animation)%text) .or. allocated(options%files(out_circuits)%text)) n = 1
-      n = max(1, min(n, variants_before(sets, size(sets) + 1)))
-   end function process_count
-
-   !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
-   function said_of(options, sets) result(text)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: sets(:)
-      character(:), allocatable :: text
-      integer :: i
-
-      text = ''
-      if (options%quiet) return
-      do i = 1, size(sets)
-         if (allocated(sets(i)%remarks)) text = text//remarks_text(sets(i))//new_line('a')
-      end do
-   end function said_of
-
-   !> A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
-   !> without a word, unless other outputs were asked for, which end there too.
-   subroutine look_at_signals(o, status, message)
-      type(writers_t), intent(in) :: o
-      integer, intent(inout) :: status
-      character(:), allocatable, intent(inout) :: message
-
+      ! A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
+      ! without a word, unless other outputs were asked for, which end there too.
       if (signal_received() > 0) then
          status = status_signal + signal_received()
-      else if (broken_pipe_kills() .and. is_broken_pipe(o)) then
-         status = status_signal + signal_pipe
-         if (count(o%asked) == 1) message = ''
+      else if (broken_pipe_kills .and. allocated(o%files)) then
+         if (any(o%files%error == broken_pipe)) then
+            status = status_signal + signal_pipe
+            if (count(o%asked) == 1) message = ''
+         end if
       end if
-   end subroutine look_at_signals
+      if (.not. own%is_child) return
+      ! A child ends here: its parent takes over the status and the message, unless its turn has never come.
+      if (any(o%files%error == turn_lost)) call end_process(status_solved)
+      if (len(message) > 0) call report(message)
+      call end_process(status)
+
+   contains
+
+      !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
+      !> Their numbers must be whole numbers of the default kind.
+      subroutine check_variants()
+         integer :: k
+
+         if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
+            'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
+         if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
+            allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
+            'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
+         do k = 1, out_last
+            if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
+               'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
+         end do
+      end subroutine check_variants
+
+      !> How many processes compute `sets`: one where they take no time, or are to be drawn on one page.
+      integer function process_count() result(n)
+         real :: work
+
+         n = options%jobs
+         work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
+         if (n == 0) n = merge(processor_count(), 1, work > least_work)
+         if (options%check .or. allocated(options%files(out_svg)%text) .or. &
+            allocated(options%files(out_animation)%text) .or. allocated(options%files(out_circuits)%text)) n = 1
+         n = max(1, min(n, variants_before(sets, size(sets) + 1)))
+      end function process_count
+
+      !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
+      function said() result(text)
+         character(:), allocatable :: text
+
+         text = ''
+         if (options%quiet) return
+         do i = 1, size(sets)
+            if (allocated(sets(i)%remarks)) text = text//remarks_text(sets(i))//new_line('a')
+         end do
+      end function said
+   end subroutine run_job
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
-   subroutine run_sets(options, sets, findings, o, status)
-      type(options_t), intent(in) :: options
+   subroutine run_sets(sets, findings, o)
       type(writers_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: sets(o%first:)
       type(findings_t), intent(inout) :: findings(o%first:)
-      integer, intent(inout) :: status
       type(diagrams_t), allocatable :: page(:)
+      type(set_analysis_t) :: a
+      type(circuits_t), allocatable :: found(:)
       integer :: i, before, varied
 
-      if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
-         call csv_head(o%files(out_csv, 0), options%errors, o%varies)
-      if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
+      if (o%asked(out_csv) .and. o%options%share == 1 .and. o%own_first == 1) &
+         call csv_head(o%files(out_csv, 0), o%options%errors, o%varies)
+      if (o%asked(out_svg)) call put(o%files(out_svg, 0), xml_line)
       if (o%asked(out_svg) .or. o%asked(out_animation)) allocate (o%drawings(o%first:o%last))
-      if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
-      if (o%asked(out_circuits)) call picture_head(o%files(out_circuits, 0))
+      if (o%asked(out_animation)) call put(o%files(out_animation, 0), xml_line)
+      if (o%asked(out_circuits)) call put(o%files(out_circuits, 0), xml_line)
       before = o%first - 1
       varied = 0
       ! Where no set has variants, those before the part at hand need not be passed over.
@@ -193,8 +210,8 @@ contains
          if (before >= o%own_last) exit
          if (sets(i)%variants > 0) varied = varied + 1
          associate (count => max(1, sets(i)%variants))
-            if (before < o%own_last .and. before + count >= o%own_first) call run_set(options, sets(i), i, varied, &
-               o%own_first - before, o%own_last - before, findings(i), o, status)
+            if (before < o%own_last .and. before + count >= o%own_first) call run_set(sets(i), i, varied, &
+               o%own_first - before, o%own_last - before, findings(i), o)
             before = before + count
          end associate
          if (is_over(o, i)) then
@@ -207,7 +224,13 @@ contains
          end if
          if (o%asked(out_svg) .or. o%asked(out_animation)) &
             call draw_set(sets(i), size(o%drawings), o%drawings(i), o%progress)
-         if (o%asked(out_circuits) .and. sets(i)%circuits) call draw_circuits(sets(i), page)
+         if (o%asked(out_circuits) .and. sets(i)%circuits) then
+            ! As a picture, circuits have an analysis of their own.
+            call make_set_analysis(sets(i), a)
+            call advance_set(a, instant(sets(i), 0))
+            call find_all_circuits(a, found)
+            call add_to_page(page, sets(i), a, found)
+         end if
       end do
       ! Sets that were broken off are not drawn.
       if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), o%drawings(o%first:i - 1))
@@ -243,65 +266,258 @@ contains
       if (m%assemblies) call draw_assemblies(a, d)
    end subroutine draw_set
 
-   !> Adds the circuits of `m` to `page`. As a picture it has an analysis of its own.
-   subroutine draw_circuits(m, page)
-      type(mechanism_t), intent(in) :: m
-      type(diagrams_t), allocatable, intent(inout) :: page(:)
-      type(set_analysis_t) :: a
-      type(circuits_t), allocatable :: found(:)
-
-      call make_set_analysis(m, a)
-      call advance_set(a, instant(m, 0))
-      call find_all_circuits(a, found)
-      call add_to_page(page, m, a, found)
-   end subroutine draw_circuits
-
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    !> `varied`: how many sets have VARY cards up to this one.
-   subroutine run_set(options, m, i, varied, first, last, findings, o, status)
-      type(options_t), intent(in) :: options
+   subroutine run_set(m, i, varied, first, last, findings, o)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i, varied, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
-      integer, intent(inout) :: status
       type(variant_row_t) :: counts
       type(set_analysis_t) :: a
       type(answers_t) :: asked
 
       call new_set_motion(m, a%now, findings)
-      if (first <= 1) call write_heads(options, m, a%now, i, findings, o)
-      if (options%check) return
-      if (m%variants == 0) then
-         call run_motion(options, a, i, findings, .true., o, counts, asked)
-         if (counts%flagged + counts%unproved > 0) status = status_flagged
-      else
-         call run_variants(options, a%now, i, max(1, first), min(m%variants, last), o%variations(varied), o, status)
-      end if
-   end subroutine run_set
-
-   !> Writes what stands before the first instant of set number `i`, `m`, divided `s`.
-   subroutine write_heads(options, m, s, i, findings, o)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      class(set_t), intent(in) :: s
-      integer, intent(in) :: i
-      type(findings_t), intent(inout) :: findings
-      type(writers_t), intent(inout) :: o
-
-      if (o%asked(out_listing)) then
-         o%layout = new_layout(s)
+      if (o%asked(out_listing) .and. first <= 1) then
+         o%layout = new_layout(a%now)
          call find_groups(m, findings)
          call listing_head(o%files(out_listing, 0), m, findings)
       end if
-      if (options%check) return
-      if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, options%errors)
-      if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(s)
-      if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
-      if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
-      if (o%asked(out_plot_script)) &
-         call put_script(o%files(out_plot_script, i), m, o%table, set_suffix(o%first, o%last, i))
-      call flush_outputs(o, i)
-   end subroutine write_heads
+      if (o%options%check) return
+      if (first <= 1) then
+         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, o%options%errors)
+         if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(a%now)
+         if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
+         if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
+         if (o%asked(out_plot_script)) &
+            call put_script(o%files(out_plot_script, i), m, o%table, set_suffix(o%first, o%last, i))
+         ! An output that takes nothing is known before anything is computed.
+         call flush_files(o, 0, 0)
+         call flush_files(o, i, i)
+      end if
+      if (m%variants == 0) then
+         call run_motion(a, i, findings, .true., o, counts, asked)
+         if (counts%flagged + counts%unproved > 0) o%status = status_flagged
+      else
+         call run_variants(a%now, i, max(1, first), min(m%variants, last), o%variations(varied), o)
+      end if
+   end subroutine run_set
 
+   !> Solves and writes the variants `first` to `last` of `v`, those of set number `i`, `m`.
+   subroutine run_variants(m, i, first, last, v, o)
+      class(set_t), intent(in) :: m
+      integer, intent(in) :: i, first, last
+      type(variation_t), intent(inout) :: v
+      type(writers_t), intent(inout) :: o
+      type(layout_t) :: layout
+      type(summary_t) :: summary
+      logical :: full
+      integer :: n
+
+      n = first
+      full = is_printed(m)
+      layout = new_layout(m)
+      summary = new_summary(m, layout, v)
+      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
+      if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
+         call put_note_of_shares(o%files(out_listing, 0), m)
+         call put_variant_heads(o%files(out_listing, 0), summary)
+      end if
+      if (are_together(m, full, o)) then
+         call run_together()
+      else
+         call run_each()
+      end if
+      if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
+      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing, 0), m)
+
+   contains
+
+      !> Solves and writes the variants `n` to `last` of `v` one after another; `n`: the first that is not written.
+      subroutine run_each()
+         type(variant_row_t) :: row
+         type(mechanism_t) :: variant
+
+         do while (n <= last)
+            row = new_row(summary, v, n)
+            if (o%asked(out_listing) .and. full) &
+               call put_variant(o%files(out_listing, 0), layout, summary, m, row)
+            call run_variant(variant, row)
+            if (is_over(o, i)) return
+            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
+            call write_row(row)
+            n = n + 1
+         end do
+      end subroutine run_each
+
+      !> The same of rows alone, as many variants at a time as there are lanes.
+      subroutine run_together()
+         ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
+         class(lane_run_t), allocatable :: runs(:)
+         type(lanes_t) :: lanes
+         integer :: k, count
+
+         allocate (lane_run_t :: runs(width))
+         do while (n <= last)
+            count = min(width, last - n + 1)
+            do k = 1, count
+               runs(k)%row = new_row(summary, v, n + k - 1)
+               call start(runs(k))
+            end do
+            call run_lanes(runs(:count), lanes)
+            do k = 1, count
+               if (is_over(o, i)) return
+               if (runs(k)%row%rejected == '') call fill_row(summary, runs(k)%s%now, runs(k)%asked, runs(k)%row)
+               if (runs(k)%row%rejected /= '') call fill_row(summary, m, runs(k)%asked, runs(k)%row)
+               call write_row(runs(k)%row)
+               n = n + 1
+            end do
+         end do
+      end subroutine run_together
+
+      !> Makes the variant of `v` whose row `r` has, unless it is refused.
+      subroutine start(r)
+         type(lane_run_t), intent(inout) :: r
+         type(findings_t) :: findings
+         logical :: is_done
+
+         call build_variant(v, r%row%number, r%m, r%row%rejected)
+         r%is_over = r%row%rejected /= ''
+         if (r%is_over) return
+         call renew_run(r, is_done)
+         if (is_done) return
+         call check_variant(r%m, findings, r%row)
+         r%is_over = r%row%rejected /= ''
+         if (.not. r%is_over) call begin_run(r, findings)
+      end subroutine start
+
+      !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
+      subroutine check_variant(variant, findings, row)
+         type(mechanism_t), intent(in) :: variant
+         type(findings_t), intent(out) :: findings
+         type(variant_row_t), intent(inout) :: row
+         character(:), allocatable :: faults
+
+         findings = find_structure(variant)
+         faults = faults_text(variant, findings, variant%set_number)
+         row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
+      end subroutine check_variant
+
+      !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
+      !> tables are asked for.
+      subroutine run_variant(variant, row)
+         type(mechanism_t), intent(inout) :: variant
+         type(variant_row_t), intent(inout) :: row
+         type(findings_t) :: findings
+         type(set_analysis_t) :: a
+         type(answers_t) :: asked
+
+         call build_variant(v, row%number, variant, row%rejected)
+         if (row%rejected == '') call check_variant(variant, findings, row)
+         if (row%rejected == '') then
+            call new_set_motion(variant, a%now, findings)
+            if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
+            if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, o%options%errors)
+            call run_motion(a, i, findings, full, o, row, asked)
+            call fill_row(summary, a%now, asked, row)
+         else
+            call fill_row(summary, m, asked, row)
+         end if
+      end subroutine run_variant
+
+      !> Writes the `row` of a variant.
+      subroutine write_row(row)
+         type(variant_row_t), intent(in) :: row
+
+         if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
+         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
+         call write_in_turn(o%turns, o%files(:, 0))
+         if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
+         if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
+      end subroutine write_row
+   end subroutine run_variants
+
+   !> Whether rows alone are asked of the variants of the set `m`, which `prints` tables or not: then as many are solved
+   !> together as there are lanes.
+   pure logical function are_together(m, prints, o)
+      class(settings_t), intent(in) :: m
+      logical, intent(in) :: prints
+      class(outputs_t), intent(in) :: o
+
+      are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
+   end function are_together
+
+   !> Solves and writes set number `i`, a%now, instant by instant; `full`: its tables too. `row`: how many instants are
+   !> solved and flagged, and the first of those; `asked`: the answers to its cards.
+   subroutine run_motion(a, i, findings, full, o, row, asked)
+      type(set_analysis_t), intent(inout) :: a
+      integer, intent(in) :: i
+      type(findings_t), intent(inout) :: findings
+      logical, intent(in) :: full
+      type(writers_t), intent(inout) :: o
+      type(variant_row_t), intent(inout) :: row
+      type(answers_t), intent(out) :: asked
+      type(listing_state_t) :: state
+      type(convergence_t) :: record
+      type(branch_t) :: branch
+      real(wp), allocatable :: errors(:)     ! for the log; not allocated where they are not asked for
+      integer, allocatable :: every(:)
+      logical :: lists, due
+      integer :: k, n
+
+      call begin_analysis(a, findings)
+      lists = full .and. o%asked(out_listing)
+      if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
+      every = strides([(request_of(a%now, n), n=1, size(a%now%rows))])
+      do k = 0, instant_count(a%now) - 1
+         call advance_set(a, instant(a%now, k))
+         due = any_due(a%now, every, k)
+         if (a%now%proves) then
+            call prove_set(a, due)
+            if (.not. all(holds(a%now%proofs(1:)))) row%unproved = row%unproved + 1
+         end if
+         call note_flag(row, a)
+
+         ! Only what is shown, and estimates that are asked for, need samples.
+         associate (shown => due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table]))))
+            if (shown .or. o%options%errors) call sample_set(a, o%options%errors, shown)
+         end associate
+         if (lists .and. (due .or. has_words(a%now))) &
+            call listing_instant(o%files(out_listing, 0), o%layout, a%now, k, state)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), a%now, k, o%varies, a%assemblies)
+         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, a%now)
+         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, a%now)
+         if (o%asked(out_log)) then
+            call set_record(a, record, branch)
+            if (o%options%errors) errors = set_errors(a)
+            call log_instant(o%files(out_log, 0), k, instant(a%now, k), record, branch, errors)
+         end if
+         call write_in_turn(o%turns, o%files(:, 0))
+
+         call take_instant(asked, a, k, due)
+         if (o%progress%shown .and. a%now%variants == 0) &
+            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(a%now) - 1)
+         if (.not. is_over(o, i)) cycle
+         if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
+         return
+      end do
+      if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, a)
+      if (lists) call listing_end(o%files(out_listing, 0), a%now, row%solved, row%flagged, &
+         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a))
+   end subroutine run_motion
+
+   !> Ends the run before its time. The last line of the listing of `m` has the `words` and the `number` of the last
+   !> instant, variant or set; nothing follows it.
+   subroutine break_off(o, m, words, number)
+      type(writers_t), intent(inout) :: o
+      class(settings_t), intent(in) :: m
+      type(phrase_t), intent(in) :: words
+      integer, intent(in) :: number
+
+      if (o%ended) return
+      o%ended = .true.
+      if (.not. o%asked(out_listing)) return
+      call put(o%files(out_listing, 0), '')
+      call put(o%files(out_listing, 0), ' *** '//phrase(words, m%polish)//' '//whole(number))
+   end subroutine break_off
 end module job

@@ -5,9 +5,8 @@ program main
    use kinds, only: wp_name
    use failures, only: failure_t, capitals, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal, is_terminal
-   use command_line, only: options_t, out_listing, read_command, help_text
+   use command_line, only: options_t, out_listing, read_command, help_text, explained, explained_fields
    use cards, only: layout_of
-   use explanations, only: explained, explained_fields
    use job, only: run_job
    use study, only: run_study
    use text_output, only: output_t, open_output, put, close_output

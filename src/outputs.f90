@@ -2,16 +2,15 @@
 module outputs
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
-      abandon_output, has_failed, has_broken_pipe
-   use turns, only: turns_t, write_in_turn
+      abandon_output, has_failed
+   use processes, only: turns_t
    use system_calls, only: identity_t, identity_of_path, make_directory, remove_directory, last_error, reason_of, &
       signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
    implicit none
    private
-   public :: outputs_t, open_outputs, flush_outputs, flush_sets, write_parts, forget_files, close_outputs
-   public :: is_over, is_broken_pipe, set_suffix
+   public :: outputs_t, open_outputs, flush_files, forget_files, close_outputs, is_over, set_suffix
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
@@ -36,6 +35,7 @@ contains
       class(outputs_t), intent(inout), target :: o
       type(failure_t), allocatable, intent(out) :: failure
       type(output_t), pointer :: all_files(:)
+      logical :: made, exists
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
@@ -43,13 +43,18 @@ contains
       allocate (o%files(out_last, 0:merge(last, 0, any(o%asked .and. file_options%each_set))))
       do k = 1, out_last
          if (.not. o%asked(k)) cycle
-         if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) &
-            call open_directory(options%files(k)%text, o, failure)
+         if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) then
+            ! What else is wrong with a directory shows when its files are opened.
+            call make_directory(options%files(k)%text, made, exists)
+            if (made) o%made_directory = options%files(k)%text
+            if (.not. exists) call fail(failure, status_system, 'DIRECTORY '//options%files(k)%text &
+               //' CANNOT BE MADE ('//capitals(reason_of(last_error()))//')')
+         end if
          if (first < last .and. file_options(k)%each_set .and. .not. allocated(failure)) &
-            call check_table_of_one(options%files(k)%text, count, failure)
+            call check_table_of_one(options%files(k)%text)
          do i = merge(first, 0, file_options(k)%each_set), merge(last, 0, file_options(k)%each_set)
             if (allocated(failure)) exit
-            call open_output(o%files(k, i), path_of(k, options%files(k)%text, set_suffix(first, last, i)), failure)
+            call open_output(o%files(k, i), path_of(set_suffix(first, last, i)), failure)
          end do
       end do
       all_files(1:size(o%files)) => o%files
@@ -59,27 +64,44 @@ contains
          call abandon_output(all_files(i))
       end do
       if (allocated(o%made_directory)) call remove_directory(o%made_directory)
-   end subroutine open_outputs
 
-   !> Rejects standard output, a pipe, and a device other than /dev/null as `path` for the tables of `count` sets: they
-   !> would be mixed. Under /dev no file is made. Errors: status_rejected.
-   subroutine check_table_of_one(path, count, failure)
-      character(*), intent(in) :: path
-      integer, intent(in) :: count
-      type(failure_t), allocatable, intent(out) :: failure
-      type(identity_t) :: id
-      character(:), allocatable :: name
+   contains
 
-      name = 'STANDARD OUTPUT'
-      if (len(path) > 0) then
+      !> Rejects standard output, a pipe, and a device other than /dev/null as `path` for the tables of `count` sets:
+      !> they would be mixed. Under /dev no file is made. Errors: status_rejected.
+      subroutine check_table_of_one(path)
+         character(*), intent(in) :: path
+         type(identity_t) :: id
+         character(:), allocatable :: name
+
+         name = 'STANDARD OUTPUT'
+         if (len(path) > 0) then
+            if (is_null_device(path)) return
+            id = identity_of_path(path)
+            if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
+            name = 'FILE '//path
+         end if
+         call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count) &
+            //' WITH --sets K/'//whole(count))
+      end subroutine check_table_of_one
+
+      !> The path of output number `k`, in which files of a set have the `suffix`; '' is standard output. /dev/null
+      !> takes the files of all sets.
+      function path_of(suffix) result(path)
+         character(*), intent(in) :: suffix
+         character(:), allocatable :: path
+         integer :: dot
+
+         path = options%files(k)%text
+         if (len_trim(file_options(k)%in_directory) > 0) path = path//'/'//trim(file_options(k)%in_directory)
+         if (len(path) == 0) return
          if (is_null_device(path)) return
-         id = identity_of_path(path)
-         if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
-         name = 'FILE '//path
-      end if
-      call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count) &
-         //' WITH --sets K/'//whole(count))
-   end subroutine check_table_of_one
+         dot = index(path, '.', back=.true.)
+         ! A name without an extension ends with the suffix.
+         if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
+         path = path(:dot - 1)//suffix//path(dot:)
+      end function path_of
+   end subroutine open_outputs
 
    !> Whether `path` leads to the device that takes everything and keeps nothing.
    logical function is_null_device(path)
@@ -91,37 +113,6 @@ contains
       is_null_device = a%device_or_pipe .and. a%inode == b%inode .and. all(a%device == b%device)
    end function is_null_device
 
-   !> Makes the directory `path` unless it is there; what else is wrong with it shows when its files are opened.
-   subroutine open_directory(path, o, failure)
-      character(*), intent(in) :: path
-      class(outputs_t), intent(inout) :: o
-      type(failure_t), allocatable, intent(out) :: failure
-      logical :: made, exists
-
-      call make_directory(path, made, exists)
-      if (made) o%made_directory = path
-      if (.not. exists) call fail(failure, status_system, 'DIRECTORY '//path//' CANNOT BE MADE (' &
-         //capitals(reason_of(last_error()))//')')
-   end subroutine open_directory
-
-   !> The path of output number `k`, for which the command gives `text`; '' is standard output. /dev/null takes the
-   !> files of all sets.
-   function path_of(k, text, suffix) result(path)
-      integer, intent(in) :: k
-      character(*), intent(in) :: text, suffix
-      character(:), allocatable :: path
-      integer :: dot
-
-      path = text
-      if (len_trim(file_options(k)%in_directory) > 0) path = text//'/'//trim(file_options(k)%in_directory)
-      if (len(path) == 0) return
-      if (is_null_device(path)) return
-      dot = index(path, '.', back=.true.)
-      ! A name without an extension ends with the suffix.
-      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
-      path = path(:dot - 1)//suffix//path(dot:)
-   end function path_of
-
    !> What the names of files have before their extension for set number `i`, where the job has more than one set, those
    !> from `first` to `last`; '' for files that all sets share (0).
    pure function set_suffix(first, last, i) result(suffix)
@@ -132,20 +123,9 @@ contains
       if (first < last .and. i > 0) suffix = '-'//whole(i)
    end function set_suffix
 
-   !> Writes at once what there is for set number `i`, so that an output that takes nothing is known before anything is
-   !> computed.
-   subroutine flush_outputs(o, i)
-      class(outputs_t), intent(inout) :: o
-      integer, intent(in) :: i
-      integer :: k
-
-      do k = 1, out_last
-         if (o%asked(k)) call flush_output(o%files(k, merge(i, 0, file_options(k)%each_set)))
-      end do
-   end subroutine flush_outputs
-
-   !> Writes at once what there is for the files of the sets from `first` to `last`.
-   subroutine flush_sets(o, first, last)
+   !> Writes at once what there is for the files of the sets from `first` to `last`, or for those that all sets share
+   !> (0).
+   subroutine flush_files(o, first, last)
       class(outputs_t), intent(inout) :: o
       integer, intent(in) :: first, last
       integer :: k, i
@@ -155,14 +135,7 @@ contains
             if (allocated(o%files(k, i)%buffer)) call flush_output(o%files(k, i))
          end do
       end do
-   end subroutine flush_sets
-
-   !> After an instant, or the row of a variant: writes what may be written.
-   subroutine write_parts(o)
-      class(outputs_t), intent(inout) :: o
-
-      if (o%turns%held) call write_in_turn(o%turns, o%files(:, 0))
-   end subroutine write_parts
+   end subroutine flush_files
 
    !> Leaves the files of the sets from `first` to `last` to other processes.
    subroutine forget_files(o, first, last)
@@ -203,12 +176,4 @@ contains
          if (has_failed(o%files(o%asked_list(k), merge(i, 0, file_options(o%asked_list(k))%each_set)))) is_over = .true.
       end do
    end function is_over
-
-   !> Whether the reader of some output has gone.
-   logical function is_broken_pipe(o)
-      class(outputs_t), intent(in) :: o
-
-      is_broken_pipe = .false.
-      if (allocated(o%files)) is_broken_pipe = any(has_broken_pipe(o%files))
-   end function is_broken_pipe
 end module outputs

@@ -1,23 +1,22 @@
 !> A job's sets, or their variants, in several processes. They are divided into parts that follow one another; whoever
-!> is free takes the next one, and parts are written in their order (`turns`). One that dies or is broken off leaves its
-!> part undone, and nothing after that is written.
+!> is free takes the next one, and parts are written in their order (`processes`). One that dies or is broken off leaves
+!> its part undone, and nothing after that is written.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
 module shares
    use, intrinsic :: iso_c_binding, only: c_int
-   use failures, only: capitals, status_solved, status_system
+   use failures, only: capitals, status_system
    use numerals, only: whole
-   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed, &
-      report, end_of_message
+   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, killed, end_of_message, &
+      make_turns, close_turns, begin_part, end_part, write_rest, parts_taken, parts_done
    use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
-   use text_output, only: has_failed, turn_lost
-   use turns, only: make_turns, close_turns, begin_part, end_part, write_rest, parts_taken, parts_done
+   use text_output, only: has_failed
    use progress, only: progress_t, show_progress
-   use outputs, only: outputs_t, flush_sets, forget_files
+   use outputs, only: outputs_t, flush_files, forget_files
    implicit none
    private
-   public :: share_of_job_t, run_shares, next_part, end_share
+   public :: share_of_job_t, run_shares, next_part
 
    !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
    !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
@@ -37,7 +36,7 @@ module shares
 contains
 
    !> Computes the sets or variants of `s` in `processes` processes. It returns more than once: in each child, to
-   !> compute the parts that `next_part` gives and to end by `end_share`; in the parent when all is done. `status`: then
+   !> compute the parts that `next_part` gives and to end then; in the parent when all is done. `status`: then
    !> the exit status; `message`: what to say of an error.
    subroutine run_shares(o, s, processes, progress, status, message)
       class(outputs_t), intent(inout) :: o
@@ -152,7 +151,7 @@ contains
       if (s%is_parent) return
       before = merge(o%own_last, s%first - 1, o%turns%part > 0)
       if (s%is_child .and. o%turns%part > 0) then
-         call flush_sets(o, o%own_first, o%own_last)
+         call flush_files(o, o%own_first, o%own_last)
          call end_part(o%turns, o%files(:, 0), goes_on(o))
       end if
 
@@ -179,17 +178,6 @@ contains
          if (any(has_failed(o%files(:, i)))) goes_on = .false.
       end do
    end function goes_on
-
-   !> Ends the child: its parent takes over the exit `status` and the `message`, unless its turn has never come.
-   subroutine end_share(o, status, message)
-      class(outputs_t), intent(in) :: o
-      integer, intent(in) :: status
-      character(*), intent(in) :: message
-
-      if (any(o%files%error == turn_lost)) call end_process(status_solved)
-      if (len(message) > 0) call report(message)
-      call end_process(status)
-   end subroutine end_share
 
    !> How many parts there are; one where there is nothing to compute.
    pure integer function part_count(s)

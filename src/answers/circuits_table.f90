@@ -11,7 +11,7 @@ module circuits_table
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
-   use listing_diagnostics, only: at_limit, full_turn_words, measure, value_digits
+   use listing, only: at_limit, full_turn_words, measure, value_digits
    use listing_layout, only: put_folded, angle_unit
    use phrases
    implicit none

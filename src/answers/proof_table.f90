@@ -153,7 +153,7 @@ contains
       if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
          //': '//whole(p%instants - p%proved))
       gap = ''
-      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//rounded_up(p%gap)
+      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_closure_error_of, m%polish)//' '//rounded_up(p%gap)
       call put(o, ' '//phrase(say_proved, m%polish)//' '//whole(p%proved)//' / '//whole(p%instants) &
          //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
          //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)

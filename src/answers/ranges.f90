@@ -14,7 +14,7 @@ module ranges
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
-   use listing_diagnostics, only: limit_words, full_turn_words
+   use listing, only: limit_words, full_turn_words
    use listing_layout, only: put_folded
    use phrases
    implicit none

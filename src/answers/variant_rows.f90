@@ -11,8 +11,7 @@ module variant_rows
    use set_analysis, only: set_analysis_t
    use set_motion, only: is_flagged
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
-   use csv, only: marks
-   use table, only: table_t, new_table, drive_columns, dotted
+   use csv, only: marks, table_t, new_table, drive_columns, dotted
    use extremes, only: extremes_t, extreme_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, &
       column_of, strokes_of, ratio_decimals
    use ranges, only: range_t, low, high

@@ -8,7 +8,7 @@ module variant_tables
    use listing, only: words_of_mark
    use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of, right, choose_digits
    use listing_tables, only: known_text
-   use listing_diagnostics, only: put_diagnostics
+   use listing, only: put_diagnostics
    use csv, only: add_name
    use text_output, only: output_t, put, add
    use numerals, only: whole, full

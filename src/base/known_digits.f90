@@ -2,11 +2,11 @@
 module known_digits
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use decimal_digits, only: nearest_whole, tens
-   use numerals, only: put_fixed, put_with_point, put_minus, put_whole, put_exponent, numeral_length, max_decimals
+   use numerals, only: nearest_whole, tens, put_fixed, put_with_point, put_minus, put_whole, put_exponent, &
+      numeral_length, max_decimals
    implicit none
    private
-   public :: put_known, has_known_digit, unknown_digit, nothing_known, errors_a_digit
+   public :: put_known, unknown_digit, nothing_known, errors_a_digit
 
    !> In the place of a digit that is not known.
    character(1), parameter :: unknown_digit = '?'
@@ -15,19 +15,8 @@ module known_digits
    !> The last digit that is shown is worth so many errors: otherwise another program, as right as this one, would
    !> round it to another digit.
    real(wp), parameter :: errors_a_digit = 100.0_wp
-   !> Powers of ten: most digits are worth one of these.
-   integer :: n                                !< of the loop in the next line
-   real(wp), parameter :: powers(-12:6) = [(10.0_wp**n, n=-12, 6)]
 
 contains
-
-   !> A digit of `x` is known, of which `error` is unknown: its first, or it is no large part of `size_of`, that of
-   !> numbers of its kind.
-   elemental logical function has_known_digit(x, error, size_of)
-      real(wp), intent(in) :: x, error, size_of
-
-      has_known_digit = 10.0_wp*error <= max(abs(x), size_of)
-   end function has_known_digit
 
    !> `x` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
    !> behind it masked; `masked` becomes true where a digit is.
@@ -37,16 +26,13 @@ contains
       character(numeral_length), intent(out) :: text
       logical, intent(inout), optional :: masked
       integer(int64) :: n
-      real(wp) :: digit
+      logical :: is_known
       integer :: last
 
-      last = power - decimals
-      if (last < lbound(powers, 1) .or. last > ubound(powers, 1)) then
-         digit = 10.0_wp**last
-      else
-         digit = powers(last)
-      end if
-      if (error*errors_a_digit <= digit) then
+      ! Most errors are 0, and powers take long.
+      is_known = error <= 0.0_wp
+      if (.not. is_known) is_known = error*errors_a_digit <= 10.0_wp**(power - decimals)
+      if (is_known) then
          call put_fixed(x, decimals, power, text)
          return
       else if (.not. error <= 1.0e-6_wp*nothing_known) then
@@ -73,7 +59,10 @@ contains
       integer, intent(in) :: last, decimals
       logical, intent(in) :: negative
       character(numeral_length) :: text
-      integer :: room, d, unknown, first, i
+      character(20) :: digits
+      character(80) :: line
+      character(5) :: shown
+      integer :: room, d, unknown, first, known, i
 
       room = numeral_length - 2 - merge(1, 0, negative)
       do d = min(decimals, max_decimals), max(0, 1 - last), -1
@@ -91,21 +80,9 @@ contains
          return
       end do
       text = ''
-      if (last > 0) text = masked_with_exponent(n, last, negative)
-   end function masked_text
+      if (last <= 0) return
 
-   !> The same with an exponent, as `with_exponent` would print it, n > 0.
-   pure function masked_with_exponent(n, last, negative) result(text)
-      integer(int64), intent(in) :: n
-      integer, intent(in) :: last
-      logical, intent(in) :: negative
-      character(numeral_length) :: text
-      character(20) :: digits
-      character(80) :: line
-      character(5) :: shown
-      integer :: first, known, d
-
-      text = ''
+      ! With an exponent, as a number whose digits are known would have it; here n > 0.
       call put_whole(n, digits, first)
       known = len(digits) - first + 1
       call put_exponent(last + known - 1, shown)
@@ -116,5 +93,5 @@ contains
          if (len_trim(line) < numeral_length) text = adjustr(line(:numeral_length))
          if (text /= '') return
       end do
-   end function masked_with_exponent
+   end function masked_text
 end module known_digits

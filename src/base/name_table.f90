@@ -30,7 +30,8 @@ contains
       character(*), intent(in) :: name
       integer, intent(in) :: number
       integer, intent(out) :: earlier
-      integer :: slot
+      type(slot_t), allocatable :: old(:)
+      integer :: slot, i
 
       if (.not. allocated(table%slots)) allocate (table%slots(first_size))
       slot = slot_of(table%slots, name)
@@ -38,7 +39,12 @@ contains
       if (earlier /= 0) return
       table%slots(slot) = slot_t(name, number)
       table%filled = table%filled + 1
-      if (2*table%filled > size(table%slots)) call double_slots(table%slots)
+      if (2*table%filled <= size(table%slots)) return
+      call move_alloc(table%slots, old)
+      allocate (table%slots(2*size(old)))
+      do i = 1, size(old)
+         if (old(i)%number /= 0) table%slots(slot_of(table%slots, old(i)%name)) = old(i)
+      end do
    end subroutine put_name
 
    !> The number of `name`, or 0 if the table does not have it.
@@ -55,38 +61,21 @@ contains
       type(slot_t), intent(in) :: slots(:)
       character(*), intent(in) :: name
       character(label_length) :: key
-
-      key = name
-      k = 1 + int(modulo(hash(key), int(size(slots), int64)))
-      do while (slots(k)%number /= 0)
-         if (slots(k)%name == key) exit
-         k = 1 + modulo(k, size(slots))
-      end do
-   end function slot_of
-
-   !> A number below 2**31 - 1 that depends on every character; sums stay below 2**58.
-   pure integer(int64) function hash(key)
-      character(label_length), intent(in) :: key
       integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64
+      integer(int64) :: hash
       integer :: i
 
+      key = name
+      ! A number below 2**31 - 1 that depends on every character; sums stay below 2**58.
       hash = 0_int64
       do i = 1, label_length
          hash = hash*factor + iachar(key(i:i))
       end do
       hash = modulo(hash, prime)
-   end function hash
-
-   !> Doubles the number of slots; the names stay.
-   subroutine double_slots(slots)
-      type(slot_t), allocatable, intent(inout) :: slots(:)
-      type(slot_t), allocatable :: old(:)
-      integer :: i
-
-      call move_alloc(slots, old)
-      allocate (slots(2*size(old)))
-      do i = 1, size(old)
-         if (old(i)%number /= 0) slots(slot_of(slots, old(i)%name)) = old(i)
+      k = 1 + int(modulo(hash, int(size(slots), int64)))
+      do while (slots(k)%number /= 0)
+         if (slots(k)%name == key) exit
+         k = 1 + modulo(k, size(slots))
       end do
-   end subroutine double_slots
+   end function slot_of
 end module name_table

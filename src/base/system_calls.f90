@@ -41,7 +41,8 @@ module system_calls
 
    !> The signal that was noted: all that a handler may change.
    integer(c_int), volatile :: received = 0
-   logical :: pipe_kills = .false.
+   !> A broken pipe would have ended this process without `watch_signals`.
+   logical, protected :: broken_pipe_kills = .false.
 
    !> The result of statx. Unlike that of stat it is the same on every architecture.
    type, bind(c) :: facts_t
@@ -129,16 +130,13 @@ module system_calls
       type(c_ptr) function errno_location() bind(c, name='__errno_location')
          import :: c_ptr
       end function errno_location
-      !> strerror(3): the text of error `number`.
-      type(c_ptr) function strerror(number) bind(c)
-         import :: c_int, c_ptr
+      !> strerror_r(3) of POSIX: writes the text of error `number`, and a null behind it.
+      integer(c_int) function strerror_r(number, text, length) bind(c, name='__xpg_strerror_r')
+         import :: c_int, c_char, c_size_t
          integer(c_int), value :: number
-      end function strerror
-      !> strlen(3).
-      integer(c_size_t) function strlen(text) bind(c)
-         import :: c_ptr, c_size_t
-         type(c_ptr), value :: text
-      end function strlen
+         character(kind=c_char), intent(inout) :: text(*)
+         integer(c_size_t), value :: length
+      end function strerror_r
       !> signal(2): installs a handler; returns the one before.
       type(c_funptr) function signal(number, handler) bind(c)
          import :: c_int, c_funptr
@@ -157,23 +155,24 @@ contains
    !> The identity of the file `path`, symbolic links followed; the default of its type if there is no such file.
    type(identity_t) function identity_of_path(path) result(id)
       character(*), intent(in) :: path
-      type(facts_t) :: facts
 
-      if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_of(facts)
+      id = identity_of(from_working_directory, path, 0_c_int)
    end function identity_of_path
 
    !> The identity of the file that is open as `descriptor`.
    type(identity_t) function identity_of_descriptor(descriptor) result(id)
       integer(c_int), intent(in) :: descriptor
-      type(facts_t) :: facts
 
-      if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_of(facts)
+      id = identity_of(descriptor, '', empty_path)
    end function identity_of_descriptor
 
-   !> The identity of a file from what statx says of it.
-   pure type(identity_t) function identity_of(facts) result(id)
-      type(facts_t), intent(in) :: facts
+   !> The identity of the file `path` in an open `directory`, by the `flags` of statx.
+   type(identity_t) function identity_of(directory, path, flags) result(id)
+      integer(c_int), intent(in) :: directory, flags
+      character(*), intent(in) :: path
+      type(facts_t) :: facts
 
+      if (statx(directory, path//c_null_char, flags, basic_facts, facts) /= 0) return
       id%device = facts%device
       id%inode = facts%inode
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular
@@ -307,16 +306,12 @@ contains
    function reason_of(error) result(text)
       integer, intent(in) :: error
       character(:), allocatable :: text
-      character(kind=c_char), pointer :: letters(:)
-      type(c_ptr) :: place
-      integer :: i
+      character(256) :: words
+      integer(c_int) :: status
 
-      place = strerror(int(error, c_int))
-      call c_f_pointer(place, letters, [strlen(place)])
-      allocate (character(size(letters)) :: text)
-      do i = 1, len(text)
-         text(i:i) = letters(i)
-      end do
+      words = c_null_char
+      status = strerror_r(int(error, c_int), words, len(words, c_size_t))
+      text = words(:index(words, c_null_char) - 1)
    end function reason_of
 
    !> From now on SIGINT and SIGTERM are noted, unless they were ignored. A broken pipe or the limit of file sizes is a
@@ -330,7 +325,7 @@ contains
          if (address(before) == ignored) before = signal(watched(i), before)
       end do
       before = signal(signal_pipe, transfer(ignored, c_null_funptr))
-      if (address(before) == 0_c_intptr_t) pipe_kills = .true.
+      if (address(before) == 0_c_intptr_t) broken_pipe_kills = .true.
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
    end subroutine watch_signals
 
@@ -367,11 +362,6 @@ contains
    integer function signal_received()
       signal_received = received
    end function signal_received
-
-   !> Whether a broken pipe would have ended this process without `watch_signals`.
-   logical function broken_pipe_kills()
-      broken_pipe_kills = pipe_kills
-   end function broken_pipe_kills
 
    !> Ends the process by the signal `number`, so that a shell sees the usual status.
    subroutine end_by_signal(number)

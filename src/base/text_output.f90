@@ -1,15 +1,15 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
 !> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
-!> in memory until the turn has come (`turns`).
+!> in memory until the turn has come (`processes`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
-      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
+      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: held_length, write_held, release_output, drop_held, has_failed, has_broken_pipe, turn_lost
+   public :: held_length, write_held, release_output, drop_held, has_failed, turn_lost
 
    integer, parameter :: block_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
@@ -60,28 +60,23 @@ contains
       type(output_t), intent(in) :: list(:)
       character(*), intent(in) :: deck
       type(failure_t), allocatable, intent(out) :: failure
-      type(identity_t) :: id(size(list)), read_from
-      integer :: i, n
+      type(identity_t) :: id(size(list)), read_from      ! those that are not open are no files
+      character(:), allocatable :: name
+      integer :: i
 
+      read_from = identity_of_descriptor(standard_input)
+      name = 'THE DECK ON STANDARD INPUT'
       if (len(deck) > 0) then
          read_from = identity_of_path(deck)
-      else
-         read_from = identity_of_descriptor(standard_input)
+         name = 'THE DECK '//deck
       end if
-      n = 0
       do i = 1, size(list)
          if (.not. allocated(list(i)%buffer)) cycle
-         n = n + 1
-         id(n) = identity_of_descriptor(list(i)%descriptor)
-         if (any(same_file(id(n), id(:n - 1)))) &
+         id(i) = identity_of_descriptor(list(i)%descriptor)
+         if (any(same_file(id(i), id(:i - 1)))) &
             call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
       end do
-      if (.not. any(same_file(read_from, id(:n)))) return
-      if (len(deck) > 0) then
-         call fail(failure, status_rejected, 'THE DECK '//deck//' WOULD BE OVERWRITTEN')
-      else
-         call fail(failure, status_rejected, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
-      end if
+      if (any(same_file(read_from, id))) call fail(failure, status_rejected, name//' WOULD BE OVERWRITTEN')
    end subroutine check_apart
 
    !> Appends one line, or the rest of one that `add` began.
@@ -103,10 +98,26 @@ contains
    subroutine add(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
+      character(:), allocatable :: other
+      integer :: held, last
 
-      if (len(text) > len(o%buffer) - o%used .and. o%held) call make_room(o, len(text))
-      if (len(text) > len(o%buffer) - o%used) call write_lines(o)
-      if (len(text) > len(o%buffer) - o%used) call write_block(o)
+      if (len(text) > len(o%buffer) - o%used .and. o%held) then
+         ! Room for text that is held, as much again, and for none that is written.
+         held = held_length(o)
+         allocate (character(max(len(o%buffer), 2*(held + len(text)))) :: other)
+         other(:held) = o%buffer(o%written + 1:o%used)
+         call move_alloc(other, o%buffer)
+         o%used = held
+         o%written = 0
+      end if
+      if (len(text) > len(o%buffer) - o%used) then
+         ! Whole lines are written, so that a killed process leaves no partial line.
+         last = index(o%buffer(:o%used), new_line('a'), back=.true.)
+         call write_text(o, o%buffer(:last))
+         o%buffer(:o%used - last) = o%buffer(last + 1:o%used)
+         o%used = o%used - last
+      end if
+      if (len(text) > len(o%buffer) - o%used) call write_held(o, held_length(o))
       if (len(text) > len(o%buffer)) then
          call write_text(o, text)
          return
@@ -114,21 +125,6 @@ contains
       o%buffer(o%used + 1:o%used + len(text)) = text
       o%used = o%used + len(text)
    end subroutine add
-
-   !> Makes room for `length` more characters of text that is held, as much again, and for none that is written.
-   subroutine make_room(o, length)
-      type(output_t), intent(inout) :: o
-      integer, intent(in) :: length
-      character(:), allocatable :: other
-      integer :: held
-
-      held = held_length(o)
-      allocate (character(max(len(o%buffer), 2*(held + length))) :: other)
-      other(:held) = o%buffer(o%written + 1:o%used)
-      call move_alloc(other, o%buffer)
-      o%used = held
-      o%written = 0
-   end subroutine make_room
 
    !> How many characters are held, or wait for a block to be full.
    elemental integer function held_length(o)
@@ -153,7 +149,7 @@ contains
    subroutine release_output(o)
       type(output_t), intent(inout) :: o
 
-      call write_block(o)
+      call write_held(o, held_length(o))
       o%held = .false.
       if (len(o%buffer) == block_length) return
       deallocate (o%buffer)
@@ -172,7 +168,7 @@ contains
    subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
-      if (.not. o%held) call write_block(o)
+      if (.not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
    !> Whether a write has failed: further results would be lost.
@@ -182,19 +178,12 @@ contains
       has_failed = o%error /= 0
    end function has_failed
 
-   !> Whether it has failed because the reader of the pipe has gone.
-   elemental logical function has_broken_pipe(o)
-      type(output_t), intent(in) :: o
-
-      has_broken_pipe = o%error == broken_pipe
-   end function has_broken_pipe
-
    !> Writes the rest of the buffer and closes. Errors: status_system, if any line could not be written.
    subroutine close_output(o, failure)
       type(output_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
 
-      call write_block(o)
+      call write_held(o, held_length(o))
       if (len(o%path) > 0) then
          if (.not. close_descriptor(o%descriptor) .and. .not. has_failed(o)) o%error = last_error()
       else
@@ -222,31 +211,21 @@ contains
       if (o%made) call remove_file(o%path)
    end subroutine abandon_output
 
-   !> Writes the whole lines of the buffer, so that a killed process leaves no partial line.
-   subroutine write_lines(o)
-      type(output_t), intent(inout) :: o
-      integer :: last
-
-      last = index(o%buffer(:o%used), new_line('a'), back=.true.)
-      call write_text(o, o%buffer(:last))
-      o%buffer(:o%used - last) = o%buffer(last + 1:o%used)
-      o%used = o%used - last
-   end subroutine write_lines
-
-   !> Writes all of the buffer.
-   subroutine write_block(o)
-      type(output_t), intent(inout) :: o
-
-      call write_held(o, held_length(o))
-   end subroutine write_block
-
    !> Writes all of `text`: the system may take it in several pieces.
    subroutine write_text(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
+      type(identity_t) :: id
       integer(c_size_t) :: written, done
 
-      if (.not. (o%emptied .or. has_failed(o))) call empty(o)
+      ! The old contents of the file go; devices and pipes have none.
+      if (.not. (o%emptied .or. has_failed(o))) then
+         o%emptied = .true.
+         id = identity_of_descriptor(o%descriptor)
+         if (id%regular) then
+            if (.not. empty_file(o%descriptor)) o%error = last_error()
+         end if
+      end if
       done = 0
       do while (done < len(text) .and. .not. has_failed(o))
          written = write_bytes(o%descriptor, text(done + 1:))
@@ -254,15 +233,4 @@ contains
          done = done + written
       end do
    end subroutine write_text
-
-   !> Deletes the old contents of the file; devices and pipes have none.
-   subroutine empty(o)
-      type(output_t), intent(inout) :: o
-      type(identity_t) :: id
-
-      o%emptied = .true.
-      id = identity_of_descriptor(o%descriptor)
-      if (.not. id%regular) return
-      if (.not. empty_file(o%descriptor)) o%error = last_error()
-   end subroutine empty
 end module text_output

@@ -5,7 +5,6 @@ module animation
    use kinds, only: wp
    use grouping, only: sorted_t, sorted
    use planar, only: in_degrees, without_turns, point_of
-   use mechanism, only: mechanism_t
    use scales, only: is_length
    use drives, only: law_t, drive_motion, new_law
    use motion, only: mark_none
@@ -14,7 +13,7 @@ module animation
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: shapes_t, shapes_of, pole_name
    use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path
-   use picture_frames, only: closes
+   use picture, only: closes
    use picture_page, only: place_canvas, paths_of, put_flagged, put_ring, put_set_head, put_flags, put_scale, &
       flag_lines, fitted, width, line_height
    use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
@@ -42,14 +41,6 @@ module animation
    !> What of a group is animated.
    character(*), parameter :: turn = 'animateTransform attributeName="transform" type="rotate"', &
       shift = 'animateTransform attributeName="transform" type="translate"'
-
-   !> How the frames follow one another.
-   type :: course_t
-      integer, allocatable :: frame(:)       !< (keys) at equal steps of time
-      integer :: frames = 0                  !< without the pause at the end
-      real(wp) :: seconds = 0.0_wp           !< from the first to the last
-      logical :: smooth = .true.             !< there are positions between them
-   end type course_t
 
 contains
 
@@ -79,12 +70,15 @@ contains
    !> Draws one set, with the bar of the time below.
    subroutine put_film(c)
       type(canvas_t), intent(inout) :: c
-      type(course_t) :: course
       type(shapes_t) :: list
       logical, allocatable :: is_fixed(:)
+      integer, allocatable :: frame(:)       ! (keys) at equal steps of time
+      integer :: frames                      ! without the pause at the end
+      real(wp) :: seconds                    ! from the first to the last
+      logical :: smooth                      ! there are positions between them
       integer :: i
 
-      course = course_of(c%d)
+      call find_course()
       c%s = c%d%now
       call put_set_head(c, c%d%frame(1)%t)
       do i = 1, size(c%paths)
@@ -105,8 +99,8 @@ contains
          call put_window(c%o, c%low, c%high - c%low)
          call put_group(c%o, translation(-c%low), '')
       end if
-      call put_group(c%o, 'class="film" data-frames="'//whole(course%frames)//'" data-keys="' &
-         //whole(size(course%frame))//'" data-end="'//full(c%d%frame(c%d%films)%t)//'"', '')
+      call put_group(c%o, 'class="film" data-frames="'//whole(frames)//'" data-keys="' &
+         //whole(size(frame))//'" data-end="'//full(c%d%frame(c%d%films)%t)//'"', '')
       call put_moving_links()
       do i = 1, size(c%d%poles)
          call put_moving_centre(i)
@@ -128,6 +122,27 @@ contains
 
    contains
 
+      !> Finds how the frames follow one another. The motion begins again after its end: at once where it has come back,
+      !> otherwise after a pause. It is not shown backwards: drives do not run so.
+      subroutine find_course()
+         integer :: k, stride, pause
+
+         stride = max(1, 1 + (c%d%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
+         frame = [(min(k, c%d%films), k=1, c%d%films + stride - 1, stride)]
+         frames = size(frame)
+         smooth = .true.
+         do k = 2, frames
+            associate (now => c%d%frame(frame(k)), before => c%d%frame(frame(k - 1)))
+               if (any(now%known .and. before%known .and. &
+                  abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
+            end associate
+         end do
+         pause = 0
+         if (.not. closes(c%d, frame)) pause = nint(real(frames - 1, wp)*pause_seconds/motion_seconds)
+         frame = [frame, spread(c%d%films, 1, pause)]
+         seconds = motion_seconds*real(max(1, size(frame) - 1), wp)/real(max(1, frames - 1), wp)
+      end subroutine find_course
+
       !> Draws the moving links, each with its shapes in its own axes, later ones over earlier ones.
       subroutine put_moving_links()
          type(sorted_t) :: own
@@ -145,7 +160,7 @@ contains
          do i = 1, size(order)
             associate (link => order(i))
                if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
-               if (.not. any([(c%d%frame(course%frame(k))%known(link), k=1, course%frames)])) cycle
+               if (.not. any([(c%d%frame(frame(k))%known(link), k=1, frames)])) cycle
                ! It turns about a corner of its own: its origin may be far away.
                axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
                call begin_link(link)
@@ -161,15 +176,15 @@ contains
       !> Begins the two groups that move and turn with `link`, about its first corner.
       subroutine begin_link(link)
          integer, intent(in) :: link
-         real(wp) :: place(2, size(course%frame)), angle(1, size(course%frame)), position(3), turned
-         logical :: known(size(course%frame))
+         real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
+         logical :: known(size(frame))
          integer :: k, last
 
-         known = [(c%d%frame(course%frame(k))%known(link), k=1, size(known))]
-         last = course%frame(findloc(known, .true., dim=1))
+         known = [(c%d%frame(frame(k))%known(link), k=1, size(known))]
+         last = frame(findloc(known, .true., dim=1))
          turned = 0.0_wp
          do k = 1, size(known)
-            if (known(k)) last = course%frame(k)
+            if (known(k)) last = frame(k)
             position = c%d%frame(last)%place(:, link)
             place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
             turned = turned + without_turns(position(3) - turned)
@@ -179,21 +194,21 @@ contains
          call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
             trim(c%m%links(link)%name), place, known, pale)
          call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-         call put_moving(turn, angle, course%smooth)
+         call put_moving(turn, angle, smooth)
       end subroutine begin_link
 
       !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves
       !> the picture.
       subroutine put_moving_centre(i)
          integer, intent(in) :: i
-         real(wp) :: place(2, 0:size(course%frame))
-         logical :: is_there(size(course%frame))
+         real(wp) :: place(2, 0:size(frame))
+         logical :: is_there(size(frame))
          character(:), allocatable :: name
          integer :: k
 
          place(:, 0) = c%low
-         do k = 1, size(course%frame)
-            associate (s => c%d%frame(course%frame(k)))
+         do k = 1, size(frame)
+            associate (s => c%d%frame(frame(k)))
                place(:, k) = to_pixels(c, s%centre(:, i))
                is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
             end associate
@@ -209,19 +224,32 @@ contains
       !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind
       !> a window of one line.
       subroutine put_clock()
-         real(wp) :: up(2, size(course%frame)), value(min(max_drives, size(c%m%drives)), course%frames)
+         real(wp) :: up(2, size(frame)), value(min(max_drives, size(c%m%drives)), frames), f(0:2)
          character(:), allocatable :: words
+         type(law_t) :: law
          integer :: k, i, y
 
+         ! The values of the first drives, angles in the deck's unit. Rounding errors of a 0 are not shown.
+         do i = 1, size(value, 1)
+            law = new_law(c%m%drives(i))
+            do k = 1, frames
+               f = drive_motion(law, c%d%frame(frame(k))%t)
+               value(i, k) = f(0)
+            end do
+            if (c%m%degrees .and. .not. is_length(c%m%drives(i))) value(i, :) = in_degrees(value(i, :))
+            ! Beside a pole of its law a value may be beyond the range of reals.
+            value(i, :) = max(-huge(1.0_wp), min(huge(1.0_wp), value(i, :)))
+            where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
+         end do
+
          y = c%bottom - 16 - line_height*flag_lines(c%d)
-         value = drive_values(c%m, c%d%frame(course%frame(:course%frames))%t)
          call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
          call put_group(c%o, 'class="clock"', '')
          up(1, :) = 0.0_wp
-         up(2, :) = [(-real(line_height*(min(k, course%frames) - 1), wp), k=1, size(course%frame))]
+         up(2, :) = [(-real(line_height*(min(k, frames) - 1), wp), k=1, size(frame))]
          call put_moving(shift, up, .false.)
-         do k = 1, course%frames
-            associate (s => c%d%frame(course%frame(k)))
+         do k = 1, frames
+            associate (s => c%d%frame(frame(k)))
                words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
                do i = 1, size(value, 1)
                   words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
@@ -251,8 +279,8 @@ contains
             call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
          end do
          call put_group(c%o, 'class="now"', '')
-         call put_moving(shift, reshape([(along_bar(c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, &
-            k=1, size(course%frame))], [2, size(course%frame)]), course%smooth)
+         call put_moving(shift, reshape([(along_bar(c%d%frame(frame(k))%t) - first(1), 0.0_wp, &
+            k=1, size(frame))], [2, size(frame)]), smooth)
          call put_circle(c%o, first, dot_radius, 'class="point"')
          call put_end(c%o, 'g')
       end subroutine put_bar
@@ -277,7 +305,7 @@ contains
          logical, intent(in) :: is_there(:)
 
          call put_group(c%o, attributes//translation(place(:, 1)), title)
-         call put_moving(shift, place, course%smooth)
+         call put_moving(shift, place, smooth)
          if (.not. all(is_there)) call put_moving('animate attributeName="opacity"', &
             reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
       end subroutine begin_moving
@@ -290,52 +318,7 @@ contains
 
          if (size(values, 2) < 2) return
          call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
-            //fitted(course%seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';', '/>')
+            //fitted(seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';', '/>')
       end subroutine put_moving
    end subroutine put_film
-
-   !> The motion begins again after its end: at once where it has come back, otherwise after a pause. It is not shown
-   !> backwards: drives do not run so.
-   function course_of(d) result(course)
-      type(drawing_t), intent(in) :: d
-      type(course_t) :: course
-      integer, allocatable :: list(:)
-      integer :: k, stride, pause
-
-      stride = max(1, 1 + (d%films - 2)/max(1, min(max_intervals, max_positions/size(d%m%links) - 1)))
-      list = [(min(k, d%films), k=1, d%films + stride - 1, stride)]
-      course%frames = size(list)
-      pause = 0
-      if (.not. closes(d, list)) pause = nint(real(course%frames - 1, wp)*pause_seconds/motion_seconds)
-      course%frame = [list, spread(d%films, 1, pause)]
-      course%seconds = motion_seconds*real(max(1, size(course%frame) - 1), wp)/real(max(1, course%frames - 1), wp)
-      do k = 2, course%frames
-         associate (now => d%frame(list(k)), before => d%frame(list(k - 1)))
-            if (any(now%known .and. before%known .and. &
-               abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) course%smooth = .false.
-         end associate
-      end do
-   end function course_of
-
-   !> The values of the first drives of `m` at the instants `t`, angles in the deck's unit. Rounding errors of a 0 are
-   !> not shown.
-   function drive_values(m, t) result(value)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t(:)
-      real(wp) :: value(min(max_drives, size(m%drives)), size(t)), f(0:2)
-      type(law_t) :: law
-      integer :: i, k
-
-      do i = 1, size(value, 1)
-         law = new_law(m%drives(i))
-         do k = 1, size(t)
-            f = drive_motion(law, t(k))
-            value(i, k) = f(0)
-         end do
-         if (m%degrees .and. .not. is_length(m%drives(i))) value(i, :) = in_degrees(value(i, :))
-         ! Beside a pole of its law a value may be beyond the range of reals.
-         value(i, :) = max(-huge(1.0_wp), min(huge(1.0_wp), value(i, :)))
-         where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
-      end do
-   end function drive_values
 end module animation

@@ -153,10 +153,17 @@ contains
          real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
          real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
          character(6), parameter :: anchors(2) = ['middle', 'end   ']
-         real(wp) :: step, x, p(2)
+         real(wp) :: range, power, step, x, p(2)
          integer(int64) :: i
 
-         step = step_of(axis)
+         range = axis%high - axis%low
+         power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
+         i = findloc(range <= steps*power*most_ticks, .true., dim=1)
+         step = steps(merge(i, size(steps, kind=int64), i > 0))*power
+         if (axis%is_angle .and. range > 8.0_wp) then
+            i = findloc(range <= degree_steps*most_ticks, .true., dim=1)
+            if (i > 0) step = degree_steps(i)
+         end if
          do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
             x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
             p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
@@ -165,19 +172,4 @@ contains
          end do
       end subroutine put_ticks
    end subroutine put_chart
-
-   !> The step between ticks of `axis`.
-   pure real(wp) function step_of(axis) result(step)
-      type(axis_t), intent(in) :: axis
-      real(wp) :: range, power
-      integer :: k
-
-      range = axis%high - axis%low
-      power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
-      k = findloc(range <= steps*power*most_ticks, .true., dim=1)
-      step = steps(merge(k, size(steps), k > 0))*power
-      if (.not. axis%is_angle .or. range <= 8.0_wp) return
-      k = findloc(range <= degree_steps*most_ticks, .true., dim=1)
-      if (k > 0) step = degree_steps(k)
-   end function step_of
 end module chart

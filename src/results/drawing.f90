@@ -3,19 +3,18 @@
 !> the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted
+   use grouping, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, instant, &
       plane_origin, is_listed_alone
-   use planar, only: direction, quarter_turn, rotated, point_of
+   use planar, only: cross, direction, quarter_turn, rotated, point_of
    use drives, only: pole_value
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
-   use outline, only: outline_t, outlines_of
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, point_velocity, joint_point
+   public :: point_place, point_velocity, joint_point, outline_t, outlines_of, hull, corners_at, distance_to
 
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation leaps.
@@ -34,6 +33,14 @@ module drawing
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
    !> So near to a pole of a law, in parts of a step, no instant is computed between those of the deck.
    real(wp), parameter :: near_pole = 1.0e-2_wp
+
+   !> Points of a link closer than this part of the link's extent are one.
+   real(wp), parameter :: same_place = 1.0e-6_wp
+
+   !> The shape of a link for the eye: the convex hull of its points, in its own axes.
+   type :: outline_t
+      real(wp), allocatable :: corner(:, :)  !< (2, corners) two of a bar, one of a single place, none without a point
+   end type outline_t
 
    !> The position of all links at one instant, and why it is flagged.
    type :: snapshot_t
@@ -158,7 +165,7 @@ contains
       allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
       d%guides%pair = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
       do i = 1, size(d%guides)
-         d%guides(i) = guide_of(m, d%outlines, d%guides(i)%pair)
+         d%guides(i) = guide_of(d%guides(i)%pair)
       end do
       ! First polygons are drawn, then bars and rods, then a single point, such as a block.
       corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(m%links))]
@@ -174,6 +181,37 @@ contains
       d%stride = max(1, 1 + (m%steps - 1)/(most - 1))
       d%stride_at = max(1, 1 + (instant_count(m) - m%steps - 3)/(picture_candidates - 1))
       allocate (d%frame(count([(is_frame(d, i), i=0, instant_count(m) - 1)])))
+
+   contains
+
+      !> The guide of pair number `i`. It belongs to link i of the pair: Q - P = s e - h n, eq. (9), lies on a line
+      !> through P - h n. Where link j is ground, or link i has no extent, the same pair is a guide of link j: P slides
+      !> along the line through Q + h n.
+      pure function guide_of(i) result(g)
+         integer, intent(in) :: i
+         type(guide_t) :: g
+         integer :: ends(2), k
+         real(wp) :: angles(2)
+
+         associate (pair => m%pairs(i))
+            ends = [pair%point_i, pair%point_j]
+            angles = [pair%alpha, pair%alpha - pair%beta]
+            associate (li => m%points(ends(1))%link, lj => m%points(ends(2))%link)
+               k = 1
+               if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
+                  (size(d%outlines(li)%corner, 2) == 1 .and. size(d%outlines(lj)%corner, 2) > 1))) k = 2
+            end associate
+            g%pair = i
+            g%pivot = ends(k)
+            g%point = ends(3 - k)
+            g%carrier = m%points(g%pivot)%link
+            g%block = m%points(g%point)%link
+            g%angle = angles(k)
+            g%block_angle = angles(3 - k)
+            g%sense = 3 - 2*k
+            g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
+         end associate
+      end function guide_of
    end function new_drawing
 
    !> Whether instant number `k` (0, 1, ...) is a frame: of TIME, or of AT if the deck has no TIME.
@@ -201,43 +239,12 @@ contains
       end do
    end function snapshot_of_ground
 
-   !> The guide of pair number `i`. It belongs to link i of the pair: Q - P = s e - h n, eq. (9), lies on a line through
-   !> P - h n. Where link j is ground, or link i has no extent, the same pair is a guide of link j: P slides along the
-   !> line through Q + h n.
-   pure function guide_of(m, outlines, i) result(g)
-      type(mechanism_t), intent(in) :: m
-      type(outline_t), intent(in) :: outlines(:)
-      integer, intent(in) :: i
-      type(guide_t) :: g
-      integer :: ends(2), k
-      real(wp) :: angles(2)
-
-      associate (pair => m%pairs(i))
-         ends = [pair%point_i, pair%point_j]
-         angles = [pair%alpha, pair%alpha - pair%beta]
-         associate (li => m%points(ends(1))%link, lj => m%points(ends(2))%link)
-            k = 1
-            if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
-               (size(outlines(li)%corner, 2) == 1 .and. size(outlines(lj)%corner, 2) > 1))) k = 2
-         end associate
-         g%pair = i
-         g%pivot = ends(k)
-         g%point = ends(3 - k)
-         g%carrier = m%points(g%pivot)%link
-         g%block = m%points(g%point)%link
-         g%angle = angles(k)
-         g%block_angle = angles(3 - k)
-         g%sense = 3 - 2*k
-         g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
-      end associate
-   end function guide_of
-
    !> Takes what is drawn of instant number `k` (0, 1, ...) of the motion `s`.
    subroutine record_instant(d, s, k)
       type(drawing_t), intent(inout) :: d
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
-      type(snapshot_t) :: before, now
+      type(snapshot_t) :: before, now        ! the last known positions before the instant, and the position there
       logical :: is_own
       real(wp) :: along
       integer :: i
@@ -247,7 +254,7 @@ contains
       ! The instants of a deck without TIME are a motion of their own.
       if (d%every == 0 .and. k == d%m%steps + 1) d%now = snapshot_of_ground(d)
       before = d%now
-      now = snapshot_of(d, s, is_own)
+      call find_snapshot()
       d%now%t = now%t
       d%now%centre = now%centre
       d%now%has_centre = now%has_centre
@@ -266,75 +273,69 @@ contains
          end associate
       end do
 
-      if (is_own) call record_flags(d, s, before, now)
+      if (is_own) call record_flags()
       if (.not. is_frame(d, k)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
       if (k <= d%m%steps) d%films = d%frames
       if (is_own) d%own = [d%own, d%frames]
+
+   contains
+
+      !> The position of all links `now`, with the marks of an instant that `is_own` of the deck.
+      subroutine find_snapshot()
+         type(row_t) :: row
+         integer :: c, i
+
+         now = snapshot_of_ground(d)
+         now%t = s%motions(1)%t
+         do c = s%count, 1, -1
+            associate (links => s%cards(c)%links, q => s%motions(c))
+               if (q%mark /= mark_none .and. is_own) then
+                  now%mark = q%mark
+                  now%singularity = q%singularity
+               end if
+               do i = 1, size(links)
+                  if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
+                  now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
+                  now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
+                  if (known_of(q, i) > 0) now%velocity(:, links(i)) = q%velocity(:, i)
+               end do
+            end associate
+         end do
+         do i = 1, size(d%poles)
+            call find_row_in_set(s, d%poles(i), row)
+            now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
+            if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
+         end do
+      end subroutine find_snapshot
+
+      !> Notes the first of the instants at which a part of the motion is flagged for one reason.
+      subroutine record_flags()
+         type(flag_t) :: flag
+         integer :: c
+
+         if (size(d%mark) == 0) d%mark = spread(mark_none, 1, s%count)
+         if (is_flagged(s)) d%flagged = d%flagged + 1
+         if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
+         do c = 1, s%count
+            associate (links => s%cards(c)%links, mark => s%motions(c)%mark)
+               if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
+                  flag%t = now%t
+                  flag%mark = mark
+                  flag%singularity = s%motions(c)%singularity
+                  flag%earlier = .not. all(now%known(links))
+                  flag%last = now
+                  if (flag%earlier) flag%last = before
+                  flag%last%known = .false.
+                  flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
+                  d%flags = [d%flags, flag]
+               end if
+               d%mark(c) = mark
+            end associate
+         end do
+      end subroutine record_flags
    end subroutine record_instant
-
-   !> The position of all links in the motion `s`, with the marks of an instant that `is_own` of the deck.
-   function snapshot_of(d, s, is_own) result(now)
-      type(drawing_t), intent(in) :: d
-      type(set_motion_t), intent(in) :: s
-      logical, intent(in) :: is_own
-      type(snapshot_t) :: now
-      type(row_t) :: row
-      integer :: c, i
-
-      now = snapshot_of_ground(d)
-      now%t = s%motions(1)%t
-      do c = s%count, 1, -1
-         associate (links => s%cards(c)%links, q => s%motions(c))
-            if (q%mark /= mark_none .and. is_own) then
-               now%mark = q%mark
-               now%singularity = q%singularity
-            end if
-            do i = 1, size(links)
-               if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
-               now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
-               now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
-               if (known_of(q, i) > 0) now%velocity(:, links(i)) = q%velocity(:, i)
-            end do
-         end associate
-      end do
-      do i = 1, size(d%poles)
-         call find_row_in_set(s, d%poles(i), row)
-         now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
-         if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
-      end do
-   end function snapshot_of
-
-   !> Notes the first of the instants at which a part of the motion `s` is flagged for one reason. `before`, `now`: the
-   !> last known positions before that instant, and the position there.
-   subroutine record_flags(d, s, before, now)
-      type(drawing_t), intent(inout) :: d
-      type(set_motion_t), intent(in) :: s
-      type(snapshot_t), intent(in) :: before, now
-      type(flag_t) :: flag
-      integer :: c
-
-      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, s%count)
-      if (is_flagged(s)) d%flagged = d%flagged + 1
-      if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
-      do c = 1, s%count
-         associate (links => s%cards(c)%links, mark => s%motions(c)%mark)
-            if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
-               flag%t = now%t
-               flag%mark = mark
-               flag%singularity = s%motions(c)%singularity
-               flag%earlier = .not. all(now%known(links))
-               flag%last = now
-               if (flag%earlier) flag%last = before
-               flag%last%known = .false.
-               flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
-               d%flags = [d%flags, flag]
-            end if
-            d%mark(c) = mark
-         end associate
-      end do
-   end subroutine record_flags
 
    !> Place (2) of point number `i` at the position `s`.
    pure function point_place(m, s, i) result(p)
@@ -373,4 +374,98 @@ contains
       point = 0
       if (any(rank >= 0)) point = ends(maxloc(rank, dim=1))
    end function joint_point
+
+   !> The outlines (links) of all links of `m`, in one pass over its points.
+   pure function outlines_of(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      type(outline_t) :: list(size(m%links))
+      type(sorted_t) :: by_link
+      real(wp) :: offset(2, size(m%points))
+      integer :: i
+
+      do i = 1, size(m%points)
+         offset(:, i) = m%points(i)%offset
+      end do
+      by_link = sorted(m%points%link, size(m%links))
+      do i = 1, size(m%links)
+         list(i)%corner = hull(offset(:, members(by_link, i)))
+      end do
+   end function outlines_of
+
+   !> The corners (2, :) of the outline `h` of a link at `position` (x, y, phi).
+   pure function corners_at(h, position) result(p)
+      type(outline_t), intent(in) :: h
+      real(wp), intent(in) :: position(3)
+      real(wp) :: p(2, size(h%corner, 2))
+      integer :: k
+
+      do k = 1, size(p, 2)
+         p(:, k) = point_of(position, h%corner(:, k))
+      end do
+   end function corners_at
+
+   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise), whose
+   !> sides are longer at both ends by the part `longer` of their lengths; 0 inside.
+   pure real(wp) function distance_to(c, p, longer) result(distance)
+      real(wp), intent(in) :: c(:, :), p(2), longer
+      real(wp) :: u(2), along
+      logical :: inside
+      integer :: k, n
+
+      n = size(c, 2)
+      inside = n > 2
+      distance = huge(distance)
+      do k = 1, n
+         u = c(:, 1 + modulo(k, n)) - c(:, k)
+         along = min(1.0_wp + longer, max(-longer, dot_product(p - c(:, k), u)/dot_product(u, u)))
+         distance = min(distance, norm2(p - c(:, k) - along*u))
+         inside = inside .and. cross(u, p - c(:, k)) > 0.0_wp
+      end do
+      if (inside) distance = 0.0_wp
+   end function distance_to
+
+   !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.
+   pure function hull(p) result(corners)
+      real(wp), intent(in) :: p(:, :)
+      real(wp), allocatable :: corners(:, :)
+      integer :: order(size(p, 2)), start, last, next, i, n
+      real(wp) :: extent, side
+
+      if (size(p, 2) == 0) then
+         corners = p
+         return
+      end if
+      extent = maxval(maxval(p, dim=2) - minval(p, dim=2))
+      start = minloc(p(2, :), dim=1, mask=p(1, :) <= minval(p(1, :)))
+      n = 0
+      last = start
+      do
+         n = n + 1
+         order(n) = last
+         next = 0
+         do i = 1, size(p, 2)
+            if (is_same_place(p(:, i), p(:, last), extent)) cycle
+            if (next == 0) then
+               next = i
+               cycle
+            end if
+            ! The sine of the angle from the next place to this one.
+            associate (u => p(:, next) - p(:, last), v => p(:, i) - p(:, last))
+               side = cross(u/norm2(u), v/norm2(v))
+               if (side < -same_place .or. (side <= same_place .and. norm2(v) > norm2(u))) next = i
+            end associate
+         end do
+         if (next == 0 .or. n == size(p, 2)) exit
+         if (is_same_place(p(:, next), p(:, start), extent)) exit
+         last = next
+      end do
+      corners = p(:, order(:n))
+   end function hull
+
+   !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.
+   pure logical function is_same_place(p, q, extent)
+      real(wp), intent(in) :: p(2), q(2), extent
+
+      is_same_place = all(abs(p - q) <= same_place*extent)
+   end function is_same_place
 end module drawing

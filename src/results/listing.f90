@@ -1,27 +1,30 @@
 !> The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
 !> It takes finished data and depends on nothing else: two correct programs print the same bytes.
+!>
+!> Diagnostics in words: three stars before what concerns the results, three dashes before what is good to know.
 module listing
    use kinds, only: wp
-   use mechanism, only: settings_t, mechanism_t, request_t
-   use motion, only: mark_none, mark_not_converged, mark_singular, mark_inconsistent, singular_unclear, &
-      singular_dead, diagnostic_t
-   use structure, only: findings_t, group_t, spare_drives_text
+   use planar, only: degree
+   use mechanism, only: settings_t, mechanism_t, remark_small_letters, remark_more, request_t, request_link, &
+      request_pole
+   use names, only: drive_name, listed, more
+   use motion
+   use structure, only: findings_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
    use points, only: is_listed, row_t
-   use sensitivities, only: has_tolerances
+   use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use independent, only: set_t, request_of
-   use set_motion, only: set_motion_t, is_flagged, has_words, find_row_in_set, doubt_in_set, spread_in_set
-   use listing_layout, only: layout_t, new_layout
-   use listing_tables, only: listing_state_t, no_table, put_instant, put_requested, put_spreads
-   use listing_diagnostics, only: put_diagnostics, no_position_words, put_singular, put_closure_error, remarks_text
+   use set_motion, only: set_motion_t, is_flagged, has_words, find_row_in_set, doubt_in_set, spread_t, spread_in_set
+   use listing_layout, only: layout_t, digits_t, new_layout, put_folded, angle_unit, choose_time_digits, unit_of
+   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row, put_centre
    use text_output, only: output_t, put, add
-   use numerals, only: whole
+   use numerals, only: whole, rounded, put_fixed, numeral_length
    use known_digits, only: unknown_digit
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, listing_broken_off, &
-      words_of_mark
+   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, words_of_mark
+   public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remarks_text
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
@@ -30,6 +33,20 @@ module listing
    type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
       [say_singular, say_change_point, say_dead_point]
    integer, parameter :: links_a_line = 10
+   !> Digits of the value of a drive at a limit, or as many as a coarser real has; of a closure error or an angle that
+   !> is off.
+   integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10), error_digits = 3
+   !> What concerns the results.
+   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
+      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
+   !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
+   real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
+
+   !> The words of remarks, by their kind.
+   type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
+      [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
+      say_radians, say_guide, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, &
+      say_near_joints, say_more]
 
 contains
 
@@ -38,9 +55,10 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(in) :: findings
-      integer :: i
+      character(18) :: head
+      integer :: i, k
 
-      associate (pl => m%polish)
+      associate (pl => m%polish, f => findings)
          call put(o, ' KINMAT   '//phrase(say_program, pl))
          call put(o, '')
          call put(o, trim(' '//phrase(say_set, pl)//' '//whole(m%set_number) &
@@ -52,19 +70,7 @@ contains
          end do
          if (allocated(m%remarks)) call put(o, remarks_text(m))
          call put(o, '')
-         call put_structure(o, m, findings)
-         call put(o, '')
-         call put(o, ' '//phrase(say_results, pl))
-      end associate
-   end subroutine listing_head
 
-   !> Counts and groups `f` of `m`.
-   subroutine put_structure(o, m, f)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: f
-
-      associate (pl => m%polish)
          call put(o, ' '//phrase(say_structure, pl))
          call put(o, ' '//phrase(say_links, pl)//' '//whole(f%links)//', '//phrase(say_ground, pl) &
             //' '//whole(f%ground)//';  '//phrase(say_revolute, pl)//' '//whole(f%revolute) &
@@ -75,35 +81,30 @@ contains
          if (f%degrees_of_freedom < f%drives .and. f%spare_drives == 0) call put(o, ' --- '//phrase(say_repeating, pl) &
             //' '//whole(f%drives - f%degrees_of_freedom))
          if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f, pl))
-      end associate
-      if (allocated(f%groups)) call put_groups(o, m, f%groups)
-   end subroutine put_structure
 
-   !> A line of links for each group, continued where they are many.
-   subroutine put_groups(o, m, groups)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(group_t), intent(in) :: groups(:)
-      character(18) :: head
-      integer :: i, k
-
-      if (size(groups) > 0) call put(o, ' '//phrase(say_groups, m%polish))
-      do i = 1, size(groups)
-         head = whole(i)
-         head(:6) = adjustr(head(:6))
-         if (groups(i)%driven) head(9:) = phrase(say_driven, m%polish)
-         if (.not. groups(i)%needed) head(9:) = phrase(say_not_needed, m%polish)
-         do k = 1, size(groups(i)%links)
-            if (mod(k, links_a_line) == 1) call add(o, ' '//head)
-            if (k == size(groups(i)%links) .or. mod(k, links_a_line) == 0) then
-               call put(o, ' '//trim(m%links(groups(i)%links(k))%name))
-            else
-               call add(o, ' '//m%links(groups(i)%links(k))%name)
-            end if
-            head = ''
+         ! A line of links for each group, continued where they are many.
+         if (size(f%groups) > 0) call put(o, ' '//phrase(say_groups, pl))
+         do i = 1, size(f%groups)
+            head = whole(i)
+            head(:6) = adjustr(head(:6))
+            if (f%groups(i)%driven) head(9:) = phrase(say_driven, pl)
+            if (.not. f%groups(i)%needed) head(9:) = phrase(say_not_needed, pl)
+            associate (links => f%groups(i)%links)
+               do k = 1, size(links)
+                  if (mod(k, links_a_line) == 1) call add(o, ' '//head)
+                  if (k == size(links) .or. mod(k, links_a_line) == 0) then
+                     call put(o, ' '//trim(m%links(links(k))%name))
+                  else
+                     call add(o, ' '//m%links(links(k))%name)
+                  end if
+                  head = ''
+               end do
+            end associate
          end do
-      end do
-   end subroutine put_groups
+         call put(o, '')
+         call put(o, ' '//phrase(say_results, pl))
+      end associate
+   end subroutine listing_head
 
    !> The tables of instant number `step` (0, 1, ...) of the motions `s`, as far as the deck asks for them there;
    !> digits that rounding leaves open are masked. Then what there is to say of the instant. `table`: as the instant
@@ -116,6 +117,8 @@ contains
       type(listing_state_t), intent(inout) :: table
       type(row_t) :: row
       type(request_t) :: request
+      type(spread_t) :: x
+      type(digits_t), allocatable :: d       ! filled for rows with tolerances only, because that takes long
       integer :: i, c
       logical :: begun
 
@@ -127,48 +130,80 @@ contains
          if (.not. begun) call put_instant(o, l, s%motions(1)%t, step, table)
          begun = .true.
          call find_row_in_set(s, i, row)
-         associate (d => l%own(s%rows(i)%part))
-            call put_requested(o, l, d, s%polish, request, row, doubt_in_set(row, s, i), table)
-            if (has_tolerances(s%parts(s%rows(i)%part), request)) &
-               call put_spreads(o, l, d, s%polish, request, row, spread_in_set(s, i), table)
+         associate (part => s%rows(i)%part)
+            call put_heads(o, l%own(part), merge(l%links_table, row%kind, row%kind == request_link), table)
+            if (row%kind >= request_pole) then
+               call put_centre(o, l, l%own(part), s%polish, row, doubt_in_set(row, s, i), table)
+            else
+               call put_row(o, l, l%own(part), row, request%angle_alone, doubt_in_set(row, s, i), table)
+            end if
+            if (.not. has_tolerances(s%parts(part), request)) cycle
+
+            ! What tolerances do to the row, with some more decimals: the worst case, and the root of the sum of
+            ! squares.
+            x = spread_in_set(s, i)
+            d = l%own(part)
+            d%decimals = d%decimals + l%more_decimals
+            row%known = x%known
+            row%name = ' '//phrase(say_worst, s%polish)
+            row%value = worst_case(x%tolerances, x%of)
+            call put_row(o, l, d, row, request%angle_alone, worst_case(x%tolerances, x%error), table)
+            row%name = ' RSS'
+            row%value = root_of_squares(x%tolerances, x%of)
+            ! The difference of two roots is no larger than the root of the differences.
+            call put_row(o, l, d, row, request%angle_alone, root_of_squares(x%tolerances, x%error), table)
          end associate
       end do
       if (.not. begun .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table)
       if (table%masked .or. has_words(s)) table%kind = no_table
-      call put_marks(o, s)
+      call put_marks()
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       do c = 1, s%count
          if (allocated(s%motions(c)%diagnostics)) call put_diagnostics(o, s%parts(c), s%motions(c)%diagnostics)
       end do
-   end subroutine listing_instant
 
-   !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its links.
-   subroutine put_marks(o, s)
-      type(output_t), intent(inout) :: o
-      type(set_motion_t), intent(in) :: s
-      character(:), allocatable :: line, lines
-      integer :: k, i, c
+   contains
 
-      lines = ''
-      do c = 1, s%count
-         if (s%motions(c)%mark /= mark_not_converged) cycle
-         line = ' *** '//no_position_words(s%parts(c), s%motions(c)%diagnostics)//new_line('a')
-         if (index(lines, line) == 0) lines = lines//line
-      end do
-      if (len(lines) > 0) call put(o, lines(:len(lines) - 1))
-      do k = mark_singular, mark_inconsistent
-         if (k /= mark_singular) then
-            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, s%polish))
-            cycle
-         end if
+      !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its
+      !> links.
+      subroutine put_marks()
+         character(:), allocatable :: line, lines
+         integer :: k, i
+
+         lines = ''
+         do c = 1, s%count
+            if (s%motions(c)%mark /= mark_not_converged) cycle
+            line = phrase(say_no_position, s%polish)
+            if (allocated(s%motions(c)%diagnostics)) then
+               ! The limit of motion before it, if that is known.
+               do i = 1, size(s%motions(c)%diagnostics)
+                  associate (r => s%motions(c)%diagnostics(i))
+                     if (any(r%kind == [diagnostic_limit, diagnostic_beyond])) &
+                        line = phrase(say_beyond, s%polish)//' '//time(s%parts(c), r%t)
+                  end associate
+               end do
+            end if
+            line = ' *** '//line//new_line('a')
+            if (index(lines, line) == 0) lines = lines//line
+         end do
+         if (len(lines) > 0) call put(o, lines(:len(lines) - 1))
          do i = singular_unclear, singular_dead
             do c = 1, s%count
-               if (s%motions(c)%mark == k .and. s%motions(c)%singularity == i) call put_singular(o, s%parts(c), &
-                  words_of_mark(k, i, s%polish), s%motions(c)%singular_links)
+               associate (q => s%motions(c))
+                  if (q%mark /= mark_singular .or. q%singularity /= i) cycle
+                  line = words_of_mark(q%mark, i, s%polish)
+                  k = index(line, ':')
+                  if (any(q%singular_links%links /= 0)) line = line(:k - 1)//', '//links(s%parts(c), q%singular_links) &
+                     //in_line(s%parts(c), q%singular_links, ' ')//line(k:)
+                  call put_folded(o, ' *** ', line)
+               end associate
             end do
          end do
-      end do
-   end subroutine put_marks
+         do k = mark_overflow, mark_inconsistent
+            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, s%polish))
+         end do
+      end subroutine put_marks
+   end subroutine listing_instant
 
    !> Why there is not all of a motion, by its `mark`, and where that is mark_singular by its `singularity`.
    pure function words_of_mark(mark, singularity, polish) result(words)
@@ -188,20 +223,22 @@ contains
       class(set_t), intent(in) :: s
       integer, intent(in) :: solved, flagged
       type(certificate_counts_t), intent(in) :: certificate_counts
-      real(wp), intent(in), optional :: closure_error
-      type(diagnostic_t), intent(in), optional :: diagnostics(:)
+      real(wp), intent(in) :: closure_error
+      type(diagnostic_t), intent(in) :: diagnostics(:)
       character(:), allocatable :: end_of
+      character(20) :: number
       integer :: i
 
       call put(o, '')
-      if (present(closure_error)) then
-         if (closure_error >= 0.0_wp) call put_closure_error(o, s%polish, closure_error)
+      if (closure_error >= 0.0_wp) then
+         write (number, '(es8.0e2)') max(closure_error, min_closure_error)
+         number = adjustl(number)
+         if (closure_error < min_closure_error) number = phrase(say_below, s%polish)//' '//number
+         call put(o, ' '//phrase(say_closure_error, s%polish)//' '//trim(number))
       end if
-      if (present(diagnostics)) then
-         do i = 1, size(diagnostics)
-            call put_diagnostics(o, s%parts(diagnostics(i)%part), diagnostics(i:i))
-         end do
-      end if
+      do i = 1, size(diagnostics)
+         call put_diagnostics(o, s%parts(diagnostics(i)%part), diagnostics(i:i))
+      end do
       associate (c => certificate_counts)
          call put(o, ' '//phrase(say_continuation, s%polish)//':  '//phrase(say_certified, s%polish)//' ' &
             //whole(c%followed)//' '//phrase(say_out_of, s%polish)//' '//whole(c%followed + c%uncertain) &
@@ -214,15 +251,199 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> Puts the last line of a run that ends before its time: `words` name the kind of the last result, an instant, a
-   !> variant or a set, and `number` tells which.
-   subroutine listing_broken_off(o, m, words, number)
-      type(output_t), intent(inout) :: o
-      class(settings_t), intent(in) :: m
-      type(phrase_t), intent(in) :: words
-      integer, intent(in) :: number
+   !> A line for each remark about the cards of `m`, joined by new_line('a'); '' if there are none. As
+   !> CARD 7  COLUMN 9: "TIP" and a sentence.
+   function remarks_text(m) result(text)
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable :: text
+      character(:), allocatable :: words
+      integer :: i
 
-      call put(o, '')
-      call put(o, ' *** '//phrase(words, m%polish)//' '//whole(number))
-   end subroutine listing_broken_off
+      text = ''
+      if (.not. allocated(m%remarks)) return
+      do i = 1, size(m%remarks)
+         associate (r => m%remarks(i))
+            words = trim(phrase(remark_words(r%kind), m%polish)//' '//r%value)
+            if (r%kind == remark_more) then
+               words = words//' '//trim(r%text)
+            else
+               if (r%text /= '') words = '"'//trim(r%text)//'" '//words
+               words = phrase(say_card, m%polish)//' '//whole(r%card)//'  '//phrase(say_column, m%polish)//' ' &
+                  //whole(r%column)//': '//words
+            end if
+         end associate
+         if (i > 1) text = text//new_line('a')
+         text = text//' --- '//words
+      end do
+   end function remarks_text
+
+   !> A line for each diagnostic of `list` that no mark has told.
+   subroutine put_diagnostics(o, m, list)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: list(:)
+      integer :: i
+
+      do i = 1, size(list)
+         if (list(i)%kind /= diagnostic_beyond) &
+            call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
+      end do
+   end subroutine put_diagnostics
+
+   !> LINKS A, B AT THE LIMIT, COLLINEAR
+   function at_limit(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = links(m, r)//' '//phrase(say_at_limit, m%polish)//in_line(m, r, ', ')
+   end function at_limit
+
+   !> `before` and the words for links in line; '' where those of `r` are not.
+   function in_line(m, r, before) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(*), intent(in) :: before
+      character(:), allocatable :: text
+
+      text = ''
+      if (r%in_line) text = before//phrase(say_in_line, m%polish)
+   end function in_line
+
+   !> The sentence of diagnostic `r`.
+   function words_of(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = ''
+      select case (r%kind)
+      case (diagnostic_inconsistent)
+         text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, error_digits)
+      case (diagnostic_limit)
+         if (r%is_pole) then
+            text = phrase(say_law, m%polish)//' '//owner()//' '//phrase(say_pole_of_law, m%polish)
+         else
+            text = owner()//' = '//measure(m, r, value_digits)
+            if (r%links(1) > 0) text = text//', '//at_limit(m, r)
+         end if
+      case (diagnostic_far_estimate)
+         text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
+      case (diagnostic_second)
+         text = links(m, r)//': '//phrase(say_second, m%polish)
+      case (diagnostic_begins)
+         text = phrase(say_begins, m%polish)
+      case (diagnostic_redundant)
+         text = phrase(say_redundant, m%polish)//': '//owner()
+         if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
+            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
+      case (diagnostic_change)
+         text = place()//phrase(merge(merge(say_returns_other, say_returns, r%other), &
+            merge(say_here, merge(say_other, say_smoothly, r%other), r%here), r%returns), m%polish)
+      case (diagnostic_dead_end)
+         text = place()//phrase(say_not_found, m%polish)
+      case (diagnostic_unused)
+         text = 'BRANCH '
+         if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
+         text = text//phrase(say_branch_from, m%polish)//' '//time(m, r%t)//': ' &
+            //phrase(say_no_change, m%polish)
+      case (diagnostic_long)
+         text = phrase(say_way, m%polish)//' '//time(m, r%t)//' '//phrase(say_too_long, m%polish)
+      case (diagnostic_close)
+         text = phrase(say_blocked, m%polish)//' '//time(m, r%t)//': '//phrase(say_close, m%polish)
+      case (diagnostic_idle)
+         text = owner()//' '//phrase(say_idle, m%polish)
+      case (diagnostic_repeated)
+         text = owner()//' '//phrase(say_repeated, m%polish)
+      case (diagnostic_method)
+         text = phrase(say_method, m%polish)
+         if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text
+      case (diagnostic_mobile)
+         text = links(m, r)//' '//phrase(say_mobile, m%polish)
+      end select
+
+   contains
+
+      !> CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER:
+      function place() result(text)
+         character(:), allocatable :: text
+
+         text = phrase(merge(say_singular_at, say_change, r%returns), m%polish)//' '//time(m, r%t)//', '//links(m, r) &
+            //': '
+      end function place
+
+      !> PAIR A, or DRIVE ANGLE B
+      function owner() result(text)
+         character(:), allocatable :: text
+
+         text = ''
+         if (r%pair > 0) then
+            text = phrase(say_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
+         else if (r%drive > 0) then
+            text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(r%drive)))
+         end if
+      end function owner
+   end function words_of
+
+   !> Where a drive is at the limit `r` of its range, and which links are there.
+   function limit_words(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = measure(m, r, value_digits)
+      if (r%links(1) == 0) return
+      text = text//'   '//at_limit(m, r)
+   end function limit_words
+
+   !> TURNS FULLY, CLOSES AFTER 1 TURN
+   function full_turn_words(turns, polish) result(text)
+      integer, intent(in) :: turns
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = phrase(say_all, polish)//' '//whole(turns)//' '//phrase(merge(say_turn, say_turns, turns == 1), polish)
+   end function full_turn_words
+
+   !> LINKS A, B AND 3 MORE
+   function links(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+      integer :: n
+
+      n = count(r%links > 0)
+      text = phrase(merge(say_link, say_links, n == 1), m%polish)
+      if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name, m%polish)
+      text = text//more(r%more, m%polish)
+   end function links
+
+   !> The diagnostic's value with so many `digits`, and its unit.
+   function measure(m, r, digits) result(text)
+      class(settings_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      integer, intent(in) :: digits
+      character(:), allocatable :: text
+      !> Numbers between these have no exponent.
+      real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
+
+      if (r%is_angle) then
+         text = rounded(r%value/merge(degree, 1.0_wp, m%degrees), digits, smallest, largest)//' '//trim(angle_unit(m))
+      else
+         text = rounded(r%value, digits, smallest, largest)//' '//trim(m%length_unit)
+      end if
+   end function measure
+
+   !> A time as the tables of `m` have it, with its unit.
+   function time(m, t) result(text)
+      class(settings_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      character(:), allocatable :: text
+      character(numeral_length) :: field
+      integer :: decimals, power
+
+      call choose_time_digits(m, decimals, power)
+      call put_fixed(t, decimals, power, field)
+      text = trim(adjustl(field))//' '//unit_of(power, trim(m%time_unit))
+   end function time
 end module listing

@@ -1,21 +1,18 @@
 !> The tables of the listing: the line over those of an instant, heads of columns with powers of ten and units, rows.
 module listing_tables
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: request_t, request_link, request_pair, request_pole, request_curve
+   use mechanism, only: request_pair, request_pole, request_curve
    use drives, only: drive_motion
    use points, only: row_t, has_number
    use instant_centres, only: centre_finite, centre_infinite
-   use sensitivities, only: worst_case, root_of_squares
-   use set_motion, only: spread_t
    use text_output, only: output_t, put
-   use numerals, only: put_fixed, put_whole, numeral_length
+   use numerals, only: whole, put_fixed, numeral_length
    use known_digits, only: put_known, unknown_digit, nothing_known
    use listing_layout
-   use phrases, only: phrase, say_worst, say_at_rest, say_infinite
+   use phrases, only: phrase, say_at_rest, say_infinite
    implicit none
    private
-   public :: listing_state_t, no_table, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, &
+   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, put_centre, time_text, &
       drive_text, known_text
 
    character(4), parameter :: between = ' .. '
@@ -28,7 +25,7 @@ module listing_tables
    !> What a reader of the listing sees above the next row: the heads that hold for it, and how far above they are.
    type :: listing_state_t
       integer :: kind = no_table           !< of the rows below the heads: request_link, ..., or links_turning
-      integer :: power(9) = 0              !< (columns) of ten in the heads
+      integer :: part = 0                  !< the first one whose powers of ten are those in the heads
       integer :: lines = 0                 !< since the heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
    end type listing_state_t
@@ -43,13 +40,9 @@ contains
       real(wp), intent(in) :: t
       integer, intent(in) :: step
       type(listing_state_t), intent(inout) :: table
-      character(numeral_length) :: number
-      integer :: first
 
       if (table%lines >= lines_a_head) table%kind = no_table
-
-      call put_whole(int(step, int64), number, first)
-      call put_times(o, l, l%before_instant//number(first:), [t], table)
+      call put_times(o, l, l%before_instant//whole(step), [t], table)
    end subroutine put_instant
 
    !> A blank line, and one with `start`, the `times` (1 or 2, in the deck's unit) and the values of the drives then,
@@ -62,6 +55,7 @@ contains
       real(wp), intent(in) :: times(:)
       type(listing_state_t), intent(inout) :: table
       character(line_length) :: line, part
+      real(wp) :: f(3)
       integer :: i, k, used, length
 
       call put(o, '')
@@ -78,7 +72,11 @@ contains
          call append(l%drives(i)%before, part, length)
          do k = 1, size(times)
             if (k > 1) call append(between, part, length)
-            call append_drive(l%drives(i), times(k), part, length, table%masked)
+            associate (d => l%drives(i))
+               f = drive_motion(d%law, times(k))
+               call append_number(f(1)/d%unit, law_error(d, times(k))/d%unit, d%decimals, d%power, part, length, &
+                  table%masked)
+            end associate
          end do
          call append(l%drives(i)%behind, part, length)
          if (i == size(l%drives)) call append(l%more_drives, part, length)
@@ -113,26 +111,9 @@ contains
       logical, intent(inout) :: masked
       character(numeral_length) :: number
 
-      if (error > 0.0_wp) then
-         call put_known(x, error, decimals, power, number, masked)
-      else
-         call put_fixed(x, decimals, power, number)
-      end if
+      call put_known(x, error, decimals, power, number, masked)
       call append(number(verify(number, ' '):), line, used)
    end subroutine append_number
-
-   !> The same of the value of the drive `d` at the time `t`.
-   pure subroutine append_drive(d, t, line, used, masked)
-      type(head_drive_t), intent(in) :: d
-      real(wp), intent(in) :: t
-      character(*), intent(inout) :: line
-      integer, intent(inout) :: used
-      logical, intent(inout) :: masked
-      real(wp) :: f(3)
-
-      f = drive_motion(d%law, t)
-      call append_number(f(1)/d%unit, law_error(d, t)/d%unit, d%decimals, d%power, line, used, masked)
-   end subroutine append_drive
 
    !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or in the
    !> unit of length.
@@ -186,70 +167,18 @@ contains
       text = trim(adjustl(field))
    end function known_text
 
-   !> The `row` of `request`, of which `error` (3, 0:2) is unknown, with the digits `d`, under heads of its own where it
-   !> is another table's.
-   subroutine put_requested(o, l, d, polish, request, row, error, table)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      logical, intent(in) :: polish
-      type(request_t), intent(in) :: request
-      type(row_t), intent(in) :: row
-      real(wp), intent(in) :: error(3, 0:2)
-      type(listing_state_t), intent(inout) :: table
-
-      call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
-      if (row%kind < request_pole) call put_row(o, l, d, row, request%angle_alone, error, table)
-      if (row%kind >= request_pole) call put_centre(o, l, d, polish, row, error, table)
-   end subroutine put_requested
-
-   !> What the tolerances do to the `row` of `request`, with its sensitivities `s`: the worst case, and the root of the
-   !> sum of squares; with some more decimals than the digits `of_row`.
-   subroutine put_spreads(o, l, of_row, polish, request, row, s, table)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: of_row
-      logical, intent(in) :: polish
-      type(request_t), intent(in) :: request
-      type(row_t), intent(in) :: row
-      type(spread_t), intent(in) :: s
-      type(listing_state_t), intent(inout) :: table
-      type(digits_t) :: d
-      type(row_t) :: one
-
-      d = of_row
-      d%decimals = d%decimals + l%more_decimals
-      one = row
-      one%known = s%known
-      one%name = ' '//phrase(say_worst, polish)
-      one%value = worst_case(s%tolerances, s%of)
-      call put_row(o, l, d, one, request%angle_alone, worst_case(s%tolerances, s%error), table)
-      one%name = ' RSS'
-      one%value = root_of_squares(s%tolerances, s%of)
-      ! The difference of two roots is no larger than the root of the differences.
-      call put_row(o, l, d, one, request%angle_alone, root_of_squares(s%tolerances, s%error), table)
-   end subroutine put_spreads
-
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
    !> are any, units.
-   subroutine put_heads(o, l, d, kind, table)
+   subroutine put_heads(o, d, kind, table)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       integer, intent(in) :: kind
       type(listing_state_t), intent(inout) :: table
-      integer :: power(9)
 
-      if (kind == table%kind .and. .not. l%mixed) return
-      if (.not. l%mixed) then
-         call put(o, l%heads(kind)(:l%head_length(kind)))
-      else
-         power = column_powers(l, d, kind)
-         if (kind == table%kind .and. all(power == table%power)) return
-         table%power = power
-         call put(o, head_lines(l, d, kind))
-      end if
+      if (kind == table%kind .and. d%same_as(kind) == table%part) return
+      call put(o, d%heads(kind)(:d%head_length(kind)))
       table%kind = kind
+      table%part = d%same_as(kind)
       table%lines = 0
    end subroutine put_heads
 
@@ -322,47 +251,43 @@ contains
          do c = 1, 3
             if (l%column(c, k, row%kind) == 0) cycle
             last = names_length(row%kind) + numeral_length*l%column(c, k, row%kind)
-            line(last - numeral_length + 1:last) = cell_of_centre(l, d, row, error, c, k, polish)
+            line(last - numeral_length + 1:last) = cell()
          end do
       end do
       table%masked = table%masked .or. index(line(names_length(row%kind) + 1:), unknown_digit) > 0
       call put(o, trim(line))
       table%lines = table%lines + 1
+
+   contains
+
+      !> Number (c, k) of the row, or the word in its place. A pole has a direction where it is at infinity, and where
+      !> it may be there: then nothing is known of its place.
+      pure function cell()
+         character(numeral_length) :: cell
+         real(wp) :: unit
+         logical :: is_direction
+         integer :: needed
+
+         unit = merge(l%angle, 1.0_wp, c == 3)
+         is_direction = row%kind == request_pole .and. c == 3
+         ! How much of a motion the number needs, in the values of `known`.
+         needed = 1
+         if (row%kind == request_curve) needed = merge(merge(1, 0, c == 3), 2, k == 0)
+         if (row%known < needed) then
+            cell = l%none
+         else if (is_direction .and. row%state == centre_finite .and. error(1, 0) < nothing_known) then
+            cell = ''
+         else if (error(c, k) >= nothing_known) then
+            cell = repeat(' ', numeral_length - 1)//unknown_digit
+         else if (has_number(row, c, k) .or. (is_direction .and. row%state == centre_finite)) then
+            associate (what => dimension_of(c))
+               call put_known(row%value(c, k)/unit, error(c, k)/unit, d%decimals(what, 0), d%power(what, 0), cell)
+            end associate
+         else
+            cell = phrase(say_at_rest, polish)
+            if (row%state == centre_infinite) cell = phrase(say_infinite, polish)
+            cell = adjustr(cell)
+         end if
+      end function cell
    end subroutine put_centre
-
-   !> Number (c, k) of the pole or curve `row`, of which `error` (3, 0:2) is unknown, or the word in its place. A pole
-   !> has a direction where it is at infinity, and where it may be there: then nothing is known of its place.
-   pure function cell_of_centre(l, d, row, error, c, k, polish) result(cell)
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      type(row_t), intent(in) :: row
-      real(wp), intent(in) :: error(3, 0:2)
-      integer, intent(in) :: c, k
-      logical, intent(in) :: polish
-      character(numeral_length) :: cell
-      real(wp) :: unit
-      logical :: is_direction
-      integer :: needed
-
-      unit = merge(l%angle, 1.0_wp, c == 3)
-      is_direction = row%kind == request_pole .and. c == 3
-      ! How much of a motion the number needs, in the values of `known`.
-      needed = 1
-      if (row%kind == request_curve) needed = merge(merge(1, 0, c == 3), 2, k == 0)
-      if (row%known < needed) then
-         cell = l%none
-      else if (is_direction .and. row%state == centre_finite .and. error(1, 0) < nothing_known) then
-         cell = ''
-      else if (error(c, k) >= nothing_known) then
-         cell = repeat(' ', numeral_length - 1)//unknown_digit
-      else if (has_number(row, c, k) .or. (is_direction .and. row%state == centre_finite)) then
-         associate (what => dimension_of(c))
-            call put_known(row%value(c, k)/unit, error(c, k)/unit, d%decimals(what, 0), d%power(what, 0), cell)
-         end associate
-      else
-         cell = phrase(say_at_rest, polish)
-         if (row%state == centre_infinite) cell = phrase(say_infinite, polish)
-         cell = adjustr(cell)
-      end if
-   end function cell_of_centre
 end module listing_tables

@@ -63,8 +63,7 @@ module phrases
       say_closure_error = phrase_t('LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS, IN CHARACTERISTIC LENGTHS:', &
          'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH, W DLUGOSCIACH CHARAKT.:'), &
       say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED'), &
-      say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', &
-         'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
+      say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
       say_drive = phrase_t('DRIVE', 'NAPED'), &
       say_below = phrase_t('BELOW', 'PONIZEJ'), &
       say_at_limit = phrase_t('AT THE LIMIT', 'NA KRESIE RUCHU'), &
@@ -103,8 +102,7 @@ module phrases
       say_in_velocity = phrase_t('THEIR VELOCITIES', 'PREDKOSCI'), &
       say_dead_centre = phrase_t('DEAD CENTRE', 'PUNKT ZWROTNY'), &
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
-      say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', &
-         'NIE PRZESZUKANO (BRAK RUCHU): T ='), &
+      say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', 'NIE PRZESZUKANO (BRAK RUCHU): T ='), &
       say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES (OTHER DRIVES HELD)', 'ZAKRESY NAPEDOW (INNE NAPEDY STALE)'), &
@@ -173,7 +171,6 @@ module phrases
       say_tube = phrase_t('TUBE', 'RURA'), &
       say_proved = phrase_t('INSTANTS PROVED', 'CHWILE DOWIEDZIONE'), &
       say_not_proved = phrase_t('NOT PROVED', 'BEZ DOWODU'), &
-      say_gap = phrase_t('CLOSURE ERROR', 'BLAD ZAMKNIECIA'), &
       say_change_inside = phrase_t('THE STEP PASSES A CHANGE POINT', 'KROK PRZECHODZI PRZEZ PUNKT ZMIANY'), &
       say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU'), &
       say_too_wide = phrase_t('BLOCK TOO LARGE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')

@@ -3,17 +3,15 @@ module picture_page
    use kinds, only: wp
    use planar, only: point_of
    use numerals, only: full, whole, fixed, max_decimals
-   use drawing, only: drawing_t, snapshot_t, point_place, joint_point
-   use outline, only: corners_at
+   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, corners_at
    use shapes, only: element_t, shapes_t, shapes_of, link_color
    use canvas, only: canvas_t, to_pixels, add_line
    use svg, only: put_group, put_end, put_line, put_circle, put_words, without_zeros
-   use text_output, only: output_t, put
    use listing, only: words_of_mark
    use phrases
    implicit none
    private
-   public :: picture_head, place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
+   public :: place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
       put_scale, flag_lines, fitted
 
    integer, parameter, public :: width = 800
@@ -36,13 +34,6 @@ module picture_page
 
 contains
 
-   !> The first line of a file that holds a picture.
-   subroutine picture_head(o)
-      type(output_t), intent(inout) :: o
-
-      call put(o, '<?xml version="1.0" encoding="US-ASCII"?>')
-   end subroutine picture_head
-
    !> Places the canvas `c` on the page, from the pixel `top` on, and what it shows on the canvas. The scale has three
    !> digits, the height is even and the shift whole: rounding errors of the results do not move the picture, and none
    !> of these is near a tie for what is symmetric or has few digits.
@@ -50,9 +41,10 @@ contains
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: top
       real(wp) :: low(2), high(2), size_of_it(2), room, power
+      real(wp) :: from(2), to(2)               ! nothing is drawn beyond these
       integer :: height, e
 
-      call find_extent(c, low, high)
+      call find_extent()
       size_of_it = high - low
       room = real(width, wp) - 2.0_wp*margin
       c%scale = 1.0_wp
@@ -71,56 +63,54 @@ contains
          real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
       c%low = [4.0_wp, real(top + above, wp)]
       c%high = [real(width - 4, wp), real(top + above + height, wp)]
-   end subroutine place_canvas
-
-   !> The corners `low` and `high` (2) of what is drawn: all shapes at the position in full, links at the others, paths,
-   !> and centrodes, which may run to infinity, as far as the picture is wider by `centrode_room` on all sides at most.
-   subroutine find_extent(c, low, high)
-      type(canvas_t), intent(in) :: c
-      real(wp), intent(out) :: low(2), high(2)
-      real(wp) :: from(2), to(2)               ! nothing is drawn beyond these
-      type(shapes_t) :: all_shapes
-      integer :: i, k
-
-      low = huge(1.0_wp)
-      high = -huge(1.0_wp)
-      from = -huge(1.0_wp)
-      to = huge(1.0_wp)
-      all_shapes = shapes_of(c%d, spread(.true., 1, size(c%m%links)), 1.0_wp)
-      do i = 1, all_shapes%count
-         associate (shape => all_shapes%list(i))
-            if (shape%element == 'cut') cycle
-            call widen_by_shape(shape, c%s)
-            if (shape%is_below) cycle
-            do k = 1, size(c%faint)
-               call widen_by_shape(shape, c%d%frame(c%faint(k)))
-            end do
-            do k = 1, size(c%d%flags)
-               call widen_by_shape(shape, c%d%flags(k)%last)
-            end do
-         end associate
-      end do
-      do i = 1, size(c%paths)
-         do k = 1, c%d%films
-            if (c%d%frame(k)%known(c%m%points(c%paths(i))%link)) &
-               call widen(point_place(c%m, c%d%frame(k), c%paths(i)))
-         end do
-      end do
-      if (.not. all(low <= high)) then
-         low = 0.0_wp
-         high = 0.0_wp
-      end if
-
-      from = low - centrode_room*maxval(high - low)
-      to = high + centrode_room*maxval(high - low)
-      do i = 1, size(c%d%poles)
-         if (c%s%has_centre(i)) call widen(c%s%centre(:, i))
-      end do
-      do i = 1, all_shapes%count
-         if (all_shapes%list(i)%element == 'cut') call widen_by_shape(all_shapes%list(i), c%s)
-      end do
 
    contains
+
+      !> The corners `low` and `high` (2) of what is drawn: all shapes at the position in full, links at the others,
+      !> paths, and centrodes, which may run to infinity, as far as the picture is wider by `centrode_room` on all sides
+      !> at most.
+      subroutine find_extent()
+         type(shapes_t) :: all_shapes
+         integer :: i, k
+
+         low = huge(1.0_wp)
+         high = -huge(1.0_wp)
+         from = -huge(1.0_wp)
+         to = huge(1.0_wp)
+         all_shapes = shapes_of(c%d, spread(.true., 1, size(c%m%links)), 1.0_wp)
+         do i = 1, all_shapes%count
+            associate (shape => all_shapes%list(i))
+               if (shape%element == 'cut') cycle
+               call widen_by_shape(shape, c%s)
+               if (shape%is_below) cycle
+               do k = 1, size(c%faint)
+                  call widen_by_shape(shape, c%d%frame(c%faint(k)))
+               end do
+               do k = 1, size(c%d%flags)
+                  call widen_by_shape(shape, c%d%flags(k)%last)
+               end do
+            end associate
+         end do
+         do i = 1, size(c%paths)
+            do k = 1, c%d%films
+               if (c%d%frame(k)%known(c%m%points(c%paths(i))%link)) &
+                  call widen(point_place(c%m, c%d%frame(k), c%paths(i)))
+            end do
+         end do
+         if (.not. all(low <= high)) then
+            low = 0.0_wp
+            high = 0.0_wp
+         end if
+
+         from = low - centrode_room*maxval(high - low)
+         to = high + centrode_room*maxval(high - low)
+         do i = 1, size(c%d%poles)
+            if (c%s%has_centre(i)) call widen(c%s%centre(:, i))
+         end do
+         do i = 1, all_shapes%count
+            if (all_shapes%list(i)%element == 'cut') call widen_by_shape(all_shapes%list(i), c%s)
+         end do
+      end subroutine find_extent
 
       !> Widens the box by the places of `shape` at the position `s`, if they are known there.
       subroutine widen_by_shape(shape, s)
@@ -147,7 +137,7 @@ contains
          low = min(low, p)
          high = max(high, p)
       end subroutine widen
-   end subroutine find_extent
+   end subroutine place_canvas
 
    !> The points whose paths are drawn: those that move; of several with the same path the first.
    pure function paths_of(d) result(list)

@@ -6,7 +6,7 @@ module plot_script
    use mechanism, only: mechanism_t, instant_count
    use scales, only: characteristic_length, characteristic_rate
    use names, only: drive_name
-   use table, only: table_t
+   use csv, only: table_t
    use text_output, only: output_t, put, add
    use numerals, only: whole, full
    use phrases
@@ -42,7 +42,34 @@ contains
 
       rows = maxval([0, table%columns%row])
       pages = min(max_pages, (rows + page_rows - 1)/page_rows)
-      call put_beginning()
+      ! A script finds the table beside itself, wherever gnuplot is started.
+      call put(o, '# gnuplot plot'//suffix//'.gp draws table'//suffix//'.csv: over time in time'//suffix &
+         //'.svg and more, over the drives in drive'//suffix//'.svg and more')
+      call put(o, 'here = ARG0')
+      call put(o, 'while (here ne "" && here[strlen(here):] ne "/") { here = here[1:strlen(here) - 1] }')
+      call put(o, 'table = here."table'//suffix//'.csv"')
+      call put(o, 'set datafile separator ","')
+      call put(o, '# The column on the abscissa: its picture and its name.')
+      call put(o, &
+         'picture(c) = here.(c == 1 ? "time" : c == 2 ? "drive" : sprintf("drive%d", c - 1))."'//suffix//'"')
+      call add(o, 'abscissa(c) = c == 1 ? '//quoted('T ['//trim(m%time_unit)//']'))
+      do i = 1, size(m%drives)
+         call add(o, ' : c == '//whole(i + 1)//' ? '//quoted(trim(drive_name(m, m%drives(i)))//' [' &
+            //unit_of(table%angular(i), 0)//']'))
+      end do
+      call put(o, ' : ""')
+      call put(o, 'set terminal svg size 1200,1200 noenhanced background rgb "white"')
+      call put(o, 'set style data '//trim(merge('linespoints', 'lines      ', instant_count(m) <= max_marked)))
+      do i = 1, page_rows
+         call put(o, 'set linetype '//whole(i)//' linecolor rgb "'//colors(i) &
+            //'" linewidth 1.5 pointtype 7 pointsize 0.3')
+      end do
+      call put(o, 'set key above maxcols 4 samplen 2')
+      call put(o, 'set grid linecolor rgb "#dddddd"')
+      call put(o, 'set autoscale xfix')
+      call put(o, 'set lmargin 14')
+      call put(o, 'set rmargin 3')
+
       call put(o, 'do for [over = 1:'//whole(1 + size(m%drives))//'] {')
       do i = 1, pages
          call put_page(i)
@@ -53,132 +80,82 @@ contains
 
    contains
 
-      !> What holds for all pictures. A script finds the table beside itself, wherever gnuplot is started.
-      subroutine put_beginning()
-         integer :: i
-
-         call put(o, '# gnuplot plot'//suffix//'.gp draws table'//suffix//'.csv: over time in time'//suffix &
-            //'.svg and more, over the drives in drive'//suffix//'.svg and more')
-         call put(o, 'here = ARG0')
-         call put(o, 'while (here ne "" && here[strlen(here):] ne "/") { here = here[1:strlen(here) - 1] }')
-         call put(o, 'table = here."table'//suffix//'.csv"')
-         call put(o, 'set datafile separator ","')
-         call put(o, '# The column on the abscissa: its picture and its name.')
-         call put(o, &
-            'picture(c) = here.(c == 1 ? "time" : c == 2 ? "drive" : sprintf("drive%d", c - 1))."'//suffix//'"')
-         call add(o, 'abscissa(c) = c == 1 ? '//quoted('T ['//trim(m%time_unit)//']'))
-         do i = 1, size(m%drives)
-            call add(o, ' : c == '//whole(i + 1)//' ? '//quoted(trim(drive_name(m, m%drives(i)))//' [' &
-               //unit_of(m, table%angular(i), 0)//']'))
-         end do
-         call put(o, ' : ""')
-         call put(o, 'set terminal svg size 1200,1200 noenhanced background rgb "white"')
-         call put(o, 'set style data '//trim(merge('linespoints', 'lines      ', instant_count(m) <= max_marked)))
-         do i = 1, page_rows
-            call put(o, 'set linetype '//whole(i)//' linecolor rgb "'//colors(i) &
-               //'" linewidth 1.5 pointtype 7 pointsize 0.3')
-         end do
-         call put(o, 'set key above maxcols 4 samplen 2')
-         call put(o, 'set grid linecolor rgb "#dddddd"')
-         call put(o, 'set autoscale xfix')
-         call put(o, 'set lmargin 14')
-         call put(o, 'set rmargin 3')
-      end subroutine put_beginning
-
-      !> The picture of the `page`-th links, points and pairs over the column `over`.
+      !> The picture of the `page`-th links, points and pairs over the column `over`: lengths beside angles, derivatives
+      !> below.
       subroutine put_page(page)
          integer, intent(in) :: page
          character(:), allocatable :: ending
-         logical :: is_there(2)
-         integer :: k, i
+         logical :: own(size(table%columns), 2)      ! (columns, lengths or angles)
+         integer :: k, i, n
 
+         own(:, 1) = table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows
+         own(:, 2) = own(:, 1) .and. table%columns%angular
+         own(:, 1) = own(:, 1) .and. .not. table%columns%angular
          ending = ''
          if (page > 1) ending = '-page'//whole(page)
-         associate (own => table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows)
-            is_there = [any(own .and. .not. table%columns%angular), any(own .and. table%columns%angular)]
-            call put(o, '   set output picture(over)."'//ending//'.svg"')
-            call put(o, '   set multiplot layout 3,'//whole(count(is_there))//' title '//quoted(trim(m%title)) &
-               //' font ",16"')
-            do k = 0, 2
-               call put(o, trim(merge('   set xlabel abscissa(over)', '   unset xlabel             ', k == 2)))
-               do i = 1, 2
-                  if (is_there(i)) call put_panel(o, m, table, own .and. table%columns%order == k, k, i == 2)
-               end do
+         call put(o, '   set output picture(over)."'//ending//'.svg"')
+         call put(o, '   set multiplot layout 3,'//whole(count(any(own, dim=1)))//' title '//quoted(trim(m%title)) &
+            //' font ",16"')
+         do k = 0, 2
+            call put(o, trim(merge('   set xlabel abscissa(over)', '   unset xlabel             ', k == 2)))
+            do i = 1, 2
+               if (any(own(:, i))) call put_panel( &
+                  pack([(n, n=1, size(own, 1))], own(:, i) .and. table%columns%order == k), k, i == 2)
             end do
-            call put(o, '   unset multiplot')
-         end associate
+         end do
+         call put(o, '   unset multiplot')
       end subroutine put_page
+
+      !> The panel of the columns `list`, which are, or are not, `angular`: derivatives of order `k`. It is left empty
+      !> where none of them has a value.
+      subroutine put_panel(list, k, angular)
+         integer, intent(in) :: list(:), k
+         logical, intent(in) :: angular
+         real(wp) :: length, margin
+         integer :: i, before
+
+         before = 1 + size(table%drives)
+         call put(o, '   set ylabel '//quoted(phrase(merge(angle_words(k), length_words(k), angular), m%polish) &
+            //' ['//unit_of(angular, k)//']'))
+         call put(o, '   records = 0')
+         call add(o, '   do for [c in "')
+         do i = 1, size(list)
+            call add(o, ' '//whole(before + list(i)))
+         end do
+         call put(o, '"] { if (records == 0) { stats table skip 1 using (column(int(c))) name "one" nooutput')
+         call put(o, '      if (exists("one_records")) { records = one_records } } }')
+         call put(o, '   if (records == 0) { set multiplot next } else {')
+         call add(o, '      plot')
+         do i = 1, size(list)
+            associate (column => table%columns(list(i)))
+               call put(o, ' table skip 1 using (column(over)):(column('//whole(before + list(i))//')) title ' &
+                  //quoted(trim(column%name))//' linetype '//whole(1 + mod(column%row - 1, page_rows))//' dashtype ' &
+                  //whole(merge(2, 1, column%coordinate == 2))//', \')
+            end associate
+            call add(o, '          ')
+         end do
+         ! How far it reaches beyond the first value of its first column, at least: in the units of the deck.
+         length = characteristic_length(m)
+         margin = least_height*characteristic_rate(m, length)**k
+         if (.not. angular) margin = margin*length
+         if (angular .and. m%degrees) margin = in_degrees(margin)
+         call put(o, ' for [side = -1:1:2] table skip 1 every ::0::0 using (column(over)):(column(' &
+            //whole(before + list(1))//') + side*'//full(margin)//') with lines linetype nodraw notitle')
+         call put(o, '   }')
+      end subroutine put_panel
+
+      !> The unit of a length or an angle, or of its derivative of order `k`.
+      pure function unit_of(angular, k) result(unit)
+         logical, intent(in) :: angular
+         integer, intent(in) :: k
+         character(:), allocatable :: unit
+
+         unit = trim(m%length_unit)
+         if (angular) unit = merge('DEG', 'RAD', m%degrees)
+         if (k == 1) unit = unit//'/'//trim(m%time_unit)
+         if (k == 2) unit = unit//'/'//trim(m%time_unit)//'**2'
+      end function unit_of
    end subroutine put_script
-
-   !> The panel of those of the columns `own` that are, or are not, `angular`: derivatives of order `k`. It is left
-   !> empty where none of them has a value.
-   subroutine put_panel(o, m, table, own, k, angular)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(table_t), intent(in) :: table
-      logical, intent(in) :: own(:), angular
-      integer, intent(in) :: k
-      integer :: i, first, color
-
-      first = findloc(own .and. (table%columns%angular .eqv. angular), .true., dim=1)
-      call put(o, '   set ylabel '//quoted(phrase(merge(angle_words(k), length_words(k), angular), m%polish) &
-         //' ['//unit_of(m, angular, k)//']'))
-      call put(o, '   records = 0')
-      call add(o, '   do for [c in "')
-      do i = first, size(own)
-         if (own(i) .and. (table%columns(i)%angular .eqv. angular)) call add(o, ' '//whole(number(i)))
-      end do
-      call put(o, '"] { if (records == 0) { stats table skip 1 using (column(int(c))) name "one" nooutput')
-      call put(o, '      if (exists("one_records")) { records = one_records } } }')
-      call put(o, '   if (records == 0) { set multiplot next } else {')
-      call add(o, '      plot')
-      do i = first, size(own)
-         if (.not. own(i) .or. (table%columns(i)%angular .neqv. angular)) cycle
-         color = 1 + mod(table%columns(i)%row - 1, page_rows)
-         call put(o, ' table skip 1 using (column(over)):(column('//whole(number(i))//')) title ' &
-            //quoted(trim(table%columns(i)%name))//' linetype '//whole(color)//' dashtype ' &
-            //whole(merge(2, 1, table%columns(i)%coordinate == 2))//', \')
-         call add(o, '          ')
-      end do
-      call put(o, ' for [side = -1:1:2] table skip 1 every ::0::0 using (column(over)):(column('//whole(number(first)) &
-         //') + side*'//full(margin_of(m, angular, k))//') with lines linetype nodraw notitle')
-      call put(o, '   }')
-
-   contains
-
-      !> The number in the table of column `i` of those after time and drives.
-      pure integer function number(i)
-         integer, intent(in) :: i
-
-         number = 1 + size(table%drives) + i
-      end function number
-   end subroutine put_panel
-
-   !> How far a panel reaches beyond the first value of its first column, at least: in the units of the deck.
-   real(wp) function margin_of(m, angular, k)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: angular
-      integer, intent(in) :: k
-      real(wp) :: length
-
-      length = characteristic_length(m)
-      margin_of = least_height*characteristic_rate(m, length)**k
-      if (.not. angular) margin_of = margin_of*length
-      if (angular .and. m%degrees) margin_of = in_degrees(margin_of)
-   end function margin_of
-
-   !> The unit of a length or an angle, or of its derivative of order `k`.
-   pure function unit_of(m, angular, k) result(unit)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: angular
-      integer, intent(in) :: k
-      character(:), allocatable :: unit
-
-      unit = trim(m%length_unit)
-      if (angular) unit = merge('DEG', 'RAD', m%degrees)
-      if (k == 1) unit = unit//'/'//trim(m%time_unit)
-      if (k == 2) unit = unit//'/'//trim(m%time_unit)//'**2'
-   end function unit_of
 
    !> `text` as gnuplot takes it, the characters that mean something there by their octal numbers. Reason: in a block a
    !> string between apostrophes cannot begin with one, and between quotation marks backquotes start a command.

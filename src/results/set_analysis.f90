@@ -6,7 +6,7 @@ module set_analysis
    use structure, only: findings_t
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
-      use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
       largest_errors
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
@@ -21,8 +21,7 @@ module set_analysis
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
-      sense_set, prove_set, set_record, set_errors, set_bounds, set_closure_error, set_closing_diagnostics, &
-      iterations_of
+      prove_set, set_record, set_errors, set_bounds, set_closure_error, set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -172,31 +171,22 @@ contains
       end subroutine take
    end subroutine rows_at
 
-   !> How far the motion found last is known. `always`: also where no digit of a table is in doubt.
-   subroutine sample_set(s, always)
+   !> How far the motion found last is known. `always`: also where no digit of a table is in doubt. `senses`: its
+   !> sensitivities too to the numbers with tolerances, where there are any.
+   subroutine sample_set(s, always, senses)
       type(set_analysis_t), intent(inout) :: s
-      logical, intent(in) :: always
+      logical, intent(in) :: always, senses
       integer :: c
 
       do c = 1, size(s%list)
-         associate (a => s%list(c))
-            call estimate_errors(s%estimators(c), s%now%parts(c), a%engine, a%convergence%reciprocal_condition, &
-               s%now%motions(c), always, s%now%errors(c))
+         associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
+            call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, &
+               s%now%errors(c))
+            if (senses .and. allocated(own%tolerances)) &
+               call find_sensitivities(s%estimators(c), own, a%engine, q, s%now%errors(c), s%now%sensitivities(c))
          end associate
       end do
    end subroutine sample_set
-
-   !> The sensitivities of the motion found last to the numbers with tolerances; nothing, where no number has one.
-   subroutine sense_set(s)
-      type(set_analysis_t), intent(inout) :: s
-      integer :: c
-
-      do c = 1, size(s%list)
-         if (.not. allocated(s%now%parts(c)%tolerances)) cycle
-         call find_sensitivities(s%estimators(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), s%now%errors(c), &
-            s%now%sensitivities(c))
-      end do
-   end subroutine sense_set
 
    !> Proves the motion found last, and the step to it; before any other motion is looked at.
    subroutine prove_set(s, bounded)
@@ -229,21 +219,18 @@ contains
       type(set_analysis_t), intent(in) :: s
       type(convergence_t), intent(out) :: record
       type(branch_t), intent(out) :: branch
+      type(convergence_t) :: one
       integer :: c
 
       record = s%list(1)%convergence
       branch = worst_branch(s%list%branch)
       do c = 2, size(s%list)
-         associate (one => s%list(c)%convergence)
-            record%kantorovich_ratio = max(record%kantorovich_ratio, one%kantorovich_ratio)
-            record%rate = max(record%rate, one%rate)
-            if (is_solved(record) .or. .not. is_solved(one)) then
-               call gather(one, record)
-            else
-               call gather(convergence_t(ended=record%ended, iterations=one%iterations, residual=one%residual, &
-                  step=one%step, reciprocal_condition=one%reciprocal_condition, determinant=one%determinant), record)
-            end if
-         end associate
+         one = s%list(c)%convergence
+         record%kantorovich_ratio = max(record%kantorovich_ratio, one%kantorovich_ratio)
+         record%rate = max(record%rate, one%rate)
+         ! How one ended that was not solved is not covered by one that was.
+         if (is_solved(one) .and. .not. is_solved(record)) one%ended = record%ended
+         call gather(one, record)
       end do
    end subroutine set_record
 
@@ -296,11 +283,4 @@ contains
       end do
       list = pack(list, .not. used)
    end function set_closing_diagnostics
-
-   !> Iterations of all positions solved so far; of several mechanisms the largest number.
-   pure integer function iterations_of(s)
-      type(set_analysis_t), intent(in) :: s
-
-      iterations_of = maxval(s%list%iterations)
-   end function iterations_of
 end module set_analysis

@@ -7,7 +7,6 @@ module set_motion
    use independent, only: set_t, divide, request_of
    use structure, only: findings_t
    use points, only: row_t, find_row
-   use known_digits, only: has_known_digit
    use error_estimate, only: error_estimate_t, estimate_of, row_error
    use sensitivities, only: sensitivities_t, ground_sensitivities
    use motion_proof, only: motion_proof_t
@@ -129,7 +128,8 @@ contains
                ! Poles and curves are places, in other axes.
                if (row%kind < request_pole) size_of = size_of*sizes%rate**k
             end associate
-            known(c, k) = has_known_digit(row%value(c, k), error(c, k), size_of)
+            ! Its first digit is known, or the error is no large part of numbers of its kind.
+            known(c, k) = 10.0_wp*error(c, k) <= max(abs(row%value(c, k)), size_of)
          end do
       end do
    end function known_numbers

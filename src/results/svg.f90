@@ -10,6 +10,8 @@ module svg
    public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, put_words, &
       put_columns, pixels, without_zeros, escaped, attribute, translation
 
+   !> The first line of a file that holds a picture.
+   character(*), parameter, public :: xml_line = '<?xml version="1.0" encoding="US-ASCII"?>'
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
       'text{font-family:"DejaVu Sans",Verdana,Arial,sans-serif;font-size:12px;fill:#222;stroke:#fff;stroke-width:3;', &

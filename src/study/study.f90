@@ -1,6 +1,7 @@
 !> Speed against error (--study): methods, tolerances and predictors tried on a deck, each with the time of a step and
 !> the error of the printed rows. The time alone (--time).
 module study
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
    use kinds, only: wp, wp_name
    use failures, only: failure_t, status_solved, status_flagged
@@ -13,12 +14,11 @@ module study
    use scales, only: characteristic_length, characteristic_rate
    use known_digits, only: nothing_known
    use set_motion, only: is_flagged, find_row_in_set, error_in_set
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, iterations_of
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
    use numerals, only: whole
    use progress, only: progress_t, start_progress, show_progress, end_progress
-   use reference_rows, only: reference_t, open_reference, read_reference, close_reference, no_number
    implicit none
    private
    public :: run_study, seconds, median
@@ -57,6 +57,23 @@ module study
    real(dp), parameter :: micro = 1.0e6_dp
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
+   !> Stands for a number that the reference does not have.
+   real(qp), parameter :: no_number = real(huge(1.0_dp), qp)
+   !> A row has nine numbers of at most 44 characters, and less than a hundred others.
+   integer, parameter :: row_length = 1024
+   !> Seconds that the reference may take. What it has written until then is compared.
+   integer, parameter :: patience = 60
+   !> Cards that do not change a row of a link, point or pair, or that a study replaces.
+   character(*), parameter :: left_out = 'METHOD|VARY|TOLER|EXTREMES|RANGE|CIRCUITS|ASSEMBLY|PROVE'
+
+   interface
+      !> mkdtemp(3): makes a directory and completes its name; null on error.
+      type(c_ptr) function mkdtemp(template) bind(c)
+         import :: c_ptr, c_char
+         character(kind=c_char), intent(inout) :: template(*)
+      end function mkdtemp
+   end interface
+
 contains
 
    !> Prints the study of the deck in the file `path` to `output`, '' for standard output; with `only_times` the time of
@@ -72,8 +89,7 @@ contains
       type(failure_t), allocatable :: failure
       type(output_t) :: o
       type(progress_t) :: progress
-      type(reference_t) :: reference
-      integer :: i
+      integer :: reference, i       ! the unit of rows in real128; 0: there are none
 
       status = status_solved
       message = ''
@@ -86,119 +102,150 @@ contains
          call abandon_output(o)
       else
          if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
+         reference = 0
          if (.not. only_times) call open_reference(path, reference)
          do i = 1, size(sets)
             if (only_times) then
-               call put_times(o, sets(i), progress, status)
+               call put_times(sets(i))
             else
-               call study_set(o, sets(i), findings(i)%redundant > 0, reference, progress)
+               call study_set(sets(i), findings(i)%redundant > 0)
             end if
             call end_progress(progress)
             call flush_output(o)
             if (has_failed(o)) exit
          end do
-         call close_reference(reference)
+         if (reference /= 0) close (reference)
          call close_output(o, failure)
       end if
       if (.not. allocated(failure)) return
       status = failure%status
       if (len(message) == 0) message = ' *** '//failure%text
-   end subroutine run_study
 
-   !> Prints iterations and time of a step of `m`, as the deck asks for it. `status`: status_flagged if a position is
-   !> not found.
-   subroutine put_times(o, m, progress, status)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(progress_t), intent(inout) :: progress
-      integer, intent(inout) :: status
-      type(trial_t) :: t
-      type(truth_t) :: nothing
-      character(80) :: line
-      integer :: k, last
+   contains
 
-      last = instant_count(m) - 1
-      call solve(m, last, t, nothing)
-      write (line, '(i5, i10, f11.2)') m%set_number, last, t%iterations
-      if (t%missed > 0) then
-         line(27:) = '   NOT TIMED: A POSITION IS NOT FOUND'
-         status = status_flagged
-      else if (last == 0) then
-         line(27:) = '   NOT TIMED: ONE INSTANT'
-      else
+      !> Prints iterations and time of a step of `m`, as the deck asks for it. `status`: status_flagged if a position is
+      !> not found.
+      subroutine put_times(m)
+         type(mechanism_t), intent(in) :: m
+         type(trial_t) :: t
+         type(truth_t) :: nothing
+         character(80) :: line
+         integer :: k, last
+
+         last = instant_count(m) - 1
+         call solve(m, last, t, nothing)
+         write (line, '(i5, i10, f11.2)') m%set_number, last, t%iterations
+         if (t%missed > 0) then
+            line(27:) = '   NOT TIMED: A POSITION IS NOT FOUND'
+            status = status_flagged
+         else if (last == 0) then
+            line(27:) = '   NOT TIMED: ONE INSTANT'
+         else
+            do k = 1, repeats
+               call show_progress(progress, 'MEASUREMENT', k, repeats)
+               t%time(k) = step_time(m, last, t%seconds)
+            end do
+            write (line(27:), '(3f15.4)') median(t%time), minval(t%time), maxval(t%time)
+         end if
+         call put(o, trim(line))
+      end subroutine put_times
+
+      !> Prints the study of `m`. `redundant`: it has too many equations.
+      subroutine study_set(m, redundant)
+         type(mechanism_t), intent(in) :: m
+         logical, intent(in) :: redundant
+         integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
+         type(trial_t), allocatable :: trials(:)
+         type(mechanism_t), allocatable :: tried(:)
+         type(truth_t) :: truth
+         integer :: i, k, last, standard, equations
+
+         if (m%set_number > 1) call put(o, '')
+         call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
+         last = min(instant_count(m) - 1, max(8, max_solved/size(m%links)))
+         if (last == 0) then
+            call put(o, ' NOT STUDIED: ONE INSTANT')
+            return
+         end if
+         ! Each method with each tolerance, then the predictors of METHOD NEWTON. The first one without a tolerance is
+         ! the default.
+         equations = 3*count(.not. m%links%ground)
+         trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
+            i=1, merge(size(methods), 1, .not. redundant .and. equations <= max_equations)), &
+            (trial_t(predictor=k), k=0, 3)]
+         allocate (tried(size(trials)))
+         call read_truth(m, last, reference, truth)
+         do i = 1, size(trials)
+            call show_progress(progress, 'TRIAL', i, size(trials))
+            ! The mechanism as the trial solves it, with no question of the deck but its rows.
+            tried(i) = m
+            tried(i)%method = trials(i)%method
+            tried(i)%tolerance = real(trials(i)%tolerance, wp)
+            tried(i)%predictor = trials(i)%predictor
+            tried(i)%assemblies = .false.
+            call solve(tried(i), last, trials(i), truth)
+         end do
+         ! All trials take turns, so that what else the machine does meets all of them.
          do k = 1, repeats
             call show_progress(progress, 'MEASUREMENT', k, repeats)
-            t%time(k) = step_time(m, last, t%seconds)
+            do i = 1, size(trials)
+               if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
+            end do
          end do
-         write (line(27:), '(3f15.4)') median(t%time), minval(t%time), maxval(t%time)
-      end if
-      call put(o, trim(line))
-   end subroutine put_times
 
-   !> Prints the study of `m`. `redundant`: it has too many equations. `reference`: rows of the deck in real128.
-   subroutine study_set(o, m, redundant, reference, progress)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: redundant
-      type(reference_t), intent(in) :: reference
-      type(progress_t), intent(inout) :: progress
-      type(trial_t), allocatable :: trials(:)
-      type(truth_t) :: truth
-      integer :: i, k, last, standard
-
-      if (m%set_number > 1) call put(o, '')
-      call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
-      last = min(instant_count(m) - 1, max(8, max_solved/size(m%links)))
-      if (last == 0) then
-         call put(o, ' NOT STUDIED: ONE INSTANT')
-         return
-      end if
-      trials = all_trials(.not. redundant .and. 3*count(.not. m%links%ground) <= max_equations)
-      call read_truth(m, last, reference, truth)
-      do i = 1, size(trials)
-         call show_progress(progress, 'TRIAL', i, size(trials))
-         call solve(trial_mechanism(m, trials(i)), last, trials(i), truth)
-      end do
-      ! All trials take turns, so that what else the machine does meets all of them.
-      do k = 1, repeats
-         call show_progress(progress, 'MEASUREMENT', k, repeats)
+         call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, '//whole(size(m%links)) &
+            //' LINKS, '//wp_name)
+         if (truth%is_reference) then
+            call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+               //' INSTANTS')
+         else
+            call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+               //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
+         end if
+         if (redundant) then
+            call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
+         else if (equations > max_equations) then
+            call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(equations)//' EQUATIONS')
+         end if
+         call put(o, '')
+         call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
+         call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION' &
+            //'   VELOCITY   ACCELER.')
+         standard = findloc(trials%tolerance, 0.0_dp, dim=1)
          do i = 1, size(trials)
-            if (trials(i)%missed == 0) &
-               trials(i)%time(k) = step_time(trial_mechanism(m, trials(i)), last, trials(i)%seconds)
+            call put_trial(trials(i), median(trials(standard)%time))
          end do
-      end do
+      end subroutine study_set
 
-      call put_head(o, m, last, redundant, truth)
-      standard = findloc(trials%tolerance, 0.0_dp, dim=1)
-      do i = 1, size(trials)
-         call put_trial(o, trials(i), median(trials(standard)%time))
-      end do
-   end subroutine study_set
+      !> Prints the row of trial `t`. `unit`: microseconds of the default, 0 if that does not find every position.
+      subroutine put_trial(t, unit)
+         type(trial_t), intent(in) :: t
+         real(dp), intent(in) :: unit
+         character(120) :: line
+         integer :: d
 
-   !> Returns the trials of a study: each method with each tolerance, if `all_at_once` also those that solve all
-   !> equations at once; then the predictors of METHOD NEWTON. The first one without a tolerance is the default.
-   function all_trials(all_at_once) result(trials)
-      logical, intent(in) :: all_at_once
-      type(trial_t), allocatable :: trials(:)
-      integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
-      integer :: i, k
-
-      trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
-         i=1, merge(size(methods), 1, all_at_once)), (trial_t(predictor=k), k=0, 3)]
-   end function all_trials
-
-   !> Returns the mechanism `m` as trial `t` solves it, with no question of the deck but its rows.
-   function trial_mechanism(m, t) result(one)
-      type(mechanism_t), intent(in) :: m
-      type(trial_t), intent(in) :: t
-      type(mechanism_t) :: one
-
-      one = m
-      one%method = t%method
-      one%tolerance = real(t%tolerance, wp)
-      one%predictor = t%predictor
-      one%assemblies = .false.
-   end function trial_mechanism
+         line = ' '//method_words(t%method)
+         line(10:) = 'OWN'
+         if (t%predictor /= own_predictor) line(10:) = 'ORDER '//whole(t%predictor)
+         line(21:) = 'ROUNDING'
+         if (t%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') t%tolerance
+         if (t%missed > 0) then
+            line(32:) = 'NOT SOLVED AT '//whole(t%missed)//' INSTANTS OR MORE'
+         else
+            write (line(30:), '(3f10.3)') median(t%time), minval(t%time), maxval(t%time)
+            if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(t%time)/unit
+            write (line(68:), '(f7.2)') t%iterations
+         end if
+         do d = 0, merge(2, -1, t%missed == 0)
+            if (t%error(d) < 1.0e-3_dp*nothing_known) then
+               write (line(75 + 11*d:), '(es11.1)') t%error(d)
+            else
+               line(75 + 11*d:) = '    UNKNOWN'
+            end if
+         end do
+         call put(o, trim(line))
+      end subroutine put_trial
+   end subroutine run_study
 
    !> Solves `m` at instants 0 to `last`. Fills missed instants, iterations, seconds and errors of `t`; errors only if
    !> something is compared with the `truth`.
@@ -223,12 +270,12 @@ contains
          begun = seconds()
          call advance_set(a, instant(m, k))
          t%seconds = t%seconds + (seconds() - begun)
-         if (k == 0) at_first = iterations_of(a)
+         if (k == 0) at_first = maxval(a%list%iterations)
          if (is_flagged(a%now)) t%missed = t%missed + 1
          if (k < truth%compared) call compare()
          if (t%missed > 0 .and. t%seconds > long) exit
       end do
-      t%iterations = real(iterations_of(a) - at_first, dp)/max(1, min(k, last))
+      t%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
          t%error(k) = maxval(difference(:, k)/largest(:, k))
       end do
@@ -239,29 +286,22 @@ contains
       !> and of angles.
       subroutine compare()
          type(row_t) :: r
-         real(wp) :: estimate(3, 0:2)
-         real(qp) :: value
+         real(dp) :: off(3, 0:2)
          integer :: i, c, d, kind
 
-         if (.not. truth%is_reference) call sample_set(a, .true.)
+         if (.not. truth%is_reference) call sample_set(a, .true., .false.)
          do i = 1, size(a%now%rows)
             if (.not. is_compared(a, i, k)) cycle
             row = row + 1
             call find_row_in_set(a%now, i, r)
-            if (.not. truth%is_reference) estimate = error_in_set(a%now, i)
+            if (truth%is_reference) off = real(abs(real(r%value, qp) - truth%value(:, :, row)), dp)
+            if (.not. truth%is_reference) off = real(error_in_set(a%now, i), dp)
             do d = 0, 2
                do c = 1, 3
                   if (.not. has_number(r, c, d)) cycle
+                  if (truth%is_reference .and. off(c, d) >= 0.5_dp*no_number) cycle
                   kind = merge(2, 1, c == 3 .or. r%angular)
-                  if (.not. truth%is_reference) then
-                     difference(kind, d) = max(difference(kind, d), real(estimate(c, d), dp))
-                  else if (truth%value(c, d, row) < no_number) then
-                     value = truth%value(c, d, row)
-                     if (m%degrees .and. kind == 2) value = value/radian
-                     difference(kind, d) = max(difference(kind, d), real(abs(real(r%value(c, d), qp) - value), dp))
-                  else
-                     cycle
-                  end if
+                  difference(kind, d) = max(difference(kind, d), off(c, d))
                   largest(kind, d) = max(largest(kind, d), real(abs(r%value(c, d)), dp))
                end do
             end do
@@ -279,21 +319,21 @@ contains
       is_compared = request%kind <= request_pair .and. is_due(a%now, request, k)
    end function is_compared
 
-   !> Reads what the rows of `m` at instants 0 to `last` are compared with: the rows of the `reference` as far as they
-   !> go. Without a reference, or if it has no row of this set, the program's own estimates of errors stand for them.
+   !> Reads what the rows of `m` at instants 0 to `last` are compared with: the rows of the unit `reference` as far as
+   !> they go. Without a reference, or if it has no row of this set, the program's own estimates of errors stand for
+   !> them.
    subroutine read_truth(m, last, reference, truth)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last
-      type(reference_t), intent(in) :: reference
+      integer, intent(in) :: last, reference
       type(truth_t), intent(out) :: truth
       type(set_analysis_t) :: a
       type(row_t) :: r
       integer :: i, k, count
 
       call make_set_analysis(m, a)
-      if (reference%is_there) allocate (truth%value(3, 0:2, max_rows))
+      if (reference /= 0) allocate (truth%value(3, 0:2, max_rows))
       count = 0
-      do k = 0, merge(last, -1, reference%is_there)
+      do k = 0, merge(last, -1, reference /= 0)
          if (count + size(a%now%rows) > max_rows) exit
          do i = 1, size(a%now%rows)
             if (.not. is_compared(a, i, k)) cycle
@@ -301,6 +341,10 @@ contains
             call find_row_in_set(a%now, i, r)
             call read_reference(reference, m%set_number, k, r%name, truth%value(:, :, count))
             if (truth%value(1, 0, count) < no_number) truth%compared = k + 1
+            if (.not. m%degrees) cycle
+            associate (value => truth%value(merge(1, 3, r%angular):, :, count))
+               where (value < no_number) value = value/radian
+            end associate
          end do
          ! The reference ends here, if it misses two instants.
          if (k > truth%compared) exit
@@ -308,65 +352,6 @@ contains
       truth%is_reference = truth%compared > 0
       if (.not. truth%is_reference) truth%compared = min(last + 1, max(1, max_rows/max(1, size(a%now%rows))))
    end subroutine read_truth
-
-   !> Prints the head of the study of `m` over `last` steps.
-   subroutine put_head(o, m, last, redundant, truth)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last
-      logical, intent(in) :: redundant
-      type(truth_t), intent(in) :: truth
-
-      call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, '//whole(size(m%links))//' LINKS, ' &
-         //wp_name)
-      if (truth%is_reference) then
-         call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-            //' INSTANTS')
-      else
-         call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-            //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
-      end if
-      if (redundant) then
-         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
-      else if (3*count(.not. m%links%ground) > max_equations) then
-         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(3*count(.not. m%links%ground))//' EQUATIONS')
-      end if
-      call put(o, '')
-      call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
-      call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION   VELOCITY' &
-         //'   ACCELER.')
-   end subroutine put_head
-
-   !> Prints the row of trial `t`. `unit`: microseconds of the default, 0 if that does not find every position.
-   subroutine put_trial(o, t, unit)
-      type(output_t), intent(inout) :: o
-      type(trial_t), intent(in) :: t
-      real(dp), intent(in) :: unit
-      character(120) :: line
-      integer :: d
-
-      line = ' '//method_words(t%method)
-      line(10:) = 'OWN'
-      if (t%predictor /= own_predictor) line(10:) = 'ORDER '//whole(t%predictor)
-      line(21:) = 'ROUNDING'
-      if (t%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') t%tolerance
-      if (t%missed > 0) then
-         line(32:) = 'NOT SOLVED AT '//whole(t%missed)//' INSTANTS OR MORE'
-      else
-         write (line(30:), '(3f10.3)') median(t%time), minval(t%time), maxval(t%time)
-         if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(t%time)/unit
-         write (line(68:), '(f7.2)') t%iterations
-      end if
-      do d = 0, 2
-         if (t%missed > 0) cycle
-         if (t%error(d) < 1.0e-3_dp*nothing_known) then
-            write (line(75 + 11*d:), '(es11.1)') t%error(d)
-         else
-            line(75 + 11*d:) = '    UNKNOWN'
-         end if
-      end do
-      call put(o, trim(line))
-   end subroutine put_trial
 
    !> Returns microseconds of a step of `m`, position, velocity and acceleration at instants 1 to `last`, without the
    !> first instant. `whole_time`: seconds that all steps take, about.
@@ -412,4 +397,92 @@ contains
       twice = [(2*count(x <= x(i)), i=1, size(x))]
       median = 0.5_dp*(minval(x, mask=twice >= size(x)) + minval(x, mask=twice > size(x)))
    end function median
+
+   !> Lets kinmat-quad solve the deck in the file `path`: its CSV is open at `unit`. That is 0 if it stands neither
+   !> beside this program nor in PATH, or if it computes in another kind of reals.
+   subroutine open_reference(path, unit)
+      character(*), intent(in) :: path
+      integer, intent(out) :: unit
+      character(:), allocatable :: folder, this
+      integer :: status, length
+
+      unit = 0
+      folder = made_folder()
+      if (folder == '') return
+      call get_command_argument(0, length=length)
+      allocate (character(length) :: this)
+      if (length > 0) call get_command_argument(0, this)
+      this = this(:index(this, '/', back=.true.))//'kinmat-quad'
+      call execute_command_line('exec 2>/dev/null; p='//shell_word(this)//'; [ -x "$p" ] || p=kinmat-quad; ' &
+         //'case $("$p" --version) in *REAL128) ;; *) exit 1;; esac; ' &
+         //'awk ''!/^[*]/ { kept = toupper($0) !~ /^('//left_out//')/ } kept'' '//shell_word(path) &
+         //' | timeout '//whole(patience)//' "$p" --no-listing --csv '//shell_word(folder//'/rows'), exitstat=status)
+      if (status /= 1) open (newunit=unit, file=folder//'/rows', action='read', iostat=status)
+      if (status /= 0) unit = 0
+      ! The open file remains readable.
+      call execute_command_line('rm -rf '//shell_word(folder))
+   end subroutine open_reference
+
+   !> Reads from `unit` the next row of a link, point or pair if it is of set number `set` and instant number `step`,
+   !> and has this `name`. `value` (3, 0:2): its numbers, angles as the deck has them; `no_number` for one that is
+   !> missing, and for all if there is no such row.
+   subroutine read_reference(unit, set, step, name, value)
+      integer, intent(in) :: unit, set, step
+      character(*), intent(in) :: name
+      real(qp), intent(out) :: value(3, 0:2)
+      character(row_length) :: row
+      character(len(name)) :: words(3)        ! the beginning of the time, the kind of row, and its name
+      integer :: place(2), status, comma, i
+
+      value = no_number
+      do
+         read (unit, '(a)', iostat=status) row
+         if (status /= 0) return
+         read (row, *, iostat=status) place, words
+         if (status /= 0) cycle
+         if (any(place /= [set, step])) then
+            if (place(1) < set .or. (place(1) == set .and. place(2) < step)) cycle
+            backspace (unit)
+            return
+         end if
+         if (any(words(2) == ['LINK ', 'POINT', 'PAIR '])) exit
+      end do
+      if (words(3) /= name) return
+      ! The nine numbers stand before the mark, which is the last cell. An empty cell leaves its number as it is.
+      comma = len_trim(row) + 1
+      do i = 1, 10
+         comma = index(row(:comma - 1), ',', back=.true.)
+      end do
+      read (row(comma + 1:), *, iostat=status) value
+      if (status /= 0) value = no_number
+   end subroutine read_reference
+
+   !> The name of a new folder for temporary files, '' if none can be made.
+   function made_folder() result(name)
+      character(:), allocatable :: name
+      character(:), allocatable :: template
+      integer :: length
+
+      call get_environment_variable('TMPDIR', length=length)
+      name = repeat(' ', length)
+      if (length > 0) call get_environment_variable('TMPDIR', name)
+      if (length == 0) name = '/tmp'
+      template = name//'/kinmat-XXXXXX'//c_null_char
+      name = ''
+      if (c_associated(mkdtemp(template))) name = template(:len(template) - 1)
+   end function made_folder
+
+   !> `text` as one word of a shell's command.
+   pure function shell_word(text) result(word)
+      character(*), intent(in) :: text
+      character(:), allocatable :: word
+      integer :: i
+
+      word = ''''
+      do i = 1, len(text)
+         word = word//text(i:i)
+         if (text(i:i) == '''') word = word//'\'''''
+      end do
+      word = word//''''
+   end function shell_word
 end module study

@@ -19,7 +19,7 @@ program print_expected
    use variant_tables, only: put_variant, put_variant_heads, put_variant_row, put_variants_end
    use text_output, only: output_t, open_output, close_output
    use listing, only: new_layout, listing_head, listing_end
-   use listing_diagnostics, only: put_diagnostics
+   use listing, only: put_diagnostics
    use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
    use hand_estimates, only: estimates_by_hand
@@ -154,7 +154,7 @@ contains
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call divide(m, set)
       call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
-         closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
+         merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0), [diagnostic_t ::])
    end subroutine print_motion
 
    !> The numbers of the links of `r`.

@@ -145,8 +145,8 @@ while read -r fault; do has docs/messages.md 'the code' "| $fault |"; done < "$w
 sed -n "s/.*= phrase_t('\([^']*\)'.*/\1/p" $sources > "$w/phrases"
 equal 'phrases are found' yes "$([ "$(wc -l < "$w/phrases")" -ge 60 ] && echo yes)"
 while IFS= read -r phrase; do has "$w/reference" 'the phrase' "$phrase"; done < "$w/phrases"
-# Sentences of failures: the words in quotation marks behind `call fail`, those of two words and more.
-awk '/call fail\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i] } !/&$/ { on = 0 }' $sources \
+# Sentences of failures: the words in quotation marks behind `call fail` and `call reject`, those of two words and more.
+awk '/call (fail|reject)\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i] } !/&$/ { on = 0 }' $sources \
    | sed -e 's/^ *//' -e 's/["( ]*$//' | grep -E '^[-A-Za-z]+ .*[A-Z]' | grep -v '^[*]' | sort -u > "$w/sentences"
 equal 'sentences are found' yes "$([ "$(wc -l < "$w/sentences")" -ge 20 ] && echo yes)"
 while IFS= read -r sentence; do has docs/messages.md 'the sentence' "$sentence"; done < "$w/sentences"
