@@ -58,12 +58,12 @@ contains
       associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
          if (.not. is_known(node, track%rows)) then
             call search_waiting(x, s, c)
-            call take_point(x, c, node)
+            call take_node(x, c, node, .true.)
             return
          end if
          track%filled = track%filled + 1
          call move_node(node, nodes(track%filled))
-         if (track%filled == 1) call take_point(x, c, nodes(1))
+         if (track%filled == 1) call take_node(x, c, nodes(1), .true.)
          if (track%filled == 2 .and. .not. x%in_pairs) call search_waiting(x, s, c)
          if (track%filled < 3) return
          length = abs(nodes(3)%t - nodes(1)%t)
@@ -71,7 +71,7 @@ contains
             .and. abs(nodes(3)%t - 2.0_wp*nodes(2)%t + nodes(1)%t) <= alike_part*length
          if (is_searched) call search_three(x, s, c, nodes, .false., is_searched)
          if (is_searched) then
-            call take_point(x, c, nodes(3))
+            call take_node(x, c, nodes(3), .true.)
             call move_node(nodes(3), nodes(1))
             track%filled = 1
          else
@@ -90,7 +90,7 @@ contains
       associate (track => x%tracks(c))
          if (track%filled < 2) return
          call search_part(x, s, c, track%nodes(1), track%nodes(2))
-         call take_point(x, c, track%nodes(2))
+         call take_node(x, c, track%nodes(2), .true.)
          do k = 2, track%filled
             call move_node(track%nodes(k), track%nodes(k - 1))
          end do
@@ -112,27 +112,9 @@ contains
       jerk = jerks_of(x, c, nodes)
       simple = are_simple(x, c, nodes, jerk)
       if (.not. (simple .or. anyway)) return
-      call take_node(x, c, nodes(2))
+      call take_node(x, c, nodes(2), .false.)
       call search_columns(x, s, c, nodes, jerk)
    end subroutine search_three
-
-   !> The values of `node` of mechanism `c` may be extremes, and its velocities are the next ones along the run.
-   subroutine take_point(x, c, node)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: node
-      integer :: i, j
-
-      call take_node(x, c, node)
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            if (node%known(q) < 2) cycle
-            do j = 1, x%columns(q)
-               call note_velocity(x, q, j, sample_of(node, q, j))
-            end do
-         end associate
-      end do
-   end subroutine take_point
 
    !> A part of mechanism `c` from the time `a` to `b` that is no longer is not searched.
    pure real(wp) function shortest_of(x, c, a, b) result(shortest)
@@ -144,11 +126,12 @@ contains
       if (size(x%tracks(c)%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a))
    end function shortest_of
 
-   !> The values of `node` of mechanism `c` may be extremes.
-   subroutine take_node(x, c, node)
+   !> The values of `node` of mechanism `c` may be extremes; its velocities are the `next` along the run.
+   subroutine take_node(x, c, node, next)
       type(extremes_t), intent(inout) :: x
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
+      logical, intent(in) :: next
       type(sample_t) :: sample
       integer :: i, j, k
 
@@ -159,6 +142,7 @@ contains
                do k = 0, node%known(q)
                   call offer(x, q, j, k, sample, .false.)
                end do
+               if (next .and. sample%exists) call note_velocity(x, q, j, sample)
             end do
          end associate
       end do
@@ -196,7 +180,7 @@ contains
          else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, nodes(2))
-            call take_node(x, c, nodes(2))
+            call take_node(x, c, nodes(2), .false.)
             call search_part(x, s, c, nodes(2), b)
          end if
       end associate
@@ -225,7 +209,8 @@ contains
                   end do
                   cycle
                end if
-               column = column_t(x%asked(q), j, step_of_stencil(x, q, j, abs(nodes(3)%t - nodes(1)%t)))
+               column = column_t(x%asked(q), j, min(max_part*abs(nodes(3)%t - nodes(1)%t), &
+                  max(difference_part*x%step, difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))))
                do k = 0, 2
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
                end do
@@ -272,9 +257,9 @@ contains
       real(wp), intent(in) :: jerk(2)
       type(sample_t), allocatable, intent(out) :: path(:)
       type(sample_t), allocatable, intent(out) :: found(:)
-      type(sample_t) :: turn
+      type(sample_t) :: turn, zero
       real(wp) :: length, open
-      integer :: order, i, n
+      integer :: order, i, n, last
 
       allocate (found(0))
       path = points
@@ -291,7 +276,19 @@ contains
       end if
       do order = 2, 1, -1
          n = size(found)
-         call find_zeros(s, c, order, path, found)
+         last = 0
+         do i = 1, size(path)
+            ! Of a derivative that is no more than rounding no sign is known.
+            if (abs(path(i)%f(order)) <= c%noise(order)) cycle
+            if (last > 0) then
+               if (differ_in_sign(path(last)%f(order), path(i)%f(order))) then
+                  call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
+                  zero%order = order - 1
+                  if (zero%exists) found = [found, zero]
+               end if
+            end if
+            last = i
+         end do
          do i = n + 1, size(found)
             call insert(found(i), path)
          end do
@@ -322,31 +319,6 @@ contains
       turn%error(2) = turn%error(2) + 0.1_wp*min(0.5_wp*open*turn%t_error, &
          0.25_wp*abs(points(1)%f(2) - 2.0_wp*points(2)%f(2) + points(3)%f(2)) + c%noise(2))
    end subroutine turn_by_ends
-
-   !> Adds to `found` the zeros of derivative number `order` (1, 2) of the column `c`, one at most between two points
-   !> of the `path` at which it is more than rounding.
-   subroutine find_zeros(s, c, order, path, found)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
-      integer, intent(in) :: order
-      type(sample_t), intent(in) :: path(:)
-      type(sample_t), allocatable, intent(inout) :: found(:)
-      type(sample_t) :: zero
-      integer :: i, last
-
-      last = 0
-      do i = 1, size(path)
-         if (abs(path(i)%f(order)) <= c%noise(order)) cycle
-         if (last > 0) then
-            if (differ_in_sign(path(last)%f(order), path(i)%f(order))) then
-               call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
-               zero%order = order - 1
-               if (zero%exists) found = [found, zero]
-            end if
-         end if
-         last = i
-      end do
-   end subroutine find_zeros
 
    !> Adds `point`, which is between the ends of the `path`, in its order.
    pure subroutine insert(point, path)
@@ -405,30 +377,22 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(3)
       real(wp), intent(in) :: jerk(:, :, :)
-      real(wp) :: open
+      real(wp) :: open, length
       integer :: i, j, k
 
+      length = nodes(3)%t - nodes(1)%t
       are_simple = .true.
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             do j = 1, x%columns(q)
-               open = overlooked*x%size_of(j, 2, q) + open_change(x, nodes, q, j)
-               are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], &
-                  jerk(j, q, :)*(nodes(3)%t - nodes(1)%t), open)
+               ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
+               open = overlooked*x%size_of(j, 2, q) + errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(length) &
+                  + noise_of(x, nodes, q, j, 2))
+               are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], jerk(j, q, :)*length, open)
             end do
          end associate
       end do
    end function are_simple
-
-   !> What rounding may leave open of the change of an acceleration between the `nodes`, by its derivative at an end: of
-   !> column `j` of row `q`.
-   pure real(wp) function open_change(x, nodes, q, j) result(open)
-      type(extremes_t), intent(in) :: x
-      type(node_t), intent(in) :: nodes(3)
-      integer, intent(in) :: q, j
-
-      open = errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(nodes(3)%t - nodes(1)%t) + noise_of(x, nodes, q, j, 2))
-   end function open_change
 
    !> What rounding may leave open, at most, of derivative number `k` of column `j` of row `q` at the `nodes`.
    pure real(wp) function noise_of(x, nodes, q, j, k) result(noise)
@@ -451,14 +415,4 @@ contains
       is_simple = is_simple .and. maxval(d*sign(1.0_wp, f(3) - f(1))) > 0.0_wp &
          .and. maxval(abs(d)) <= steeper_by*abs(f(3) - f(1)) + open
    end function is_simple
-
-   !> The step of the stencil for column `j` of row `q` in an interval of the `length`.
-   pure real(wp) function step_of_stencil(x, q, j, length) result(step)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, j
-      real(wp), intent(in) :: length
-
-      step = max(difference_part*x%step, difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))
-      step = min(step, max_part*length)
-   end function step_of_stencil
 end module column_search

@@ -35,32 +35,23 @@ module digits_in_doubt
 
 contains
 
-   !> The sizes of `m`.
+   !> The sizes of `m`; of the largest law of its drives that at t = 0, and how much larger it is, over |t|: see
+   !> `growing_sizes`.
    function sizes_of(m) result(s)
       type(mechanism_t), intent(in) :: m
       type(sizes_t) :: s
+      real(wp) :: sizes(3, 0:1)
+      integer :: i, k
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
-      s%law = largest_law(m, s%length, s%rate)
-   end function sizes_of
-
-   !> The size of the largest law of a drive of `m` at t = 0, and by how much more it is, over |t|: see
-   !> `growing_sizes`. In the characteristic `length` and `rate`.
-   function largest_law(m, length, rate) result(largest)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: length, rate
-      real(wp) :: largest(0:1), sizes(3, 0:1)
-      integer :: i, k
-
-      largest = 0.0_wp
       do i = 1, size(m%drives)
-         sizes = growing_sizes(new_law(m%drives(i)), latest_time(m))/merge(length, 1.0_wp, is_length(m%drives(i)))
+         sizes = growing_sizes(new_law(m%drives(i)), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
          do k = 1, 3
-            largest = max(largest, sizes(k, :)/rate**(k - 1))
+            s%law = max(s%law, sizes(k, :)/s%rate**(k - 1))
          end do
       end do
-   end function largest_law
+   end function sizes_of
 
    !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
    pure logical function is_in_doubt(s, m, q, e)
