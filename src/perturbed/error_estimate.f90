@@ -90,101 +90,91 @@ contains
       found%taken = .true.
       call find_place(engine, q, s%place)
       s%place%stays = s%place%is_singular
-      call find_changed(s, m, engine, 0, many, q%t, found%solved)
+      call find_changed(0, many, found%solved)
       s%place%stays = .false.
-      call find_changes(s, m, engine, many, q%t, found, s%place%is_singular, is_small)
-      if (.not. is_small) call find_changes(s, m, engine, few, q%t, found, .true., is_small)
-      if (always .and. .not. found%without_own) call find_own(s, m, engine, q%t, found)
+      call find_changes(many, s%place%is_singular, is_small)
+      if (.not. is_small) call find_changes(few, .true., is_small)
+      if (always .and. .not. found%without_own) call find_own()
+
+   contains
+
+      !> The `rows` of `m` near the motion `q` with all numbers off by so many `roundings` in direction `k`; 0: with
+      !> none off; beyond the directions: with those of the calculation off.
+      subroutine find_changed(k, roundings, rows)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: roundings
+         type(row_t), intent(inout) :: rows(:)
+         integer :: i
+
+         call make_ready(s%perturbed, k, m, engine, i)
+         if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
+         associate (p => s%perturbed(i))
+            if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
+               call put_off(s%numbers, merge(k, 0, k <= directions), roundings, p%m)
+               call put_changes(p, by_roundings=.true.)
+               if (k > directions) call put_loops_off(k - directions, p%engine%blocks%numbers)
+               p%time_off = merge(roundings*part_off(k), 0.0_wp, k >= 1 .and. k <= directions)
+               p%direction = k
+               p%roundings = roundings
+            end if
+            call rows_with(p, q%t + p%time_off*q%t, s%place, rows)
+         end associate
+      end subroutine find_changed
+
+      !> The changes of the rows by a rounding, from those by so many `roundings`. `is_small`: they are so
+      !> small that they are of first order, if not all of them are asked for `anyway`.
+      subroutine find_changes(roundings, anyway, is_small)
+         real(wp), intent(in) :: roundings
+         logical, intent(in) :: anyway
+         logical, intent(out) :: is_small
+         type(row_t), dimension(size(found%solved)) :: rows, other
+         real(wp) :: part, x(3, 0:2)
+         integer :: k, i
+
+         ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
+         part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
+         found%changes = 0.0_wp
+         do k = 1, directions
+            call find_changed(k, roundings, rows)
+            is_small = anyway .or. s%place%ratio <= small_ratio
+            if (.not. is_small) return
+            if (s%place%is_singular .and. any(rows%known < 0)) then
+               ! On a dead point one of two opposite changes has a position.
+               call find_changed(k, -roundings, other)
+               where (rows%known < 0) rows = other
+            end if
+            do i = 1, size(rows)
+               associate (one => rows(i), middle => found%solved(i), largest => found%changes(:, :, i))
+                  x = part*difference(one, middle)
+                  if (one%kind < request_pole) then
+                     x(:, one%known + 1:) = nothing_known
+                  else
+                     x = merge(nothing_known, x, lost_numbers(one, middle))
+                  end if
+                  largest = max(largest, x)
+               end associate
+            end do
+         end do
+      end subroutine find_changes
+
+      !> The changes of the rows by a rounding of each vector in each loop: those of the calculation, which
+      !> count by themselves where no number of the deck does, as in the rates of links that turn as one.
+      subroutine find_own()
+         type(row_t) :: rows(size(found%solved))
+         integer :: k, i
+
+         if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
+         found%own = 0.0_wp
+         if (s%place%is_singular) return
+         do k = directions + 1, 2*directions
+            call find_changed(k, 1.0_wp, rows)
+            do i = 1, size(rows)
+               if (min(rows(i)%known, found%solved(i)%known) < 0) cycle
+               found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
+            end do
+         end do
+      end subroutine find_own
    end subroutine estimate_errors
-
-   !> The `rows` of `m`, which the `engine` has solved, near the time `t` with all numbers off by so many `roundings` in
-   !> direction `k`; 0: with none off; beyond the directions: with those of the calculation off.
-   subroutine find_changed(s, m, engine, k, roundings, t, rows)
-      type(estimator_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: engine
-      integer, intent(in) :: k
-      real(wp), intent(in) :: roundings, t
-      type(row_t), intent(inout) :: rows(:)
-      integer :: i
-
-      call make_ready(s%perturbed, k, m, engine, i)
-      if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
-      associate (p => s%perturbed(i))
-         if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
-            call put_off(s%numbers, merge(k, 0, k <= directions), roundings, p%m)
-            call put_changes(p, by_roundings=.true.)
-            if (k > directions) call put_loops_off(k - directions, p%engine%blocks%numbers)
-            p%time_off = merge(roundings*part_off(k), 0.0_wp, k >= 1 .and. k <= directions)
-            p%direction = k
-            p%roundings = roundings
-         end if
-         call rows_with(p, t + p%time_off*t, s%place, rows)
-      end associate
-   end subroutine find_changed
-
-   !> The changes of the rows at the time `t` by a rounding, from those by so many `roundings`. `is_small`: they are so
-   !> small that they are of first order, if not all of them are asked for `anyway`.
-   subroutine find_changes(s, m, engine, roundings, t, found, anyway, is_small)
-      type(estimator_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: engine
-      real(wp), intent(in) :: roundings, t
-      type(error_estimate_t), intent(inout) :: found
-      logical, intent(in) :: anyway
-      logical, intent(out) :: is_small
-      type(row_t), dimension(size(found%solved)) :: rows, other
-      real(wp) :: part, x(3, 0:2)
-      integer :: k, i
-
-      ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
-      part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
-      found%changes = 0.0_wp
-      do k = 1, directions
-         call find_changed(s, m, engine, k, roundings, t, rows)
-         is_small = anyway .or. s%place%ratio <= small_ratio
-         if (.not. is_small) return
-         if (s%place%is_singular .and. any(rows%known < 0)) then
-            ! On a dead point one of two opposite changes has a position.
-            call find_changed(s, m, engine, k, -roundings, t, other)
-            where (rows%known < 0) rows = other
-         end if
-         do i = 1, size(rows)
-            associate (one => rows(i), middle => found%solved(i), largest => found%changes(:, :, i))
-               x = part*difference(one, middle)
-               if (one%kind < request_pole) then
-                  x(:, one%known + 1:) = nothing_known
-               else
-                  x = merge(nothing_known, x, lost_numbers(one, middle))
-               end if
-               largest = max(largest, x)
-            end associate
-         end do
-      end do
-   end subroutine find_changes
-
-   !> The changes of the rows at the time `t` by a rounding of each vector in each loop: those of the calculation, which
-   !> count by themselves where no number of the deck does, as in the rates of links that turn as one.
-   subroutine find_own(s, m, engine, t, found)
-      type(estimator_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: engine
-      real(wp), intent(in) :: t
-      type(error_estimate_t), intent(inout) :: found
-      type(row_t) :: rows(size(found%solved))
-      integer :: k, i
-
-      if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
-      found%own = 0.0_wp
-      if (s%place%is_singular) return
-      do k = directions + 1, 2*directions
-         call find_changed(s, m, engine, k, 1.0_wp, t, rows)
-         do i = 1, size(rows)
-            if (min(rows(i)%known, found%solved(i)%known) < 0) cycle
-            found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
-         end do
-      end do
-   end subroutine find_own
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.
    !> `nothing_known`, where it is so.
