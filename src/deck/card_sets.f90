@@ -13,7 +13,7 @@ module card_sets
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
    use card_numbers, only: angle_in_radians
-   use drawn_values, only: drawn_pair, coincides
+   use drawn_values, only: take_drawn, coincides
    use name_table, only: name_table_t, put_name, find_name
    use names, only: subject_name, listed
    use numerals, only: whole
@@ -245,14 +245,9 @@ contains
             call add_card_error(set, pair_grounds, k, label_c)
          else if (any(set%mechanism%pairs(n)%drawn)) then
             ! It has those numbers as drawn. The points of a cylinder must lie apart.
-            associate (pair => set%mechanism%pairs(n))
-               numbers = drawn_pair(set%mechanism, pair)
-               pair%alpha = numbers(1)
-               pair%offset = numbers(2)
-               pair%beta = numbers(3)
-               if (pair%drawn(1) .and. coincides(set%mechanism, pair)) &
-                  call add_card_error(set, cylinder_points, k, label_b)
-            end associate
+            call take_drawn(set%mechanism, n)
+            if (set%mechanism%pairs(n)%drawn(1) .and. coincides(set%mechanism, set%mechanism%pairs(n))) &
+               call add_card_error(set, cylinder_points, k, label_b)
          end if
       end subroutine build_pair
 

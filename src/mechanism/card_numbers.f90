@@ -8,7 +8,7 @@ module card_numbers
    use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
       number_drive, number_knot, number_time, pair_prismatic, term_harmonic, term_power, term_table, term_words, &
       rise_words, term_cycloid, driven_kinds, request_link
-   use drawn_values, only: drawn_pair, drawn_drive
+   use drawn_values, only: take_drawn, drawn_drive
    use names, only: drive_name
    use numerals, only: whole
    implicit none
@@ -282,17 +282,12 @@ contains
       type(mechanism_t), intent(inout) :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
-      real(wp) :: numbers(3)
       integer :: i
 
       call put_number(m, n, value)
       if (n%kind > number_pair) return
       do i = 1, size(m%pairs)
-         if (.not. any(m%pairs(i)%drawn)) cycle
-         numbers = drawn_pair(m, m%pairs(i))
-         m%pairs(i)%alpha = numbers(1)
-         m%pairs(i)%offset = numbers(2)
-         m%pairs(i)%beta = numbers(3)
+         if (any(m%pairs(i)%drawn)) call take_drawn(m, i)
       end do
       do i = 1, size(m%drives)
          if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))

@@ -6,7 +6,7 @@ module drawn_values
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
-   public :: drawn_pair, drawn_drive, drawn_way, drawn_opening, coincides
+   public :: take_drawn, drawn_drive, drawn_way, drawn_opening, coincides
 
    !> A coordinate passes through about ten operations, each with an error of half a rounding of the places involved;
    !> coordinates that another program has printed are off by one or two more. A difference below this is zero.
@@ -14,34 +14,30 @@ module drawn_values
 
 contains
 
-   !> The numbers alpha, h and beta (length, rad) of the prismatic `pair` of `m`: those that it has, or, where
-   !> `pair`%drawn says so, those of the drawing. Along a guide that is drawn from P to Q the direction is that of PQ,
-   !> in (-pi, pi], less the angle of link i, and h is 0. Differences that rounding alone makes are exactly 0.
-   pure function drawn_pair(m, pair) result(numbers)
-      type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
-      real(wp) :: numbers(3)
-      type(pair_t) :: along
-      real(wp) :: d(2), theta
-      integer :: links(2)
+   !> Gives prismatic pair number `i` of `m` those of its numbers alpha, h and beta (length, rad) that are as drawn.
+   !> Along a guide that is drawn from P to Q the direction is that of PQ, in (-pi, pi], less the angle of link i, and h
+   !> is 0. Differences that rounding alone makes are exactly 0.
+   pure subroutine take_drawn(m, i)
+      type(mechanism_t), intent(inout) :: m
+      integer, intent(in) :: i
+      type(pair_t) :: pair
+      real(wp) :: d(2), phi(2), theta
 
-      links = pair_links(m, pair)
-      numbers = [pair%alpha, pair%offset, pair%beta]
-      associate (phi => m%links(links)%position(3))
-         if (pair%drawn(1)) then
-            d = drawn_way(m, pair)
-            theta = atan2(d(2), d(1))
-            if (theta <= -pi) theta = pi
-            numbers(1) = theta - phi(1)
-         end if
-         if (pair%drawn(2)) then
-            along = pair
-            along%offset = 0.0_wp
-            numbers(2) = merge(0.0_wp, drawn_opening(m, along), pair%drawn(1))
-         end if
-         if (pair%drawn(3)) numbers(3) = without_rounding(phi(2) - phi(1), sum(abs(phi)))
-      end associate
-   end function drawn_pair
+      pair = m%pairs(i)
+      phi = m%links(pair_links(m, pair))%position(3)
+      if (pair%drawn(2)) then
+         pair%offset = 0.0_wp
+         if (.not. pair%drawn(1)) pair%offset = drawn_opening(m, pair)
+      end if
+      if (pair%drawn(1)) then
+         d = drawn_way(m, pair)
+         theta = atan2(d(2), d(1))
+         if (theta <= -pi) theta = pi
+         pair%alpha = theta - phi(1)
+      end if
+      if (pair%drawn(3)) pair%beta = without_rounding(phi(2) - phi(1), sum(abs(phi)))
+      m%pairs(i) = pair
+   end subroutine take_drawn
 
    !> By how much h of the prismatic `pair` is greater in the drawing of `m` than on its card: (P - Q) . n - h.
    pure real(wp) function drawn_opening(m, pair) result(opening)

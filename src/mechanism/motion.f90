@@ -4,7 +4,7 @@ module motion
    use kinds, only: wp
    implicit none
    private
-   public :: motion_t, new_motion, known_of, mark_of, forget_links, diagnostic_t, new_diagnostic, max_links
+   public :: motion_t, new_motion, known_of, forget_links, diagnostic_t, new_diagnostic, max_links
    public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
    public :: singular_unclear, singular_change, singular_dead, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_far_estimate, diagnostic_second, diagnostic_redundant, diagnostic_mobile, diagnostic_change, &
@@ -104,15 +104,6 @@ contains
       known_of = m%known
       if (allocated(m%link_known)) known_of = m%link_known(link)
    end function known_of
-
-   !> Why the rest of it does not exist; mark_none where all of it exists.
-   pure integer function mark_of(m, link)
-      type(motion_t), intent(in) :: m
-      integer, intent(in) :: link
-
-      mark_of = m%mark
-      if (allocated(m%link_mark)) mark_of = m%link_mark(link)
-   end function mark_of
 
    !> Gives all links the `known` and `mark` of the whole.
    pure subroutine forget_links(m)

@@ -7,7 +7,7 @@ module points
    use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
    use planar, only: pi, direction, rotated, quarter_turn, point_of
-   use motion, only: motion_t, known_of, mark_of, mark_none
+   use motion, only: motion_t, known_of, mark_none
    implicit none
    private
    public :: row_t, row_of, find_row, note_known, set_values, has_number, difference, centre_numbers, &
@@ -235,7 +235,8 @@ contains
       do i = 1, size(links)
          if (m%links(links(i))%ground .or. known_of(q, links(i)) >= row%known) cycle
          row%known = known_of(q, links(i))
-         row%mark = mark_of(q, links(i))
+         row%mark = q%mark
+         if (allocated(q%link_mark)) row%mark = q%link_mark(links(i))
       end do
    end subroutine note_known
 
