@@ -258,9 +258,9 @@ fuzz: $(BUILD)/fuzz/fuzz
 fuzz-short: $(BUILD)/debug/fuzz
 	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
 
-# Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on.
+# Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on; all by METHOD, if that is given.
 fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
-	BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
+	FUZZ_METHOD=$(METHOD) BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
 
 # Extremes of N mechanisms made by chance, from seed SEED on, against runs in steps 16 times finer.
 fuzz-extremes: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms

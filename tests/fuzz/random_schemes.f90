@@ -172,6 +172,8 @@ contains
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: seed
       real(qp) :: span, start
+      character(8) :: by_dice
+      integer :: length
 
       associate (s => d%s)
          s%seed = seed
@@ -193,7 +195,11 @@ contains
          end if
          d%t = s%t0
          if (chance(d%dice, 0.1_wp)) call add_instants(d)
-         if (chance(d%dice, 0.12_wp)) s%method = merge('DENSE   ', 'MATRIX  ', chance(d%dice, 0.8_wp))
+         by_dice = ''
+         if (chance(d%dice, 0.12_wp)) by_dice = merge('DENSE   ', 'MATRIX  ', chance(d%dice, 0.8_wp))
+         ! All by one method, if the environment names it; redundant equations still take METHOD NEWTON.
+         call get_environment_variable('FUZZ_METHOD', s%method, length)
+         if (length == 0) s%method = by_dice
       end associate
    end subroutine begin_scheme
 
