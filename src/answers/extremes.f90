@@ -143,6 +143,8 @@ contains
       real(wp) :: length, rate, fastest
       integer :: i, c, k, q, n
 
+      ! Lanes search the steps of a variant one by one; what the engine finds of a variant has the same digits.
+      x%in_pairs = s%variants == 0
       x%asked = rows_asked(s)
       n = size(x%asked)
       x%part = s%rows(x%asked)%part

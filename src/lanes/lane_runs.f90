@@ -86,8 +86,6 @@ contains
 
       call new_answers(r%s, .false., r%asked)
       if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
-      ! Parts of the run are searched each by itself.
-      r%asked%extremes%in_pairs = .false.
       r%at = -1
       r%counted = -1
       r%noted = -1
