@@ -39,13 +39,15 @@ module block_assemblies
 contains
 
    !> All positions `found` of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
-   !> change. `tolerance`, `w`: as of `solve_block`.
-   subroutine find_positions(b, i, tolerance, w, s, found)
+   !> change. `tolerance`, `w`: as of `solve_block`; `largest_group`: more unknowns of a group are not solved, see
+   !> `max_group`.
+   subroutine find_positions(b, i, tolerance, w, s, largest_group, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: tolerance
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
+      integer, intent(in) :: largest_group
       type(block_positions_t), intent(out) :: found
       type(convergence_t) :: c
       type(block_form_t) :: f
@@ -63,7 +65,7 @@ contains
       call make_form(b, i, s, f)
       found%group = f%system%p
       found%moves = f%is_lacking
-      if (f%is_lacking .or. f%is_impossible .or. found%group > max_group) return
+      if (f%is_lacking .or. f%is_impossible .or. found%group > largest_group) return
       call find_ends(ends, found%moves)
       found%paths = ends%paths
       found%infinite = ends%infinite

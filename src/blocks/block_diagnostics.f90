@@ -3,12 +3,12 @@ module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
-      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, motion_t
+      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, &
+      diagnostic_incomplete, motion_t
    use planar, only: without_turns
    use blocks, only: blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t, largest_drive_rate
-   use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none
    private
@@ -50,13 +50,12 @@ contains
    end function start_diagnostics
 
    !> Which equations are redundant, what can still move where the Jacobian is `singular`, and where another
-   !> assembly is about as near to the estimate.
+   !> assembly is about as near to the initial guess or may be nearer.
    function assembly_diagnostics(e, singular) result(list)
       type(block_engine_t), intent(inout) :: e
       logical, intent(in) :: singular
       type(diagnostic_t), allocatable :: list(:)
       integer :: k
-      logical :: second
 
       allocate (list(0))
       if (e%blocks%redundant > 0) list = redundancies(e)
@@ -67,10 +66,10 @@ contains
                call add_mobility(e, e%needed(k), list)
                cycle
             end if
-            second = e%is_close(e%needed(k))
-            if (.not. second) second = has_second_position(e%blocks, e%needed(k), e%tolerance, &
-               e%estimated(e%blocks%unknown(block%first:block%last)), e%work, e%state)
-            if (second) list = [list, new_diagnostic(diagnostic_second, links_of(e, e%needed(k)))]
+            if (e%choice(e%needed(k))%is_close) &
+               list = [list, new_diagnostic(diagnostic_second, links_of(e, e%needed(k)))]
+            if (e%choice(e%needed(k))%is_incomplete) &
+               list = [list, new_diagnostic(diagnostic_incomplete, links_of(e, e%needed(k)))]
          end associate
       end do
    end function assembly_diagnostics

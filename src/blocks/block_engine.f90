@@ -10,26 +10,27 @@ module block_engine
    use drives, only: law_t, new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
+   use planar, only: without_turns
+   use blocks, only: blocks_t, numbers_t, loop_angles, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
    use block_state, only: state_t, new_state, set_direction, set_values
    use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
-   use first_position, only: solve_first_block, remove_turns
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, put_chain, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
    implicit none
    private
-   public :: block_engine_t, engine_state_t, followed_t, positions_t
+   public :: block_engine_t, engine_state_t, followed_t, choice_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
-      begin_record, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, followed_state, &
-      follows_values, slide_unit
+      begin_record, is_certain, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, &
+      followed_state, follows_values, slide_unit
 
-   !> Positions of one block (unknowns, any number).
-   type :: positions_t
-      real(wp), allocatable :: x(:, :)
-   end type positions_t
+   !> A change of more than this, in radians or characteristic lengths, is a jump to another branch.
+   real(wp), parameter :: branch_jump = 0.5_wp
+   !> Another position is not nearer that is this many times as far from the guess and, unless the guess is as good as
+   !> `fine`, further than twice the errors of a guess that is good to 3 degrees and 3 per cent.
+   real(wp), parameter :: plausible = 3.0_wp, fine = 1.0e-4_wp, reach = 0.1_wp
 
    !> What the factors of a block's Jacobian say.
    type :: jacobian_t
@@ -37,6 +38,13 @@ module block_engine
       real(wp) :: pivot = 1.0_wp                        !< the least; 1 of a direct block
       real(wp) :: inverse = 0.0_wp                      !< |J^-1|
    end type jacobian_t
+
+   !> How the position of a block at the first instant was chosen.
+   type :: choice_t
+      logical :: is_certain = .false.                   !< no other position can be nearer
+      logical :: is_close = .false.                     !< another one is about as near
+      logical :: is_incomplete = .false.                !< a nearer one may not have been found
+   end type choice_t
 
    !> What is followed: the last motions accepted, and what the Jacobians of the latest say.
    type :: followed_t
@@ -73,8 +81,7 @@ module block_engine
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       real(wp), allocatable :: estimated(:)             !< (0:unknowns) from the deck's positions
       real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
-      type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
-      logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
+      type(choice_t), allocatable :: choice(:)          !< (blocks) of their positions at the first instant
       type(workspace_t) :: work
    end type block_engine_t
 
@@ -175,10 +182,9 @@ contains
       associate (n => size(e%blocks%list))
          allocate (s%found(n), s%followed(n))
          allocate (s%crossed(n), s%is_singular(n), source=.false.)
-         e%is_close = s%crossed
-         if (allocated(e%others)) deallocate (e%others)
-         allocate (e%others(n))
+         if (.not. allocated(e%choice)) allocate (e%choice(n))
       end associate
+      e%choice = choice_t()
       e%engine_state_t = s
    end subroutine begin_state
 
@@ -214,8 +220,8 @@ contains
       end do
    end subroutine put_laws
 
-   !> Solves for the motion at `t`, from the one accepted last (`follows`) or, each block nearest to it, from the deck's
-   !> estimate. `c`: how that ended in the worst block, with the largest change of a predicted value.
+   !> Solves for the motion at `t`, from the one accepted last (`follows`) or from the deck's estimate. `c`: how that
+   !> ended in the worst block, with the largest change of a predicted value.
    subroutine solve_blocks(e, t, follows, c)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
@@ -235,9 +241,50 @@ contains
       else
          call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
          e%state%u%value = e%estimated
+         e%choice = choice_t()
+         e%choice%is_certain = e%blocks%list%direct
          call solve_each(e, e%needed, follows, c)
       end if
    end subroutine solve_blocks
+
+   !> Takes whole turns off the `estimated` angles (0:unknowns) of the blocks `list`, where a drive with a value of
+   !> `drive_value` (0:drives) fixes them: they close nothing, and would have to be travelled.
+   pure subroutine remove_turns(b, list, drive_value, estimated)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)
+      real(wp), intent(in) :: drive_value(0:)
+      real(wp), intent(inout) :: estimated(0:)
+      real(wp) :: off
+      integer :: k, m
+
+      do k = 1, size(list)
+         associate (block => b%list(list(k)))
+            if (block%direct) cycle
+            do m = block%first_loop, block%last_loop
+               associate (g => b%loops(m))
+                  if (g%kind /= loop_angles .or. g%orientation > b%orientations .or. g%orientation_column == 0) cycle
+                  associate (row => block%first_row + g%row_x - 1)
+                     off = estimated(g%orientation) - estimated(g%less) - b%numbers%rows(row)%constant &
+                        - drive_value(b%rows(row)%drive)
+                  end associate
+                  estimated(g%orientation) = estimated(g%orientation) - (off - without_turns(off))
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine remove_turns
+
+   !> No other position can be nearer to the guess than the one that `c` is of: two of them are at least 2/(|J^-1|
+   !> Lipschitz constant) apart.
+   pure logical function is_certain(c)
+      type(convergence_t), intent(in) :: c
+      real(wp) :: farthest
+
+      farthest = plausible*c%change
+      if (c%change > fine) farthest = max(farthest, reach)
+      is_certain = is_solved(c) .and. c%change <= branch_jump .and. &
+         c%kantorovich_ratio*(c%change + farthest) <= 2.0_wp*c%change
+   end function is_certain
 
    !> Value, rate and acceleration of the drives at `t`.
    pure subroutine set_drive_values(e, t)
@@ -305,17 +352,17 @@ contains
       do k = 1, size(list)
          i = list(k)
          associate (block => e%blocks%list(i))
-            if (follows .and. block%direct) then
+            if (block%direct) then
                call solve_direct(e%blocks, i, e%state)
                cycle
-            else if (follows) then
-               call solve_equations(e%blocks, i, block, e%blocks%numbers%blocks(i), e%tolerance, e%work, e%state, one)
+            end if
+            call solve_equations(e%blocks, i, block, e%blocks%numbers%blocks(i), e%tolerance, e%work, e%state, one)
+            if (follows) then
                c%change = max(c%change, one%change)
                if (block%shape%rows > block%shape%n .and. is_solved(one)) &
                   one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
             else
-               call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
-               if (block%direct) cycle
+               e%choice(i)%is_certain = is_certain(one)
             end if
             call gather(one, c)
             if (.not. is_solved(one)) return

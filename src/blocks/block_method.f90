@@ -1,19 +1,15 @@
-!> The block engine with a choice of the first assembly, and what the continuation and the error estimate ask of it.
+!> What the continuation and the error estimate take of the block engine.
 module block_method
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use motion, only: motion_t
    use drives, only: law_t, bounds_t, bounds_of, joints_of
-   use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use block_engine, only: block_engine_t, solve_blocks, mark_singular_links
-   use assembly_choice, only: solve_first
-   use block_branches, only: is_short_and_right
+   use block_engine, only: block_engine_t, mark_singular_links
    use singularity, only: judge_position
    use block_diagnostics, only: singular_links
    implicit none
    private
-   public :: solve_instant, is_at_rest, get_link_flags, measure_closure_error, max_rate, growth_of_roundings, &
-      growth_of_angles
+   public :: is_at_rest, get_link_flags, max_rate, growth_of_roundings, growth_of_angles
 
    !> With smaller pivots everything is in doubt.
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
@@ -25,22 +21,6 @@ module block_method
    real(wp), parameter :: joint_part = 4096.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
-
-   !> Solves for the motion at `t`, from the one accepted last (`follows`) or from the deck's estimate. `c`: how it
-   !> ended, with the largest change (rad, `length`) of a predicted value.
-   subroutine solve_instant(e, t, follows, c)
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      logical, intent(in) :: follows
-      type(convergence_t), intent(out) :: c
-
-      if (follows) then
-         call solve_blocks(e, t, follows, c)
-         if (e%state%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e, c%change)
-      else
-         call solve_first(e, t, c)
-      end if
-   end subroutine solve_instant
 
    !> The drive of `law` does not move between the times `t1` and `t2`, by the bounds of its rate; or, if they are
    !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
@@ -70,23 +50,6 @@ contains
       call judge_position(e, found%singularity, i)
       if (i > 0) found%singular_links = singular_links(e, i)
    end subroutine get_link_flags
-
-   !> The closure error at `t` itself, from the motion that is followed or, where that is too far, from the deck's
-   !> estimate; where neither search ends there, `c` stays but for its closure error, which is 0.
-   subroutine measure_closure_error(e, t, c)
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      type(convergence_t), intent(inout) :: c
-      type(convergence_t) :: before
-
-      before = c
-      call solve_blocks(e, t, .true., c)
-      if (c%ended == ended_inconsistent) return
-      call solve_blocks(e, t, .false., c)
-      if (c%ended == ended_inconsistent) return
-      c = before
-      c%open%value = 0.0_wp
-   end subroutine measure_closure_error
 
    !> The largest rate of an unknown of the motion that is followed.
    pure real(wp) function max_rate(e)

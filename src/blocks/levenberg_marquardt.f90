@@ -10,7 +10,7 @@ module levenberg_marquardt
    use block_equations, only: find_known_parts, assemble_dense
    implicit none
    private
-   public :: levenberg_marquardt_solve, levenberg_marquardt_held, golden_numbers
+   public :: levenberg_marquardt_solve
 
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
@@ -20,17 +20,12 @@ module levenberg_marquardt
    !> Shorter ones are rounding.
    real(wp), parameter :: min_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
    integer, parameter :: max_iterations = 200
-   !> The tie to the initial estimate: what it begins with, by how much it grows less, when it is none.
-   real(wp), parameter :: first_tie = 1.0_wp, looser = 0.25_wp, last_tie = 1.0e-8_wp
-   integer, parameter :: rounds_a_tie = 3
    !> Starts: the initial estimate, then others around it, where that ends in a local minimum.
    integer, parameter :: max_starts = 12
    !> Multiples of it, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: larger blocks are left as they are.
    integer, parameter :: max_unknowns = 600
-   !> `levenberg_marquardt_held` is one method among several, and not worth minutes.
-   integer, parameter :: max_held = 150
 
    !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown.
    type :: room_t
@@ -80,40 +75,6 @@ contains
       reached = least <= near
    end subroutine levenberg_marquardt_solve
 
-   !> Brings block `i` from the values of `s`, the initial estimate x0, towards the position that is nearest to it: the
-   !> least of |r|^2 + tie |x - x0|^2, with a tie that grows less and less (iterated regularization of Tikhonov). No
-   !> unknown goes far where the Jacobian does little.
-   subroutine levenberg_marquardt_held(b, i, near, s)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: near
-      type(state_t), intent(inout) :: s
-      type(room_t) :: w
-      real(wp), allocatable :: start(:)
-      real(wp) :: tie, step
-      integer :: k
-
-      associate (block => b%list(i))
-         if (block%shape%n == 0 .or. block%shape%n > max_held) return
-         call make_room(w, block%shape)
-         start = values_of(b, i, s)
-      end associate
-      call find_known_parts(b, i, s)
-      tie = first_tie
-      do while (tie > last_tie)
-         do k = 1, rounds_a_tie
-            call assemble_dense(b, i, s, w%a, w%r)
-            if (.not. maxval(abs(w%r(:w%shape%rows))) <= bound) return
-            if (maxval(abs(w%r(:w%shape%rows))) <= near) return
-            w%x = values_of(b, i, s)
-            call damped_step(w, tie, w%x - start, step)
-            call set_values(b, i, w%x - w%d(:w%shape%n), s)
-            if (step <= 0.01_wp*longest_step) exit
-         end do
-         tie = looser*tie
-      end do
-   end subroutine levenberg_marquardt_held
-
    !> Room for a block of this `shape`.
    subroutine make_room(w, shape)
       type(room_t), intent(out) :: w
@@ -152,7 +113,7 @@ contains
          if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
          square = sum(w%r(:w%shape%rows)**2)
          w%x = values_of(b, i, s)
-         call damped_step(w, damping, spread(0.0_wp, 1, w%shape%n), step)
+         call damped_step(w, damping, step)
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
          call assemble_dense(b, i, s, w%a, w%r)
          if (sum(w%r(:w%shape%rows)**2) < square) then
@@ -167,10 +128,10 @@ contains
       found = maxval(abs(w%r(:w%shape%rows)))
    end subroutine descend
 
-   !> Least squares of J d = r and sqrt(damping) d = sqrt(damping) `aim` (n) together, cut to the longest step.
-   subroutine damped_step(w, damping, aim, step)
+   !> Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
+   subroutine damped_step(w, damping, step)
       type(room_t), intent(inout) :: w
-      real(wp), intent(in) :: damping, aim(:)
+      real(wp), intent(in) :: damping
       real(wp), intent(out) :: step
       integer :: k, info
 
@@ -181,7 +142,7 @@ contains
             w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
          end do
          w%d(:m) = w%r(:m)
-         w%d(m + 1:) = sqrt(damping)*aim
+         w%d(m + 1:) = 0.0_wp
          call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
          step = maxval(abs(w%d(:n)))
          if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)

@@ -14,7 +14,8 @@ module analysis
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_engine, only: block_engine_t, renew_block_engine, get_blocks_motion => get_motion, get_driven_links, stay
-   use block_method, only: measure_closure_error, get_link_flags, is_at_rest
+   use block_method, only: get_link_flags, is_at_rest
+   use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, go_by_value, leave

@@ -8,7 +8,8 @@ module at_bifurcation
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: is_solved
-   use block_method, only: solve_instant, max_rate, is_at_rest
+   use block_method, only: max_rate, is_at_rest
+   use first_instant, only: solve_instant
    use block_branches, only: extrapolate, take_other_branch
    use block_diagnostics, only: links_of
    use branch_requests, only: decide

@@ -14,7 +14,7 @@ module following
    use branch_requests, only: branch_requests_t, new_branch_requests
    use block_engine, only: block_engine_t, engine_state_t, make_block_engine, accept, &
       follows_values
-   use block_method, only: solve_instant
+   use first_instant, only: solve_instant
    use block_branches, only: pass
    implicit none
    private

@@ -9,7 +9,8 @@ module motion
    public :: singular_unclear, singular_change, singular_dead, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_far_estimate, diagnostic_second, diagnostic_redundant, diagnostic_mobile, diagnostic_change, &
       diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, &
-      diagnostic_repeated, diagnostic_method, diagnostic_singular, diagnostic_beyond, diagnostic_begins
+      diagnostic_repeated, diagnostic_method, diagnostic_singular, diagnostic_beyond, diagnostic_begins, &
+      diagnostic_incomplete
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
@@ -17,6 +18,7 @@ module motion
       enumerator :: diagnostic_limit            !< at `t`, where `drive` is `value`, the motion of `links` has its limit
       enumerator :: diagnostic_far_estimate     !< the estimated angle of links(1) was off by `value`
       enumerator :: diagnostic_second           !< another assembly of `links` is about as near
+      enumerator :: diagnostic_incomplete       !< a nearer assembly of `links` may exist
       enumerator :: diagnostic_redundant        !< `equations` equations of `pair` or `drive` are redundant
       enumerator :: diagnostic_mobile           !< `links` can move although no drive does
       enumerator :: diagnostic_change           !< at `t` two branches cross; `other`: `links` took the other one

@@ -331,6 +331,8 @@ contains
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_second)
          text = links(m, r)//': '//phrase(say_second, m%polish)
+      case (diagnostic_incomplete)
+         text = links(m, r)//': '//phrase(say_incomplete, m%polish)
       case (diagnostic_begins)
          text = phrase(say_begins, m%polish)
       case (diagnostic_redundant)

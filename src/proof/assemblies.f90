@@ -8,7 +8,7 @@ module assemblies
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
-   use assembly_choice, only: solve_first
+   use first_instant, only: solve_first, places_of, squared_distances
    use blocks, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -20,8 +20,6 @@ module assemblies
 
    !> More are not looked for.
    integer, parameter :: max_assemblies = 1000
-   !> Places count as off by no more than this part of the characteristic length, as where an estimate chooses.
-   real(wp), parameter :: far_place = 0.25_wp
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
    !> A smaller ratio of distances is more than rounding, if the larger one is more than `fine`: estimates as good are
@@ -36,7 +34,7 @@ module assemblies
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
       integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
       logical :: is_proved = .false.            !< near it there is exactly one solution, see `position_proof`
-      real(wp) :: distance = 0.0_wp             !< from the deck's estimate, see `distance_from`
+      real(wp) :: distance = 0.0_wp             !< from the deck's estimate: the root of the sum of `squared_distances`
    end type assembly_t
 
    !> What was found of a block that iterates, in all assemblies of what it builds on. Of its paths: see
@@ -161,24 +159,16 @@ contains
       type(block_engine_t), intent(in) :: e
       type(assemblies_t), intent(inout) :: a
       type(assembly_block_t) :: one
-      integer :: i, k, block_of(0:e%blocks%unknowns), last(0:size(m%links))
+      integer :: i, k, places(2, size(m%links))
 
-      block_of(0) = 0
-      block_of(1:) = e%blocks%block_of
-      last = 0
-      do k = 1, size(e%whole%links)
-         associate (h => e%whole%links(k))
-            last(h%link) = max(block_of(h%orientation), block_of(h%slide), last(h%parent))
-            if (h%root > 0) last(h%link) = max(last(h%link), block_of(h%root), block_of(h%root + 1))
-         end associate
-      end do
+      places = places_of(e)
       do i = 1, size(e%blocks%list)
          if (e%blocks%list(i)%direct) cycle
          one%block = i
          one%unknowns = e%blocks%list(i)%shape%n
          one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
-         one%links = pack([(k, k=1, size(m%links))], block_of(e%orientation_of) == i)
-         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], last(1:) == i)
+         one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
          if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], is_joined(i))
          a%blocks = [a%blocks, one]
       end do
@@ -231,7 +221,7 @@ contains
             cycle
          end if
          if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
-            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, found(i))
+            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, found(i))
             seen(i) = choice
             call count_paths(i, found(i), a)
          end if
@@ -288,24 +278,9 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved
-      one%distance = distance_from(e, one%position)
+      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%span)))
       a%list = [a%list, one]
    end subroutine note_assembly
-
-   !> How far the links at `position` (3, links) are from the deck's estimate: the root of the sum of squares of angles,
-   !> in rad, and of distances, in characteristic lengths.
-   pure real(wp) function distance_from(e, position) result(distance)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: position(:, :)
-      integer :: i
-
-      distance = 0.0_wp
-      do i = 1, size(position, 2)
-         distance = distance + min(sum(((position(:2, i) - e%estimate(:2, i))/e%span)**2), far_place**2) &
-            + without_turns(position(3, i) - e%estimate(3, i))**2
-      end do
-      distance = sqrt(distance)
-   end function distance_from
 
    !> Puts the nearest assembly first; of those that are alike, in the order in which they were found.
    pure subroutine sort(a)
