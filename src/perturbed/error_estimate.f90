@@ -201,6 +201,8 @@ contains
             is_zero = .not. (abs(row%value) > 0.0_wp .or. largest > 0.0_wp)
             if (request%kind == request_link) is_zero(3, 0) = .false.
             if (request%kind == request_pair .and. row%angular) is_zero(1, 0) = .false.
+            ! A coordinate of what moves is zero by chance only.
+            is_zero(:, 0) = is_zero(:, 0) .and. .not. any(abs(row%value(:, 1:)) > 0.0_wp, dim=2)
             ! A rate that is no larger than its error is zero by chance only, and so is then the other one.
             do k = 1, 2
                is_zero(:, k) = is_zero(:, k) .and. .not. (abs(row%value(:, 3 - k)) > 0.0_wp &
