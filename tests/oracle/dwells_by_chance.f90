@@ -20,7 +20,7 @@ program dwells_by_chance
    !> An instant that is flagged so shortly after the dwell may be on either branch: so much are they apart there.
    real(wp), parameter :: either = 4.0e-6_wp
    !> An instant stands on a change point where the drive's value is so near to that; on a dead point at its square.
-   real(wp), parameter :: at_place = 1.0e-7_wp
+   real(wp), parameter :: at_place = 1.0e-7_wp, hardly_off(2) = [1.0e-8_wp, 1.0e-6_wp]
    integer, parameter :: kinds_of = 6, kind_slider = 5, kind_piston = 6
 
    !> A mechanism and its closed form.
@@ -189,7 +189,12 @@ contains
             f = drive_motion(law, instant(s%m, k))
             stands = stands .or. abs(f(1) - s%singular) <= merge(at_place, at_place**2, any(s%kind == [3, 4, kind_slider]))
          end do
-         if (changes) changes = stands .or. (s%goes_on .and. s%m%branch_requests(1)%t < rises(1)%r(1))
+         ! Whether an instant stands there that is hardly off is a matter of rounding.
+         do k = 0, merge(s%m%steps, -1, s%has_card)
+            f = drive_motion(law, instant(s%m, k))
+            if (abs(f(1) - s%singular) > hardly_off(1) .and. abs(f(1) - s%singular) < hardly_off(2)) return
+         end do
+         if (changes) changes = stands .or. (s%goes_on .and. s%m%branch_requests(1)%t <= rises(1)%r(1) + rises(1)%r(2))
          do k = 0, s%m%steps
             t = instant(s%m, k)
             call advance(a, t, q)
