@@ -241,7 +241,6 @@ contains
          stands = arrived .and. f%convergence%singular
          if (arrived .and. .not. stands) call go_on_from(f, to)
       end subroutine go_to
-
    end subroutine go_from_turn_to_turn
 
    !> The value of `law` at the time `t`.

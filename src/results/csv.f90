@@ -139,9 +139,9 @@ contains
          call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
 
          associate (c => s%rows(i)%part)
-            other = row
             ! What tolerances do to the row.
             if (has_tolerances(s%parts(c), request)) then
+               other = row
                spread = spread_in_set(s, i)
                other%known = spread%known
                other%value = worst_case(spread%tolerances, spread%of)
@@ -155,9 +155,9 @@ contains
             end if
             ! The bounds of its errors that are proved, if proofs are asked for.
             if (s%proofs(c)%taken) then
+               other = row
                other%known = merge(row%known, -1, s%proofs(c)%is_proved)
-               if (s%proofs(c)%is_proved) &
-                  other%value = row_bound(s%parts(c), s%motions(c), s%proofs(c)%links, request)
+               if (s%proofs(c)%is_proved) other%value = row_bound(s%parts(c), s%motions(c), s%proofs(c)%links, request)
                call add_other('BOUND')
             end if
             ! The row in each assembly at the first instant.

@@ -187,12 +187,10 @@ contains
          stands = .false.
          do k = 0, merge(s%m%steps, -1, s%has_card)
             f = drive_motion(law, instant(s%m, k))
-            stands = stands .or. abs(f(1) - s%singular) <= merge(at_place, at_place**2, any(s%kind == [3, 4, kind_slider]))
-         end do
-         ! Whether an instant stands there that is hardly off is a matter of rounding.
-         do k = 0, merge(s%m%steps, -1, s%has_card)
-            f = drive_motion(law, instant(s%m, k))
-            if (abs(f(1) - s%singular) > hardly_off(1) .and. abs(f(1) - s%singular) < hardly_off(2)) return
+            off = abs(f(1) - s%singular)
+            ! Whether an instant stands there that is hardly off is a matter of rounding.
+            if (off > hardly_off(1) .and. off < hardly_off(2)) return
+            stands = stands .or. off <= merge(at_place, at_place**2, any(s%kind == [3, 4, kind_slider]))
          end do
          if (changes) changes = stands .or. (s%goes_on .and. s%m%branch_requests(1)%t <= rises(1)%r(1) + rises(1)%r(2))
          do k = 0, s%m%steps
