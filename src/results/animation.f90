@@ -11,7 +11,7 @@ module animation
    use names, only: drive_name
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
-   use shapes, only: shapes_t, shapes_of, pole_name
+   use shapes, only: element_t, shapes_of, pole_name
    use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path
    use picture, only: closes
    use picture_page, only: place_canvas, paths_of, put_flagged, put_ring, put_set_head, put_flags, put_scale, &
@@ -70,7 +70,7 @@ contains
    !> Draws one set, with the bar of the time below.
    subroutine put_film(c)
       type(canvas_t), intent(inout) :: c
-      type(shapes_t) :: list
+      type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
       integer, allocatable :: frame(:)       ! (keys) at equal steps of time
       integer :: frames                      ! without the pause at the end
@@ -89,10 +89,10 @@ contains
       end do
 
       list = shapes_of(c%d, spread(.true., 1, size(c%m%links)), c%scale)
-      is_fixed = [(list%list(i)%link == 0, i=1, list%count)]
-      where (.not. is_fixed) is_fixed = c%m%links(max(1, list%list(:list%count)%link))%ground
-      do i = 1, list%count
-         if (is_fixed(i) .and. list%list(i)%is_below) call put_shape(c, list%list(i))
+      is_fixed = [(list(i)%link == 0, i=1, size(list))]
+      where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
+      do i = 1, size(list)
+         if (is_fixed(i) .and. list(i)%is_below) call put_shape(c, list(i))
       end do
       ! A centrode in a link that moves may run through the pictures of other sets.
       if (size(c%d%poles) > 0) then
@@ -110,8 +110,8 @@ contains
          call put_end(c%o, 'g')
          call put_end(c%o, 'svg')
       end if
-      do i = 1, list%count
-         if (is_fixed(i) .and. .not. list%list(i)%is_below) call put_shape(c, list%list(i))
+      do i = 1, size(list)
+         if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(c, list(i))
       end do
 
       call put_clock()
@@ -143,13 +143,16 @@ contains
          seconds = motion_seconds*real(max(1, size(frame) - 1), wp)/real(max(1, frames - 1), wp)
       end subroutine find_course
 
-      !> Draws the moving links, each with its shapes in its own axes, later ones over earlier ones.
+      !> Draws the moving links, each with its shapes in its own axes and turned about its first corner, later ones over
+      !> earlier ones.
       subroutine put_moving_links()
          type(sorted_t) :: own
          type(canvas_t) :: axes
-         integer :: order(size(c%m%links)), i, k
+         real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
+         logical :: known(size(frame))
+         integer :: order(size(c%m%links)), i, k, last
 
-         own = sorted(list%list(:list%count)%link, size(c%m%links))
+         own = sorted(list%link, size(c%m%links))
          order(c%d%rank) = [(i, i=1, size(order))]
          call make_canvas(c%o, c%d, axes)
          axes%scale = c%scale
@@ -160,42 +163,32 @@ contains
          do i = 1, size(order)
             associate (link => order(i))
                if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
-               if (.not. any([(c%d%frame(frame(k))%known(link), k=1, frames)])) cycle
+               known = [(c%d%frame(frame(k))%known(link), k=1, size(known))]
+               if (.not. any(known)) cycle
                ! It turns about a corner of its own: its origin may be far away.
                axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
-               call begin_link(link)
+               last = frame(findloc(known, .true., dim=1))
+               turned = 0.0_wp
+               do k = 1, size(known)
+                  if (known(k)) last = frame(k)
+                  position = c%d%frame(last)%place(:, link)
+                  place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
+                  turned = turned + without_turns(position(3) - turned)
+                  angle(1, k) = -in_degrees(turned)
+               end do
+               ! Two groups: one moves, one turns.
+               call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
+                  trim(c%m%links(link)%name), place, known, pale)
+               call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+               call put_moving(turn, angle, smooth)
                do k = own%first(link), own%first(link + 1) - 1
-                  call put_shape(axes, list%list(own%member(k)))
+                  call put_shape(axes, list(own%member(k)))
                end do
                call put_end(c%o, 'g')
                call put_end(c%o, 'g')
             end associate
          end do
       end subroutine put_moving_links
-
-      !> Begins the two groups that move and turn with `link`, about its first corner.
-      subroutine begin_link(link)
-         integer, intent(in) :: link
-         real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
-         logical :: known(size(frame))
-         integer :: k, last
-
-         known = [(c%d%frame(frame(k))%known(link), k=1, size(known))]
-         last = frame(findloc(known, .true., dim=1))
-         turned = 0.0_wp
-         do k = 1, size(known)
-            if (known(k)) last = frame(k)
-            position = c%d%frame(last)%place(:, link)
-            place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
-            turned = turned + without_turns(position(3) - turned)
-            angle(1, k) = turned
-         end do
-         angle = -in_degrees(angle)
-         call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
-            trim(c%m%links(link)%name), place, known, pale)
-         call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-         call put_moving(turn, angle, smooth)
-      end subroutine begin_link
 
       !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves
       !> the picture.

@@ -148,7 +148,8 @@ contains
       integer, intent(in) :: every
       type(drawing_t) :: d
       type(sorted_t) :: by_corners
-      integer :: corners(size(m%links)), i, most
+      real(wp) :: angles(2)
+      integer :: corners(size(m%links)), ends(2), i, k, most
 
       d%m = m
       d%every = every
@@ -164,8 +165,25 @@ contains
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
       d%guides%pair = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
+      ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. Where link j is
+      ! ground, or link i has no extent, the same pair is a guide of link j: P slides along the line through Q + h n.
       do i = 1, size(d%guides)
-         d%guides(i) = guide_of(d%guides(i)%pair)
+         associate (g => d%guides(i), pair => m%pairs(d%guides(i)%pair))
+            ends = [pair%point_i, pair%point_j]
+            angles = [pair%alpha, pair%alpha - pair%beta]
+            associate (li => m%points(ends(1))%link, lj => m%points(ends(2))%link)
+               k = merge(2, 1, .not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
+                  (size(d%outlines(li)%corner, 2) == 1 .and. size(d%outlines(lj)%corner, 2) > 1)))
+            end associate
+            g%pivot = ends(k)
+            g%point = ends(3 - k)
+            g%carrier = m%points(g%pivot)%link
+            g%block = m%points(g%point)%link
+            g%angle = angles(k)
+            g%block_angle = angles(3 - k)
+            g%sense = 3 - 2*k
+            g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
+         end associate
       end do
       ! First polygons are drawn, then bars and rods, then a single point, such as a block.
       corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(m%links))]
@@ -181,37 +199,6 @@ contains
       d%stride = max(1, 1 + (m%steps - 1)/(most - 1))
       d%stride_at = max(1, 1 + (instant_count(m) - m%steps - 3)/(picture_candidates - 1))
       allocate (d%frame(count([(is_frame(d, i), i=0, instant_count(m) - 1)])))
-
-   contains
-
-      !> The guide of pair number `i`. It belongs to link i of the pair: Q - P = s e - h n, eq. (9), lies on a line
-      !> through P - h n. Where link j is ground, or link i has no extent, the same pair is a guide of link j: P slides
-      !> along the line through Q + h n.
-      pure function guide_of(i) result(g)
-         integer, intent(in) :: i
-         type(guide_t) :: g
-         integer :: ends(2), k
-         real(wp) :: angles(2)
-
-         associate (pair => m%pairs(i))
-            ends = [pair%point_i, pair%point_j]
-            angles = [pair%alpha, pair%alpha - pair%beta]
-            associate (li => m%points(ends(1))%link, lj => m%points(ends(2))%link)
-               k = 1
-               if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
-                  (size(d%outlines(li)%corner, 2) == 1 .and. size(d%outlines(lj)%corner, 2) > 1))) k = 2
-            end associate
-            g%pair = i
-            g%pivot = ends(k)
-            g%point = ends(3 - k)
-            g%carrier = m%points(g%pivot)%link
-            g%block = m%points(g%point)%link
-            g%angle = angles(k)
-            g%block_angle = angles(3 - k)
-            g%sense = 3 - 2*k
-            g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
-         end associate
-      end function guide_of
    end function new_drawing
 
    !> Whether instant number `k` (0, 1, ...) is a frame: of TIME, or of AT if the deck has no TIME.
@@ -429,13 +416,13 @@ contains
       real(wp), intent(in) :: p(:, :)
       real(wp), allocatable :: corners(:, :)
       integer :: order(size(p, 2)), start, last, next, i, n
-      real(wp) :: extent, side
+      real(wp) :: near, side
 
       if (size(p, 2) == 0) then
          corners = p
          return
       end if
-      extent = maxval(maxval(p, dim=2) - minval(p, dim=2))
+      near = same_place*maxval(maxval(p, dim=2) - minval(p, dim=2))
       start = minloc(p(2, :), dim=1, mask=p(1, :) <= minval(p(1, :)))
       n = 0
       last = start
@@ -444,7 +431,7 @@ contains
          order(n) = last
          next = 0
          do i = 1, size(p, 2)
-            if (is_same_place(p(:, i), p(:, last), extent)) cycle
+            if (all(abs(p(:, i) - p(:, last)) <= near)) cycle
             if (next == 0) then
                next = i
                cycle
@@ -456,16 +443,9 @@ contains
             end associate
          end do
          if (next == 0 .or. n == size(p, 2)) exit
-         if (is_same_place(p(:, next), p(:, start), extent)) exit
+         if (all(abs(p(:, next) - p(:, start)) <= near)) exit
          last = next
       end do
       corners = p(:, order(:n))
    end function hull
-
-   !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.
-   pure logical function is_same_place(p, q, extent)
-      real(wp), intent(in) :: p(2), q(2), extent
-
-      is_same_place = all(abs(p - q) <= same_place*extent)
-   end function is_same_place
 end module drawing

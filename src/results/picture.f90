@@ -10,7 +10,7 @@ module picture
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates, corners_at, &
       distance_to
-   use shapes, only: shapes_t, shapes_of, color_of, link_color, pole_name, half_block, box
+   use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
    use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_line, put_name, cover_of, tie
    use picture_page, only: place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
       put_scale, flag_lines, fitted, width, line_height, centre_radius
@@ -63,8 +63,10 @@ contains
       type(output_t), intent(inout), target :: o
       type(drawing_t), intent(in), target :: drawings(:)
       type(canvas_t) :: page(size(drawings))
-      type(shapes_t) :: all_shapes
+      type(element_t), allocatable :: all_shapes(:)
       integer, allocatable :: list(:)
+      character(:), allocatable :: now, others
+      real(wp) :: y
       integer :: top, best, i, k
 
       top = 0
@@ -100,8 +102,8 @@ contains
                call put_flagged(c, d%flags(k)%last)
             end do
             all_shapes = shapes_of(d, c%s%known, c%scale)
-            do k = 1, all_shapes%count
-               call put_shape(c, all_shapes%list(k))
+            do k = 1, size(all_shapes)
+               call put_shape(c, all_shapes(k))
             end do
             call put_drives(c)
             do k = 1, size(d%poles)
@@ -111,7 +113,19 @@ contains
                call put_points(c)
                call put_links(c)
             end if
-            if (size(d%own) > 0) call put_times(c)
+            ! At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
+            if (size(d%own) > 0) then
+               y = real(c%bottom - 16 - line_height*flag_lines(d), wp)
+               now = 'T = '//fitted(c%s%t)//' '//trim(d%m%time_unit)
+               call put_words(o, [14.0_wp, y], 'start', 'class="time"', now)
+               others = phrase(say_faint, d%m%polish)
+               do k = 1, size(c%faint)
+                  others = others//trim(merge(', ', '  ', k > 1))//' '//fitted(d%frame(c%faint(k))%t)
+               end do
+               if (d%assemblies) others = phrase(say_faint_assemblies, d%m%polish)
+               if (size(c%faint) > 0) &
+                  call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
+            end if
             call put_flags(c)
             call put_scale(c)
             call put_end(o, 'g')
@@ -272,27 +286,6 @@ contains
       call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:' &
          //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"', pole_name(c%m, c%d%poles(i)))
    end subroutine put_centre
-
-   !> At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
-   subroutine put_times(c)
-      type(canvas_t), intent(in) :: c
-      character(:), allocatable :: now, others
-      real(wp) :: y
-      integer :: i
-
-      y = real(c%bottom - 16 - line_height*flag_lines(c%d), wp)
-      now = 'T = '//fitted(c%s%t)//' '//trim(c%m%time_unit)
-      call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
-      others = ''
-      do i = 1, size(c%faint)
-         if (i > 1) others = others//', '
-         others = others//fitted(c%d%frame(c%faint(i))%t)
-      end do
-      others = phrase(say_faint, c%m%polish)//' '//others
-      if (c%d%assemblies) others = phrase(say_faint_assemblies, c%m%polish)
-      if (size(c%faint) > 0) &
-         call put_words(c%o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
-   end subroutine put_times
 
    !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the
    !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT

@@ -4,7 +4,7 @@ module picture_page
    use planar, only: point_of
    use numerals, only: full, whole, fixed, max_decimals
    use drawing, only: drawing_t, snapshot_t, point_place, joint_point, corners_at
-   use shapes, only: element_t, shapes_t, shapes_of, link_color
+   use shapes, only: element_t, shapes_of, link_color
    use canvas, only: canvas_t, to_pixels, add_line
    use svg, only: put_group, put_end, put_line, put_circle, put_words, without_zeros
    use listing, only: words_of_mark
@@ -70,7 +70,7 @@ contains
       !> paths, and centrodes, which may run to infinity, as far as the picture is wider by `centrode_room` on all sides
       !> at most.
       subroutine find_extent()
-         type(shapes_t) :: all_shapes
+         type(element_t), allocatable :: all_shapes(:)
          integer :: i, k
 
          low = huge(1.0_wp)
@@ -78,8 +78,8 @@ contains
          from = -huge(1.0_wp)
          to = huge(1.0_wp)
          all_shapes = shapes_of(c%d, spread(.true., 1, size(c%m%links)), 1.0_wp)
-         do i = 1, all_shapes%count
-            associate (shape => all_shapes%list(i))
+         do i = 1, size(all_shapes)
+            associate (shape => all_shapes(i))
                if (shape%element == 'cut') cycle
                call widen_by_shape(shape, c%s)
                if (shape%is_below) cycle
@@ -107,8 +107,8 @@ contains
          do i = 1, size(c%d%poles)
             if (c%s%has_centre(i)) call widen(c%s%centre(:, i))
          end do
-         do i = 1, all_shapes%count
-            if (all_shapes%list(i)%element == 'cut') call widen_by_shape(all_shapes%list(i), c%s)
+         do i = 1, size(all_shapes)
+            if (all_shapes(i)%element == 'cut') call widen_by_shape(all_shapes(i), c%s)
          end do
       end subroutine find_extent
 

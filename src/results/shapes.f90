@@ -4,11 +4,11 @@ module shapes
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
    use planar, only: direction, quarter_turn, rotated
-   use drawing, only: drawing_t, guide_t, joint_point
+   use drawing, only: drawing_t, guide_t, joint_point, point_place
    use svg, only: attribute
    implicit none
    private
-   public :: element_t, shapes_t, shapes_of, color_of, link_color, pole_name, half_block, box
+   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
@@ -21,11 +21,6 @@ module shapes
       !> Names should not cross its lines, the less the more they weigh; below 0: not cover its box.
       real(wp) :: weight = 0.0_wp
    end type element_t
-
-   type :: shapes_t
-      integer :: count = 0
-      type(element_t), allocatable :: list(:)     !< (count or more) in the order in which they are drawn
-   end type shapes_t
 
    !> Links take these in turn; what belongs to the ground has its own.
    character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a']
@@ -46,20 +41,30 @@ module shapes
 
 contains
 
-   !> Returns the shapes of the drawing `d` at so many pixels a unit of length (`scale`), joints on those of their links
-   !> that are `known` (links).
-   function shapes_of(d, known, scale) result(s)
+   !> Returns the shapes of the drawing `d` at so many pixels a unit of length (`scale`), in the order in which they are
+   !> drawn; joints on those of their links that are `known` (links).
+   function shapes_of(d, known, scale) result(list)
       type(drawing_t), intent(in) :: d
       logical, intent(in) :: known(:)
       real(wp), intent(in) :: scale
-      type(shapes_t) :: s
-      integer, allocatable :: dots(:)
+      type(element_t), allocatable :: list(:)
+      character(:), allocatable :: stroke, name
+      real(wp) :: place(2, 3), u(2), v(2)
       logical :: is_dot(size(d%m%points))
-      integer :: i, k, point
+      integer :: ends(2), used, i, k
 
-      allocate (s%list(64))
+      used = 0
+      allocate (list(64))
+      ! A support under each joint of the ground.
       do i = 1, size(d%m%pairs)
-         if (d%m%pairs(i)%kind == pair_revolute) call add_support(i)
+         if (d%m%pairs(i)%kind /= pair_revolute) cycle
+         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
+         k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
+         if (k == 0) cycle
+         place = spread(point_place(d%m, d%now, ends(k)), 2, 3)
+         call add(0, 'polygon', 'class="support"', place, support, box, trim(d%m%links(d%m%points(ends(k))%link)%name))
+         call add(0, 'hatch', 'class="hatch"', place(:, :2), base, box)
+         call add(0, 'polyline', 'class="support"', place(:, :2), base)
       end do
       do i = 1, size(d%guides)
          if (d%guides(i)%high >= d%guides(i)%low) call add_guide(d%guides(i))
@@ -69,26 +74,47 @@ contains
             call add_centrode(i, k)
          end do
       end do
-      s%list(:s%count)%is_below = .true.
+      list(:used)%is_below = .true.
+
+      ! Links that move, bars and polygons; blocks; joints; points that no pair joins.
       do i = 1, size(d%m%links)
-         if (.not. d%m%links(i)%ground) call add_body(i)
+         if (d%m%links(i)%ground) cycle
+         stroke = 'style="stroke:'//color_of(i)
+         name = trim(d%m%links(i)%name)
+         associate (p => d%outlines(i)%corner)
+            if (size(p, 2) == 2) then
+               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, title=name)
+               call add(i, 'polyline', 'class="core"', p, title=name)
+            else if (size(p, 2) > 2) then
+               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
+                  title=name)
+            end if
+         end associate
       end do
       do i = 1, size(d%guides)
-         call add_block(d%guides(i))
+         associate (g => d%guides(i))
+            u = half_block(1)*direction(g%block_angle)
+            v = half_block(2)*quarter_turn(direction(g%block_angle))
+            call add(g%block, 'polygon', 'class="block" style="fill:' &
+               //merge(ground_block, color_of(g%block), d%m%links(g%block)%ground)//'"', &
+               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
+               trim(d%m%pairs(g%pair)%name))
+         end associate
       end do
       do i = 1, size(d%m%pairs)
-         point = joint_point(d, known, i)
-         if (d%m%pairs(i)%kind == pair_revolute .and. point > 0) call add_disk(point, joint_radius, &
-            'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)))
+         k = joint_point(d, known, i)
+         if (d%m%pairs(i)%kind == pair_revolute .and. k > 0) call add(d%m%points(k)%link, 'circle', &
+            'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)), spread(d%m%points(k)%offset, 2, 1), &
+            weight=box, radius=joint_radius)
       end do
-      ! The points of moving links that no pair joins.
       is_dot = .not. d%m%links(d%m%points%link)%ground
       is_dot([d%m%pairs%point_i, d%m%pairs%point_j]) = .false.
-      dots = pack([(i, i=1, size(is_dot))], is_dot)
-      do i = 1, size(dots)
-         call add_disk(dots(i), point_radius, &
-            'class="point" '//attribute('data-point', trim(d%m%points(dots(i))%name)))
+      do i = 1, size(is_dot)
+         if (is_dot(i)) call add(d%m%points(i)%link, 'circle', &
+            'class="point" '//attribute('data-point', trim(d%m%points(i)%name)), spread(d%m%points(i)%offset, 2, 1), &
+            weight=box, radius=point_radius)
       end do
+      call make_room(used)
 
    contains
 
@@ -99,15 +125,10 @@ contains
          real(wp), intent(in) :: p(:, :)
          real(wp), intent(in), optional :: pixels(:, :), weight, radius
          character(*), intent(in), optional :: title
-         type(shapes_t) :: longer
 
-         if (s%count == size(s%list)) then
-            allocate (longer%list(2*s%count))
-            longer%list(:s%count) = s%list
-            call move_alloc(longer%list, s%list)
-         end if
-         s%count = s%count + 1
-         associate (one => s%list(s%count))
+         if (used == size(list)) call make_room(2*used)
+         used = used + 1
+         associate (one => list(used))
             one%link = link
             one%element = element
             one%attributes = attributes
@@ -121,25 +142,15 @@ contains
          end associate
       end subroutine add
 
-      !> Adds the support under the point of the ground that revolute pair number `i` joins, if there is one.
-      subroutine add_support(i)
-         integer, intent(in) :: i
-         real(wp) :: place(2, 3)
-         integer :: ends(2), k
+      !> Changes the size of `list` to `n`, at least `used`.
+      subroutine make_room(n)
+         integer, intent(in) :: n
+         type(element_t), allocatable :: other(:)
 
-         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-         k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
-         if (k == 0) return
-         associate (point => d%m%points(ends(k)))
-            associate (ground => d%m%links(point%link))
-               place = spread(ground%position(:2) - d%origin + rotated(point%offset, direction(ground%position(3))), &
-                  2, 3)
-               call add(0, 'polygon', 'class="support"', place, support, box, trim(ground%name))
-               call add(0, 'hatch', 'class="hatch"', place(:, :2), base, box)
-               call add(0, 'polyline', 'class="support"', place(:, :2), base)
-            end associate
-         end associate
-      end subroutine add_support
+         allocate (other(n))
+         other(:used) = list(:used)
+         call move_alloc(other, list)
+      end subroutine make_room
 
       !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
       !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
@@ -221,49 +232,6 @@ contains
             first = last + 1
          end do
       end subroutine add_centrode
-
-      !> Adds link number `i`, which moves: a bar, or a polygon.
-      subroutine add_body(i)
-         integer, intent(in) :: i
-         character(:), allocatable :: stroke, name
-
-         stroke = 'style="stroke:'//color_of(i)
-         name = trim(d%m%links(i)%name)
-         associate (p => d%outlines(i)%corner)
-            if (size(p, 2) == 2) then
-               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, title=name)
-               call add(i, 'polyline', 'class="core"', p, title=name)
-            else if (size(p, 2) > 2) then
-               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
-                  title=name)
-            end if
-         end associate
-      end subroutine add_body
-
-      !> Adds the block on the guide `g`.
-      subroutine add_block(g)
-         type(guide_t), intent(in) :: g
-         real(wp) :: u(2), v(2)
-         character(7) :: color
-
-         u = half_block(1)*direction(g%block_angle)
-         v = half_block(2)*quarter_turn(direction(g%block_angle))
-         color = color_of(g%block)
-         if (d%m%links(g%block)%ground) color = ground_block
-         call add(g%block, 'polygon', 'class="block" style="fill:'//color//'"', &
-            spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
-            trim(d%m%pairs(g%pair)%name))
-      end subroutine add_block
-
-      !> Adds a disk at a `point`.
-      subroutine add_disk(point, radius, attributes)
-         integer, intent(in) :: point
-         real(wp), intent(in) :: radius
-         character(*), intent(in) :: attributes
-
-         call add(d%m%points(point)%link, 'circle', attributes, spread(d%m%points(point)%offset, 2, 1), weight=box, &
-            radius=radius)
-      end subroutine add_disk
    end function shapes_of
 
    !> The color of link number `i`.
