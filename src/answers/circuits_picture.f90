@@ -70,8 +70,8 @@ module circuits_picture
 
 contains
 
-   !> Adds the diagrams of the circuits `found` of the set `m`, which `s` analyses, to `page`: a chart for each number that
-   !> PRINT asks for and that varies, not driven.
+   !> Adds the diagrams of the circuits `found` of the set `m`, which `s` analyses, to `page`: a chart for each number
+   !> that PRINT asks for and that varies, not driven.
    subroutine add_to_page(page, m, s, found)
       type(diagrams_t), allocatable, intent(inout) :: page(:)
       type(mechanism_t), intent(in) :: m

@@ -165,8 +165,9 @@ contains
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
       d%guides%pair = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
-      ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. Where link j is
-      ! ground, or link i has no extent, the same pair is a guide of link j: P slides along the line through Q + h n.
+      ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. Where link j
+      ! is ground, or link i has no extent, the same pair is a guide of link j: P slides along the line through
+      ! Q + h n.
       do i = 1, size(d%guides)
          associate (g => d%guides(i), pair => m%pairs(d%guides(i)%pair))
             ends = [pair%point_i, pair%point_j]
