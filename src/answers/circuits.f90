@@ -22,7 +22,7 @@ module circuits
    implicit none
    private
    public :: circuits_t, circuit_branch_t, find_circuits, free_drives, name_limits, number_assemblies, turns_of, &
-      no_sign, max_circuits
+      no_sign
 
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
@@ -31,8 +31,9 @@ module circuits
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
    integer, parameter :: no_sign = 2
-   !> More circuits are not looked for.
-   integer, parameter :: max_circuits = 100
+   !> More circuits are not looked for, nor any after so much work: points times the cube of the coordinates.
+   integer, parameter :: max_circuits = 64
+   real(wp), parameter :: max_work = 1.0e9_wp
 
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t
@@ -64,7 +65,8 @@ module circuits
       integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_held = .false.             !< its other drives let nothing move
       logical :: is_complete = .true.          !< all assemblies of the first instant were known
-      logical :: are_more = .false.            !< than max_circuits
+      logical :: are_more = .false.            !< than are followed
+      real(wp) :: work = 0.0_wp                !< of those that are followed
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)
       type(circuit_branch_t), allocatable :: branches(:)
@@ -222,11 +224,12 @@ contains
       n = size(found%list) + 1
       if (found%are_more .or. p%reach < least_step .or. size_of(p) > found%curve%far .or. signal_received() > 0) return
       if (is_known(found, p)) return
-      found%are_more = n > max_circuits
+      found%are_more = n > max_circuits .or. found%work > max_work
       if (found%are_more) return
       allocate (more(n))
       more(:n - 1) = found%list
       call trace(found%curve, p, more(n))
+      found%work = found%work + size(more(n)%points)*real(found%curve%closure%n, wp)**3
       call move_alloc(more, found%list)
    end subroutine add_circuit
 

@@ -6,7 +6,7 @@ module circuits_table
    use set_analysis, only: set_analysis_t
    use independent, only: set_t
    use circuit_trace, only: end_closed, end_far, end_lost
-   use circuits, only: circuits_t, circuit_branch_t, no_sign, max_circuits, turns_of, find_circuits, free_drives
+   use circuits, only: circuits_t, circuit_branch_t, no_sign, turns_of, find_circuits, free_drives
    use ranges, only: range_t, find_range, side_words, low, high
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -132,7 +132,7 @@ contains
       call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
          //trim(drive_name(m, m%drives(found%drive))))
       if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
-      if (found%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(max_circuits))
+      if (found%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(size(found%list)))
       if (found%is_held) then
          call put(o, '   '//phrase(say_held, m%polish))
       else if (size(found%list) == 0) then
