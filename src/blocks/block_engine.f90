@@ -116,7 +116,6 @@ contains
 
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
-      e%work = new_workspace(e%blocks)
       associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
          e%whole = new_chain(m, t, axes, spread(.true., 1, size(m%links)), e%blocks%orientations, unit)
@@ -186,6 +185,8 @@ contains
       end associate
       e%choice = choice_t()
       e%engine_state_t = s
+      ! Pivots of another variant would leave other roundings.
+      if (.not. allocated(e%work%a) .or. size(e%blocks%patterns) > 0) e%work = new_workspace(e%blocks)
    end subroutine begin_state
 
    !> The estimate that `m` gives.

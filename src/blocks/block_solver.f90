@@ -25,7 +25,7 @@ module block_solver
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations, solve_jacobian
+   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -50,11 +50,13 @@ module block_solver
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
    !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
-   !> and first values; room for the widest block. Nothing in it outlives the solution of a block.
+   !> and first values; room for the widest block. Nothing in it outlives the solution of a block but the pivots of
+   !> sparse Jacobians, which save time and decide nothing.
    type :: workspace_t
       real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
+      type(klu_t), allocatable :: sparse(:)       !< (0:patterns) the factors of sparse Jacobians
    end type workspace_t
 
 contains
@@ -63,13 +65,17 @@ contains
    pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
       type(workspace_t) :: w
-      integer :: entries, rows, length
+      integer :: entries, rows, length, k
 
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
       allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
+      allocate (w%sparse(0:size(b%patterns)))
+      do k = 1, size(b%patterns)
+         w%sparse(k)%pattern = b%patterns(k)
+      end do
    end function new_workspace
 
    !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
@@ -121,7 +127,6 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      type(klu_t), allocatable :: sparse
       real(wp) :: before, size_of
       integer :: info, iteration, second
       logical :: is_closed, is_right
@@ -143,7 +148,7 @@ contains
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
          is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
-         call solve_first_side(b, block%shape, w, sparse, w%r(merge(second, 1, is_closed)), info)
+         call solve_first_side(block%shape, w, w%r(merge(second, 1, is_closed)), info)
          if (is_closed) then
             c%step = 0.0_wp
             c%ended = ended_converged
@@ -168,20 +173,18 @@ contains
             cycle
          end if
          call right_hand_side(b, i, 1, s, w%r(second))
-         call solve_next_side(block%shape, w, sparse, w%r(second))
+         call solve_next_side(block%shape, w, w%r(second))
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
-      call finish(b, i, block, numbers, w, sparse, s, c)
+      call finish(b, i, block, numbers, w, s, c)
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
    !> `info` > 0: it has no inverse. A dense block is solved without the questions that other shapes need.
-   subroutine solve_first_side(b, shape, w, sparse, v, info)
-      type(blocks_t), intent(in) :: b
+   subroutine solve_first_side(shape, w, v, info)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
       real(wp), intent(inout) :: v(*)
       integer, intent(out) :: info
 
@@ -191,32 +194,14 @@ contains
       else if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 0) then
          call solve_dense(shape%n, w%a, w%pivots, v, info)
       else
-         call solve_jacobian(b, shape, w, sparse, v, info)
+         call solve_first(shape, w%a, w%pivots, w%work, v, info, w%sparse(shape%pattern))
       end if
    end subroutine solve_first_side
 
-   !> Factors the Jacobian in w%a and solves for `v` (rows); `info` > 0: it has no inverse. The factors are in w%a or,
-   !> if a block of this `shape` is sparse, in `sparse`.
-   subroutine solve_jacobian(b, shape, w, sparse, v, info)
-      type(blocks_t), intent(in) :: b
-      type(shape_t), intent(in) :: shape
-      type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
-      real(wp), intent(inout) :: v(*)
-      integer, intent(out) :: info
-
-      if (shape%pattern > 0 .and. .not. allocated(sparse)) then
-         allocate (sparse)
-         sparse%pattern = b%patterns(shape%pattern)
-      end if
-      call solve_first(shape, w%a, w%pivots, w%work, v, info, sparse)
-   end subroutine solve_jacobian
-
    !> The same for another right-hand side, from the factors.
-   subroutine solve_next_side(shape, w, sparse, v)
+   subroutine solve_next_side(shape, w, v)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
       real(wp), intent(inout) :: v(*)
 
       if (shape%n == 1 .and. shape%rows == 1) then
@@ -226,7 +211,7 @@ contains
       else if (shape%n == 2 .and. shape%rows == 2) then
          call substitute(w%a, w%pivots(1) == 2, v)
       else
-         call solve_again(shape, w%a, w%pivots, w%work, v, sparse)
+         call solve_again(shape, w%a, w%pivots, w%work, v, w%sparse(shape%pattern))
       end if
    end subroutine solve_next_side
 
@@ -319,13 +304,12 @@ contains
 
    !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
    !> having no inverse.
-   subroutine finish(b, i, block, numbers, w, sparse, s, c)
+   subroutine finish(b, i, block, numbers, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
@@ -333,12 +317,12 @@ contains
       if (.not. is_solved(c)) return
       if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
       if (c%ended == ended_inconsistent) return
-      if (.not. c%singular) call judge(b, i, block, numbers, w, sparse, s, c)
+      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
          call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_next_side(block%shape, w, sparse, w%r)
+         call solve_next_side(block%shape, w, w%r)
          call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
          if (rows == n) return
          rates = largest_rates(b, i, s)
@@ -351,13 +335,12 @@ contains
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
    !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
    !> only where B L change is below 1/2.
-   subroutine judge(b, i, block, numbers, w, sparse, s, c)
+   subroutine judge(b, i, block, numbers, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(in) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: least, largest, inverse, size_of
@@ -370,9 +353,12 @@ contains
          least = abs(w%a(1))
          c%determinant = merge(-1, 1, w%a(1) < 0.0_wp)
       else
-         call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, sparse)
+         call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, w%sparse(block%shape%pattern))
+      end if
+      if (block%shape%pattern > 0) then
          ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-         if (block%shape%pattern > 0) least = min(least, 1.0_wp/inverse_norm(block%shape, w%a, w%work, w%iwork, sparse))
+         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork, w%sparse(block%shape%pattern))
+         least = 1.0_wp/inverse
       end if
       c%min_pivot = 1.0_wp
       c%reciprocal_condition = 1.0_wp
@@ -390,8 +376,8 @@ contains
       end if
       if (is_single) then
          inverse = 1.0_wp/least
-      else
-         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork, sparse)
+      else if (block%shape%pattern == 0) then
+         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork)
       end if
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
@@ -402,22 +388,23 @@ contains
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
       c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, sparse, s)
+      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
    end subroutine judge
 
    !> The same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the rows hold
    !> beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
-   logical function is_beyond_linear(b, i, n, w, sparse, s) result(is)
+   logical function is_beyond_linear(b, i, n, w, s) result(is)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
       type(workspace_t), intent(inout) :: w
-      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(in) :: s
       real(wp) :: off(n), more(n)
 
       associate (shape => b%list(i)%shape)
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off, sparse)
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more, sparse)
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off, &
+            w%sparse(shape%pattern))
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more, &
+            w%sparse(shape%pattern))
       end associate
       is = .not. all(more < largest_error*off)
    end function is_beyond_linear

@@ -5,7 +5,7 @@
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, gecon, geqrf, ormqr, trtrs, trcon, lacn2
-   use klu, only: klu_t, klu_serves, factor, solve, solve_transposed, pivots_of
+   use klu, only: klu_t, klu_serves, factor, solve, solve_transposed, determinant_sign
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
@@ -129,6 +129,7 @@ contains
    end subroutine substitute
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
+   !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
    subroutine pivot_range(s, a, pivots, least, largest, sign_of, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
@@ -141,11 +142,9 @@ contains
 
       sign_of = 1
       if (s%pattern > 0) then
-         associate (all_pivots => pivots_of(k))
-            least = minval(abs(all_pivots))
-            largest = maxval(abs(all_pivots))
-            sign_of = merge(-k%exchanges, k%exchanges, mod(count(all_pivots < 0.0_wp), 2) == 1)
-         end associate
+         least = 0.0_wp
+         largest = maxval(abs(a(:s%entries)))
+         sign_of = determinant_sign(k)
          return
       end if
       least = huge(least)
