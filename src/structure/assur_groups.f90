@@ -159,7 +159,7 @@ contains
       logical :: over(c%incidence%equations), wanted(size(m%links))
       type(incidence_t) :: waits
       type(sorted_t) :: by_group
-      integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:)
+      integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:), below(:)
       integer :: i, e
 
       call match(c%incidence, unknown_of, equation_of)
@@ -183,7 +183,16 @@ contains
          i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
          groups(order(of_link(i)))%driven = .true.
       end do
-      call spread_need()
+      ! What a needed group builds on is needed.
+      do e = size(groups), 1, -1
+         if (.not. groups(e)%needed) cycle
+         do i = 1, size(groups(e)%links)
+            associate (link => groups(e)%links(i))
+               below = order(of_link(waits%unknown(waits%first(link):waits%first(link + 1) - 1)))
+               groups(pack(below, below > 0))%needed = .true.
+            end associate
+         end do
+      end do
 
    contains
 
@@ -213,25 +222,10 @@ contains
             end associate
          end do
       end function numbers
-
-      !> What a needed group builds on is needed.
-      subroutine spread_need()
-         integer :: g, i, n, other
-
-         do g = size(groups), 1, -1
-            if (.not. groups(g)%needed) cycle
-            do i = 1, size(groups(g)%links)
-               do n = waits%first(groups(g)%links(i)), waits%first(groups(g)%links(i) + 1) - 1
-                  other = order(of_link(waits%unknown(n)))
-                  if (other > 0) groups(other)%needed = .true.
-               end do
-            end do
-         end do
-      end subroutine spread_need
    end function groups_of
 
-   !> For which links each link waits; a ground link for none. The links of the part `over` wait for its first
-   !> link, and that for all of them.
+   !> For which links each link waits; a ground link for none. The links of the part `over` wait for one another in a
+   !> ring.
    function waiting(m, c, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: c
@@ -239,7 +233,7 @@ contains
       logical, intent(in) :: over(:)
       type(incidence_t) :: w
       logical :: tied(size(m%links))
-      integer :: u, i, k, link, n
+      integer :: u, i, k, link, before, n
 
       tied = .false.
       do u = 1, size(equation_of)
@@ -250,6 +244,7 @@ contains
       allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(c%incidence%unknown)))
       n = 0
       u = 0
+      before = findloc(tied, .true., dim=1, back=.true.)
       do link = 1, size(m%links)
          w%first(link) = n + 1
          call wait_for(link)
@@ -262,11 +257,8 @@ contains
             end do
          end if
          if (.not. tied(link)) cycle
-         call wait_for(findloc(tied, .true., dim=1))
-         if (any(tied(:link - 1))) cycle
-         do k = link + 1, size(tied)
-            if (tied(k)) call wait_for(k)
-         end do
+         call wait_for(before)
+         before = link
       end do
       w%first(size(m%links) + 1) = n + 1
 

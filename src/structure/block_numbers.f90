@@ -14,8 +14,8 @@ module block_numbers
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes
    use loop_equations, only: equation_numbers_t, put_equation_numbers, fit_equations
-   use blocks, only: blocks_t, block_t, numbers_t, loop_numbers_t, loop_angles, &
-      loop_components, loop_projection
+   use blocks, only: blocks_t, block_t, block_loop_t, numbers_t, loop_numbers_t, loop_angles, loop_components, &
+      loop_projection
    implicit none
    private
    public :: add_numbers, put_numbers, fill_numbers, find_units, lipschitz_of
@@ -103,41 +103,60 @@ contains
 
    !> Divides the numbers `x` of the rows of all blocks of `b`, filled in one unit of length, by units of their own, and
    !> those of its slides.
-   pure subroutine find_units(b, x)
+   subroutine find_units(b, x)
       type(blocks_t), intent(in) :: b
       type(numbers_t), intent(inout) :: x
-      integer :: i, m
+      logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
+      real(wp) :: longest
+      integer :: i, m, k
 
+      met = .false.
       do i = 1, size(b%list)
          associate (first => b%list(i)%first_loop, last => b%list(i)%last_loop)
             do m = first, last
-               call measure(b, m, x)
+               call measure(b%loops(m), x%loops(m))
             end do
-            call make_alike(b%loops(first:last)%kind, x%loops(first:last))
-            call measure_slides(b, i, x)
+
+            ! Loops that are not much smaller than the largest get its unit: the weights of their rows are then the same
+            ! where equations are too many. What is known is from now on in the loop's unit.
+            associate (g => x%loops(first:last), has_lengths => b%loops(first:last)%kind /= loop_angles)
+               longest = maxval(g%unit, mask=has_lengths)
+               where (has_lengths .and. g%unit >= much_smaller*longest) g%unit = longest
+               where (has_lengths) g%coarse = max(1.0_wp, g%coarse/g%unit)
+            end associate
+
+            ! Units of the slides that the block solves for: that of the largest loop in which each stands.
             do m = first, last
-               call divide(b, b%list(i)%first_row, m, x)
+               do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+                  if (b%slides(k)%column == 0) cycle
+                  associate (u => b%slides(k)%unknown, unit => x%loops(m)%unit)
+                     x%unit(u) = merge(max(x%unit(u), unit), unit, met(u))
+                     met(u) = .true.
+                  end associate
+               end do
+            end do
+            do m = first, last
+               call divide(b%list(i)%first_row, b%loops(m), x%loops(m))
             end do
             x%blocks(i)%lipschitz = lipschitz_of(b, x, b%list(i))
             x%blocks(i)%coarse = max(1.0_wp, maxval(x%loops(first:last)%coarse))
          end associate
       end do
-   end subroutine find_units
 
-   !> Unit of loop `m`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
-   !> that turns with an orientation of the block turns the whole loop. Slides that nothing else balances may be long
-   !> where what is known is short, as the way to a point beside the origin.
-   pure subroutine measure(b, m, x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      type(numbers_t), intent(inout) :: x
-      real(wp) :: own, known
-      logical :: slides
-      integer :: k
+   contains
 
-      associate (g => b%loops(m))
+      !> Unit of loop `g`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
+      !> that turns with an orientation of the block turns the whole loop. Slides that nothing else balances may be long
+      !> where what is known is short, as the way to a point beside the origin.
+      subroutine measure(g, loop)
+         type(block_loop_t), intent(in) :: g
+         type(loop_numbers_t), intent(inout) :: loop
+         real(wp) :: own, known
+         logical :: slides
+         integer :: k
+
          if (g%kind == loop_angles) return
-         known = max(largest([x%loops(m)%ground]), largest(x%d(g%first_vector:g%first_own - 1)))
+         known = max(largest([loop%ground]), largest(x%d(g%first_vector:g%first_own - 1)))
          own = largest(x%d(g%first_own:g%last_vector))
          do k = g%first_slide, g%last_slide
             if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
@@ -146,68 +165,24 @@ contains
          if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = much_smaller
          if (own <= 0.0_wp .or. slides .or. (g%kind == loop_projection .and. g%orientation_column > 0)) &
             own = max(own, known)
-         if (own > 0.0_wp) x%loops(m)%unit = power_of_two(own)
-         x%loops(m)%coarse = known
-      end associate
-   end subroutine measure
+         if (own > 0.0_wp) loop%unit = power_of_two(own)
+         loop%coarse = known
+      end subroutine measure
 
-   !> The largest component of `vectors`; 0 of none.
-   pure real(wp) function largest(vectors)
-      type(vector_t), intent(in) :: vectors(:)
+      !> The largest component of `vectors`; 0 of none.
+      pure real(wp) function largest(vectors)
+         type(vector_t), intent(in) :: vectors(:)
 
-      largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
-   end function largest
+         largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
+      end function largest
 
-   !> Loops `g` of one block, of these kinds, that are not much smaller than the largest get its unit: the weights of
-   !> their rows are then the same where equations are too many. What is known is from now on in the loop's unit.
-   pure subroutine make_alike(kind, g)
-      integer, intent(in) :: kind(:)
-      type(loop_numbers_t), intent(inout) :: g(:)
-      real(wp) :: largest
-      integer :: m
+      !> Divides the rows of loop `g`, of the block whose rows begin at `first_row`, by its unit.
+      subroutine divide(first_row, g, own)
+         integer, intent(in) :: first_row
+         type(block_loop_t), intent(in) :: g
+         type(loop_numbers_t), intent(inout) :: own
+         integer :: k, side
 
-      largest = maxval(g%unit, mask=kind /= loop_angles)
-      do m = 1, size(g)
-         if (kind(m) == loop_angles) cycle
-         if (g(m)%unit >= much_smaller*largest) g(m)%unit = largest
-         g(m)%coarse = max(1.0_wp, g(m)%coarse/g(m)%unit)
-      end do
-   end subroutine make_alike
-
-   !> Units of the slides that block `i` solves for: that of the largest loop in which each stands.
-   pure subroutine measure_slides(b, i, x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(numbers_t), intent(inout) :: x
-      integer :: m, k
-      logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
-
-      met = .false.
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            do k = g%first_slide, g%last_slide
-               if (b%slides(k)%column == 0) cycle
-               associate (u => b%slides(k)%unknown)
-                  if (met(u)) then
-                     x%unit(u) = max(x%unit(u), x%loops(m)%unit)
-                  else
-                     x%unit(u) = x%loops(m)%unit
-                  end if
-                  met(u) = .true.
-               end associate
-            end do
-         end associate
-      end do
-   end subroutine measure_slides
-
-   !> Divides the rows of loop `m`, of the block whose rows begin at `first_row`, by its unit.
-   pure subroutine divide(b, first_row, m, x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: first_row, m
-      type(numbers_t), intent(inout) :: x
-      integer :: k, side
-
-      associate (g => b%loops(m), own => x%loops(m))
          ! A slide by itself.
          if (g%kind == loop_angles) own%unit = x%unit(g%orientation)
          do side = 1, 2
@@ -228,8 +203,8 @@ contains
                x%e(k) = vector_t(x%e(k)%x*ratio, x%e(k)%y*ratio)
             end associate
          end do
-      end associate
-   end subroutine divide
+      end subroutine divide
+   end subroutine find_units
 
    !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
    !> with the length of their unit; a projection turns once more with its own orientation.

@@ -159,29 +159,10 @@ contains
 
       do i = size(taken), 1, -1
          needed(i) = taken(i) .or. any(need(b%unknown(b%list(i)%first:b%list(i)%last)))
-         if (needed(i)) call need_known(b, i, need)
+         if (needed(i)) need(known_to(b, i)) = .true.
       end do
       list = pack([(i, i=1, size(taken))], needed)
    end function blocks_that_give
-
-   !> What block `i` needs of the others.
-   pure subroutine need_known(b, i, need)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      logical, intent(inout) :: need(0:)
-      integer :: m
-
-      need(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other) = .true.
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            need(b%body_vectors(g%first_vector:g%last_vector)%orientation) = .true.
-            need(b%slides(g%first_slide:g%last_slide)%orientation) = .true.
-            need(b%slides(g%first_slide:g%last_slide)%unknown) = .true.
-            need(g%orientation) = .true.
-            need(g%less) = .true.
-         end associate
-      end do
-   end subroutine need_known
 
    !> (size(list)) Those of the blocks `list` that a drive moves, itself or through what they build on.
    pure function moving_blocks(b, list) result(moving)
@@ -216,16 +197,27 @@ contains
    pure integer function largest_known(b, i, mark) result(largest)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, mark(0:)
-      integer :: m
 
-      largest = max(0, maxval(mark(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other)))
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            largest = max(largest, mark(g%orientation), mark(g%less), &
-               maxval(mark(b%body_vectors(g%first_vector:g%last_vector)%orientation)), &
-               maxval(mark(b%slides(g%first_slide:g%last_slide)%orientation)), &
-               maxval(mark(b%slides(g%first_slide:g%last_slide)%unknown)))
-         end associate
-      end do
+      largest = maxval([0, mark(known_to(b, i))])
    end function largest_known
+
+   !> The unknowns in the equations of block `i`, of other blocks and its own, some of them more than once; 0 for the
+   !> ground.
+   pure function known_to(b, i) result(list)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      integer, allocatable :: list(:)
+
+      associate (block => b%list(i))
+         list = b%rows(block%first_row:block%last_row)%other
+         if (block%first_loop > block%last_loop) return
+         associate (loops => b%loops(block%first_loop:block%last_loop))
+            associate (v => loops(1)%first_vector, w => loops(size(loops))%last_vector, &
+               s => loops(1)%first_slide, t => loops(size(loops))%last_slide)
+               list = [list, loops%orientation, loops%less, b%body_vectors(v:w)%orientation, b%slides(s:t)%orientation, &
+                  b%slides(s:t)%unknown]
+            end associate
+         end associate
+      end associate
+   end function known_to
 end module blocks

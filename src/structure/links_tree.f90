@@ -60,62 +60,46 @@ contains
 
    contains
 
-      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from
-      !> every link not yet seen.
+      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from every link not yet seen.
       subroutine find_orientations()
-         integer :: last, link
+         integer :: first, last, next, link, far, i, k
          logical :: used(size(m%pairs))
 
-         allocate (t%orientation(size(m%links)), source=-1)
+         t%orientation = merge(0, -1, m%links%ground)
          allocate (t%by_angle(size(m%links)), t%angle_pair(size(m%links)), source=0)
          allocate (t%surplus(0))
          used = .false.
-         last = 0
-         do link = 1, size(m%links)
-            if (.not. m%links(link)%ground) cycle
-            last = last + 1
-            t%by_angle(last) = link
-            t%orientation(link) = 0
-         end do
-         call spread_orientation(1, last, used)
-         do link = 1, size(m%links)
-            if (t%orientation(link) >= 0) cycle
-            t%orientations = t%orientations + 1
-            t%orientation(link) = t%orientations
-            last = last + 1
-            t%by_angle(last) = link
-            call spread_orientation(last, last, used)
-         end do
-      end subroutine find_orientations
-
-      !> Gives the orientation of links number `first` to `last` of the walk to all links that prismatic pairs join to
-      !> them.
-      subroutine spread_orientation(first, last, used)
-         integer, intent(in) :: first
-         integer, intent(inout) :: last
-         logical, intent(inout) :: used(:)
-         integer :: next, link, far, i, k
-
-         next = first
-         do while (next <= last)
-            link = t%by_angle(next)
-            next = next + 1
-            do i = t%near%first(link), t%near%first(link + 1) - 1
-               k = t%near%member(i)
-               if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
-               used(k) = .true.
-               far = other_link(m, k, link)
-               if (t%orientation(far) >= 0) then
-                  t%surplus = [t%surplus, k]
-                  cycle
-               end if
-               t%orientation(far) = t%orientation(link)
-               t%angle_pair(far) = k
+         last = count(m%links%ground)
+         t%by_angle(:last) = pack([(i, i=1, size(m%links))], m%links%ground)
+         next = 1
+         do first = 0, size(m%links)
+            if (first > 0) then
+               if (t%orientation(first) >= 0) cycle
+               t%orientations = t%orientations + 1
+               t%orientation(first) = t%orientations
                last = last + 1
-               t%by_angle(last) = far
+               t%by_angle(last) = first
+            end if
+            do while (next <= last)
+               link = t%by_angle(next)
+               next = next + 1
+               do i = t%near%first(link), t%near%first(link + 1) - 1
+                  k = t%near%member(i)
+                  if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
+                  used(k) = .true.
+                  far = other_link(m, k, link)
+                  if (t%orientation(far) >= 0) then
+                     t%surplus = [t%surplus, k]
+                     cycle
+                  end if
+                  t%orientation(far) = t%orientation(link)
+                  t%angle_pair(far) = k
+                  last = last + 1
+                  t%by_angle(last) = far
+               end do
             end do
          end do
-      end subroutine spread_orientation
+      end subroutine find_orientations
 
       !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
       subroutine grow()

@@ -8,7 +8,7 @@ module loop_equations
    use kinds, only: wp
    use planar, only: without_turns
    use grouping, only: sorted_t, sorted
-   use mechanism, only: mechanism_t, pair_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
+   use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
    use vector_loops, only: search_t, new_search, find_path, find_path_down, vector_loops_t, &
@@ -61,17 +61,35 @@ contains
       type(tree_t), intent(in) :: t
       type(equations_t) :: e
       type(search_t) :: s
-      integer, allocatable :: pairs(:)
-      integer :: i
+      type(sorted_t) :: closing
+      integer :: depth(size(m%pairs)), i, k
 
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
       e%vector_loops = new_vector_loops(m, t)
       s = new_search(m, t)
-      pairs = closing_pairs()
-      do i = 1, size(pairs)
-         call add_pair(pairs(i))
-         ! From now on paths lead through it.
-         s%open(pairs(i)) = m%pairs(pairs(i))%kind == pair_revolute
+
+      ! The pairs that are not in the tree, those near the ground first: each closes a loop.
+      do k = 1, size(m%pairs)
+         associate (links => pair_links(m, m%pairs(k)))
+            depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
+         end associate
+      end do
+      closing = sorted(depth, 1 + 2*maxval(t%depth))
+      do i = 1, size(closing%member)
+         k = closing%member(i)
+         associate (p => m%pairs(k), n => e%vector_loops%count)
+            call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
+            call add_vector_loop(m, t, p%point_i, p%point_j, s, e%vector_loops)
+            if (p%kind == pair_revolute) then
+               call add(equation_t(equation_x, vector_loop=n, pair=k))
+               call add(equation_t(equation_y, vector_loop=n, pair=k))
+               ! From now on paths lead through it.
+               s%open(k) = .true.
+            else
+               call add(equation_t(equation_projection, vector_loop=n, pair=k, &
+                  orientation=t%orientation(m%points(p%point_i)%link)))
+            end if
+         end associate
       end do
       do i = 1, size(t%surplus)
          call add(equation_t(equation_angle, pair=t%surplus(i)))
@@ -81,38 +99,6 @@ contains
       end do
 
    contains
-
-      !> The pairs that are not in the tree, those near the ground first.
-      function closing_pairs() result(pairs)
-         integer, allocatable :: pairs(:)
-         type(sorted_t) :: s
-         integer :: depth(size(m%pairs)), links(2), k
-
-         do k = 1, size(m%pairs)
-            links = pair_links(m, m%pairs(k))
-            ! Those of the tree are left out.
-            depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
-         end do
-         s = sorted(depth, 1 + 2*maxval(t%depth))
-         pairs = s%member
-      end function closing_pairs
-
-      !> The equations of pair `k`, which closes a loop.
-      subroutine add_pair(k)
-         integer, intent(in) :: k
-
-         associate (p => m%pairs(k), n => e%vector_loops%count)
-            call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
-            call add_vector_loop(m, t, p%point_i, p%point_j, s, e%vector_loops)
-            if (p%kind == pair_revolute) then
-               call add(equation_t(equation_x, vector_loop=n, pair=k))
-               call add(equation_t(equation_y, vector_loop=n, pair=k))
-            else
-               call add(equation_t(equation_projection, vector_loop=n, pair=k, &
-                  orientation=t%orientation(m%points(p%point_i)%link)))
-            end if
-         end associate
-      end subroutine add_pair
 
       !> The equation of drive `k`.
       subroutine add_drive(k)
@@ -158,23 +144,15 @@ contains
       real(wp), intent(in) :: length
       type(equations_t), intent(inout) :: e
       type(equation_numbers_t) :: x
-      integer :: i, k
 
       associate (p => e%vector_loops)
          allocate (x%axes%angle_offset(size(m%links)), x%axes%turn(2, size(m%links)))
          allocate (x%sums%body_vector(2, p%vectors), x%sums%largest(p%vectors), x%sums%slide_body_vector(2, p%slides))
          allocate (x%direction(2, e%count), x%constant(e%count), source=0.0_wp)
          call put_equation_numbers(m, t, length, e, x)
-         e%has_vector = [(.not. vanishes(x%sums, k), k=1, p%vectors)]
-         allocate (e%counts(2, p%slides), source=.false.)
+         allocate (e%has_vector(p%vectors), e%counts(2, p%slides))
       end associate
-      do k = 1, e%count
-         associate (q => e%list(k), p => e%vector_loops)
-            do i = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
-               e%counts(side_of(q), i) = has_slide(q, x, k, p%slide_orientation(i), i)
-            end do
-         end associate
-      end do
+      call find_unknowns(e, x, e%has_vector, e%counts)
    end function new_equation_numbers
 
    !> Gives the numbers `x` of the equations `e` those of `m`, whose tree is `t`.
@@ -190,48 +168,34 @@ contains
       call put_axes(m, t, x%axes)
       call put_sums(m, t, x%axes, length, e%vector_loops, x%sums)
       do i = 1, e%count
-         if (e%list(i)%pair > 0) call put_pair(m%pairs(e%list(i)%pair), e%list(i), i)
-         if (e%list(i)%drive > 0) call put_drive(e%list(i), i)
-      end do
-
-   contains
-
-      !> The numbers of equation `q`, number `k`, of the `pair`. An angle is that by which the pair differs from the
-      !> angle that other prismatic pairs give its links; whole turns are no difference.
-      subroutine put_pair(pair, q, k)
-         type(pair_t), intent(in) :: pair
-         type(equation_t), intent(in) :: q
-         integer, intent(in) :: k
-
-         if (q%kind == equation_projection) then
-            x%direction(:, k) = guide(m, x%axes, q%pair, across=.true.)
-            x%constant(k) = pair%offset/length
-         else if (q%kind == equation_angle) then
-            x%constant(k) = without_turns(pair%beta + x%axes%angle_offset(m%points(pair%point_i)%link) &
-               - x%axes%angle_offset(m%points(pair%point_j)%link))
-         end if
-      end subroutine put_pair
-
-      !> The numbers of equation `q`, number `k`, of a drive.
-      subroutine put_drive(q, k)
-         type(equation_t), intent(in) :: q
-         integer, intent(in) :: k
-
-         associate (i => m%drives(q%drive)%subject, j => m%drives(q%drive)%second, angle => x%axes%angle_offset)
-            select case (m%drives(q%drive)%kind)
-            case (drive_angle)
-               x%constant(k) = -angle(i)
-            case (drive_relangle)
-               x%constant(k) = angle(i) - angle(j)
-            case (drive_x)
-               x%constant(k) = -x%axes%origin(1)/length
-            case (drive_y)
-               x%constant(k) = -x%axes%origin(2)/length
-            case default
-               if (q%kind == equation_projection) x%direction(:, k) = -guide(m, x%axes, i, across=.false.)
-            end select
+         associate (q => e%list(i), angle => x%axes%angle_offset, across => e%list(i)%kind == equation_projection)
+            if (q%pair > 0) then
+               associate (pair => m%pairs(q%pair))
+                  ! An angle is that by which the pair differs from the angle that other prismatic pairs give its links;
+                  ! whole turns are no difference.
+                  if (across) x%direction(:, i) = guide(m, x%axes, q%pair, across=.true.)
+                  if (across) x%constant(i) = pair%offset/length
+                  if (q%kind == equation_angle) x%constant(i) = without_turns(pair%beta &
+                     + angle(m%points(pair%point_i)%link) - angle(m%points(pair%point_j)%link))
+               end associate
+            else
+               associate (drive => m%drives(q%drive))
+                  select case (drive%kind)
+                  case (drive_angle)
+                     x%constant(i) = -angle(drive%subject)
+                  case (drive_relangle)
+                     x%constant(i) = angle(drive%subject) - angle(drive%second)
+                  case (drive_x)
+                     x%constant(i) = -x%axes%origin(1)/length
+                  case (drive_y)
+                     x%constant(i) = -x%axes%origin(2)/length
+                  case default
+                     if (across) x%direction(:, i) = -guide(m, x%axes, drive%subject, across=.false.)
+                  end select
+               end associate
+            end if
          end associate
-      end subroutine put_drive
+      end do
    end subroutine put_equation_numbers
 
    !> Whether each of the equations `e` has the unknowns, and each loop the body vectors, with the numbers `x` that it
@@ -239,25 +203,40 @@ contains
    pure logical function fit_equations(e, x) result(fits)
       type(equations_t), intent(in) :: e
       type(equation_numbers_t), intent(in) :: x
+      logical :: has_vector(size(e%has_vector)), counts(2, size(e%counts, 2))
+
+      call find_unknowns(e, x, has_vector, counts)
+      fits = all(has_vector .eqv. e%has_vector) .and. all(counts .eqv. e%counts)
+   end function fit_equations
+
+   !> Which body vectors and slides of `e` are in its equations with the numbers `x`: `has_vector` and `counts` of
+   !> `equations_t`. A slide is not if it is at right angles to what is asked for, in whatever position.
+   pure subroutine find_unknowns(e, x, has_vector, counts)
+      type(equations_t), intent(in) :: e
+      type(equation_numbers_t), intent(in) :: x
+      logical, intent(out) :: has_vector(:), counts(:, :)
+      real(wp) :: asked(2)
       integer :: i, k
 
-      fits = .true.
-      associate (p => e%vector_loops)
-         do i = 1, e%count
-            associate (q => e%list(i))
-               do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
-                  ! What is fixed makes no unknown; but what turns with a projection.
-                  if (p%vector_orientation(k) == 0 .and. .not. (q%kind == equation_projection &
-                     .and. q%orientation > 0)) cycle
-                  fits = fits .and. (vanishes(x%sums, k) .neqv. e%has_vector(k))
-               end do
-               do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
-                  fits = fits .and. (has_slide(q, x, i, p%slide_orientation(k), k) .eqv. e%counts(side_of(q), k))
-               end do
-            end associate
-         end do
-      end associate
-   end function fit_equations
+      has_vector = .true.
+      counts = .false.
+      do i = 1, e%count
+         associate (q => e%list(i), p => e%vector_loops)
+            do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
+               ! What is fixed makes no unknown; but what turns with a projection.
+               if (p%vector_orientation(k) > 0 .or. (q%kind == equation_projection .and. q%orientation > 0)) &
+                  has_vector(k) = .not. vanishes(x%sums, k)
+            end do
+            asked = x%direction(:, i)
+            if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
+            if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
+            do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
+               counts(side_of(q), k) = p%slide_orientation(k) /= q%orientation &
+                  .or. abs(dot_product(asked, x%sums%slide_body_vector(:, k))) > 8.0_wp*epsilon(1.0_wp)
+            end do
+         end associate
+      end do
+   end subroutine find_unknowns
 
    !> Whether `a` and `b` have the same unknowns in the same equations, in the same order: then blocks that are made of
    !> them differ in their numbers alone.
@@ -315,7 +294,7 @@ contains
             case (equation_slide)
                call note(orientations + q%orientation)
             case default
-               call note_vector_loop(q)
+               call note_vector_loop(q, e%vector_loops)
             end select
          end associate
          g%first(i + 1) = n + 1
@@ -323,43 +302,29 @@ contains
 
    contains
 
-      !> Notes the unknowns of the vector loop of equation `q`.
-      subroutine note_vector_loop(q)
+      !> Notes the unknowns of the vector loop of equation `q`, one of `p`.
+      subroutine note_vector_loop(q, p)
          type(equation_t), intent(in) :: q
-         integer :: k
+         type(vector_loops_t), intent(in) :: p
+         integer :: k, constant
          logical :: turns
 
-         associate (p => e%vector_loops)
-            turns = .false.
-            do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
-               if (.not. e%has_vector(k)) cycle
-               call note(p%vector_orientation(k))
-               turns = turns .or. p%vector_orientation(k) /= q%orientation
-            end do
-            do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
-               call note(p%slide_orientation(k))
-               if (e%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
-               turns = turns .or. p%slide_orientation(k) /= q%orientation
-            end do
+         associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
+            s => p%first_slide(q%vector_loop), t => p%first_slide(q%vector_loop + 1) - 1)
+            turns = any(e%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
+               .or. any(p%slide_orientation(s:t) /= q%orientation)
             ! What turns with the direction of the projection has a constant part in it.
-            if (q%kind /= equation_projection) return
-            if (turns) then
-               call note(q%orientation)
-            else if (seen(q%orientation) == i) then
-               call forget(q%orientation)
-            end if
+            constant = merge(q%orientation, 0, q%kind == equation_projection .and. .not. turns)
+            do k = v, w
+               if (e%has_vector(k) .and. p%vector_orientation(k) /= constant) call note(p%vector_orientation(k))
+            end do
+            do k = s, t
+               if (p%slide_orientation(k) /= constant) call note(p%slide_orientation(k))
+               if (e%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
+            end do
+            if (q%kind == equation_projection .and. turns) call note(q%orientation)
          end associate
       end subroutine note_vector_loop
-
-      !> Takes back unknown `u` of the equation at hand.
-      subroutine forget(u)
-         integer, intent(in) :: u
-         integer :: kept
-
-         kept = g%first(i) - 1 + count(g%unknown(g%first(i):n) /= u)
-         g%unknown(g%first(i):kept) = pack(g%unknown(g%first(i):n), g%unknown(g%first(i):n) /= u)
-         n = kept
-      end subroutine forget
 
       !> Notes unknown `u`, once; the ground's orientation is none.
       subroutine note(u)
@@ -373,20 +338,4 @@ contains
          g%unknown(n) = u
       end subroutine note
    end function incidence
-
-   !> Whether slide number `i`, along a guide of `orientation`, is in equation `q`, number `k`: not if it is at right
-   !> angles to what is asked for, in whatever position.
-   pure logical function has_slide(q, x, k, orientation, i)
-      type(equation_t), intent(in) :: q
-      type(equation_numbers_t), intent(in) :: x
-      integer, intent(in) :: k, orientation, i
-      real(wp) :: asked(2)
-
-      has_slide = .true.
-      if (orientation /= q%orientation) return
-      asked = x%direction(:, k)
-      if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
-      if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
-      has_slide = abs(dot_product(asked, x%sums%slide_body_vector(:, i))) > 8.0_wp*epsilon(1.0_wp)
-   end function has_slide
 end module loop_equations

@@ -11,7 +11,7 @@ module structure
    use names, only: drive_name, listed
    use grouping, only: sorted_t, sorted, members, once, joined
    use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, method_newton
-   use matching, only: match, owners, overdetermined, underdetermined
+   use matching, only: incidence_t, match, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
    use links_tree, only: tree_t
@@ -122,44 +122,32 @@ contains
       !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that
       !> are too many with its drives and not without.
       subroutine find_spare_drives()
-         type(mechanism_t) :: pairs_only
-         integer :: part(size(m%links)), owner(size(f%many_drives)), i
-         integer, allocatable :: spare(:), many(:)
+         type(incidence_t) :: of_pairs
+         integer, allocatable :: part(:), part_of(:), alone(:), by_pairs(:), spare(:), many(:)
+         logical :: is_many(size(over))
+         integer :: e
 
-         pairs_only = m
-         pairs_only%drives = m%drives(:0)
+         ! The equations of pairs come before those of drives.
+         of_pairs = c%incidence
+         of_pairs%equations = count(c%pair > 0)
+         call match(of_pairs, alone, by_pairs)
          part = part_of_links(m)
-         spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
-         owner = [(maxval(part(drive_links(m, m%drives(f%many_drives(i))))), i=1, size(owner))]
-         allocate (many(size(spare)), source=0)
-         do i = 1, size(owner)
-            many(owner(i)) = many(owner(i)) + 1
+         part_of = part(c%link_of(c%incidence%unknown(c%incidence%first(:size(over)))))
+         is_many = over .and. c%drive > 0
+         allocate (spare(maxval(part)), many(maxval(part)), source=0)
+         do e = 1, size(over)
+            associate (i => part_of(e))
+               if (unknown_of(e) == 0) spare(i) = spare(i) + 1
+               if (is_many(e)) many(i) = many(i) + 1
+               if (e > size(alone)) cycle
+               if (alone(e) == 0) spare(i) = spare(i) - 1
+            end associate
          end do
          ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
          where (spare >= many) spare = 0
          f%spare_drives = sum(spare)
-         f%spare_among = pack(f%many_drives, spare(owner) > 0)
+         f%spare_among = pack(c%drive, is_many .and. spare(part_of) > 0)
       end subroutine find_spare_drives
-
-      !> (mechanisms) How many equations of each independent mechanism of `m` are too many. `part` (links): its number.
-      function redundant_in_parts(m, part) result(redundant)
-         type(mechanism_t), intent(in) :: m
-         integer, intent(in) :: part(:)
-         integer :: redundant(maxval(part)), i, k
-         type(closure_t) :: c
-         integer, allocatable :: unknown_of(:), equation_of(:)
-
-         c = new_closure(m)
-         call match(c%incidence, unknown_of, equation_of)
-         redundant = 0
-         do i = 1, size(unknown_of)
-            if (unknown_of(i) > 0) cycle
-            k = 0
-            if (c%pair(i) > 0) k = maxval(part(pair_links(m, m%pairs(c%pair(i)))))
-            if (c%drive(i) > 0) k = maxval(part(drive_links(m, m%drives(c%drive(i)))))
-            if (k > 0) redundant(k) = redundant(k) + 1
-         end do
-      end function redundant_in_parts
 
       !> The parts of `m` that still can move: the links of coordinates that have too few equations (`loose`), those in
       !> one part that such coordinates in one equation join. `equation_of` (unknowns): the matching of the closure `c`.
@@ -276,7 +264,7 @@ contains
       end if
       do i = 1, min(size(f%lacking), max_parts)
          associate (one => f%lacking(i))
-            call add_line('E101  SET '//whole(set)//': '//links_listed(m, one%links)//': ' &
+            call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(one%links)%name)//': ' &
                //whole(one%degrees_of_freedom)//' ' &
                //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
                'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', one%degrees_of_freedom == 1)) &
@@ -324,7 +312,7 @@ contains
             is_open(drive_links(m, m%drives(i))) = .false.
          end do
          if (any(is_open)) call add_line('E101  SET '//whole(set)//': NO SECOND PAIR HOLDS ' &
-            //links_listed(m, pack([(i, i=1, size(m%links))], is_open))//': IS ONE FORGOTTEN?')
+            //counted('LINK', pack(m%links%name, is_open))//': IS ONE FORGOTTEN?')
       end subroutine add_open_ends
 
       !> Appends the line on drives that are too many, and what `to_do`.
@@ -343,32 +331,28 @@ contains
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = whole(f%spare_drives)//': '//drives_listed(m, f%spare_among, polish)
+      text = whole(f%spare_drives)//': '//listed(drive_names(m, f%spare_among), polish)
    end function spare_drives_text
 
-   !> The names of the drives with these numbers, as `listed`.
-   function drives_listed(m, numbers, polish) result(text)
+   !> The names of the drives with these numbers.
+   function drive_names(m, numbers) result(names)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: numbers(:)
-      logical, intent(in) :: polish
-      character(:), allocatable :: text
-      character(3*label_length + 2) :: drives(size(numbers))
+      character(3*label_length + 2) :: names(size(numbers))
       integer :: i
 
-      do i = 1, size(drives)
-         drives(i) = drive_name(m, m%drives(numbers(i)))
+      do i = 1, size(numbers)
+         names(i) = drive_name(m, m%drives(numbers(i)))
       end do
-      text = listed(drives, polish)
-   end function drives_listed
+   end function drive_names
 
-   !> LINK A, or LINKS A, B: those with these numbers.
-   function links_listed(m, numbers) result(text)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: numbers(:)
+   !> `word` and the `names` to which it applies: LINK A, or LINKS A, B.
+   function counted(word, names) result(text)
+      character(*), intent(in) :: word, names(:)
       character(:), allocatable :: text
 
-      text = trim(merge('LINK ', 'LINKS', size(numbers) == 1))//' '//listed(m%links(numbers)%name, .false.)
-   end function links_listed
+      text = word//trim(merge(' ', 'S', size(names) == 1))//' '//listed(names, .false.)
+   end function counted
 
    !> A sentence for each of `pairs` that is prismatic and has a point of a JOINT card: which of the two links of the
    !> joint it holds, and which not; '' if there is none. `links`: one of these two, not both, is among them.
@@ -388,29 +372,20 @@ contains
          if (m%pairs(pairs(i))%kind /= pair_prismatic) cycle
          ends = [m%pairs(pairs(i))%point_i, m%pairs(pairs(i))%point_j]
          do k = 1, size(ends)
-            other = other_point(m, ends(k))
-            if (other == 0 .or. told == max_shared) cycle
-            associate (held => m%points(ends(k))%link, free => m%points(other)%link)
-               if (present(links) .and. (among(held) .eqv. among(free))) cycle
-               told = told + 1
-               text = text//'; PAIR '//trim(m%pairs(pairs(i))%name)//' HOLDS LINK '//trim(m%links(held)%name) &
-                  //' AT JOINT '//trim(m%points(other)%name)//', NOT LINK '//trim(m%links(free)%name) &
-                  //': FOR '//trim(m%links(free)%name)//' NAME A POINT OF ITS OWN'
-            end associate
+            ! The other point of a JOINT card stands beside it and has its name.
+            do other = max(1, ends(k) - 1), min(ends(k) + 1, size(m%points))
+               if (other == ends(k) .or. m%points(other)%name /= m%points(ends(k))%name) cycle
+               associate (held => m%points(ends(k))%link, free => m%points(other)%link)
+                  if (told == max_shared .or. (present(links) .and. (among(held) .eqv. among(free)))) cycle
+                  told = told + 1
+                  text = text//'; PAIR '//trim(m%pairs(pairs(i))%name)//' HOLDS LINK '//trim(m%links(held)%name) &
+                     //' AT JOINT '//trim(m%points(other)%name)//', NOT LINK '//trim(m%links(free)%name) &
+                     //': FOR '//trim(m%links(free)%name)//' NAME A POINT OF ITS OWN'
+               end associate
+            end do
          end do
       end do
    end function shared_joints
-
-   !> The other point of the JOINT card of point number `i`, which has the same name; 0: it is that of a POINT card.
-   pure integer function other_point(m, i) result(other)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-
-      do other = max(1, i - 1), min(i + 1, size(m%points))
-         if (other /= i .and. m%points(other)%name == m%points(i)%name) return
-      end do
-      other = 0
-   end function other_point
 
    !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, f) result(text)
@@ -420,13 +395,10 @@ contains
       integer, allocatable :: pairs(:)
 
       pairs = once(f%many_pairs)
-      text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG'
-      if (size(pairs) > 0) text = text//trim(merge(' PAIR ', ' PAIRS', size(pairs) == 1))//' ' &
-         //listed(m%pairs(pairs)%name, .false.)
-      if (size(f%many_drives) == 0) return
-      if (size(pairs) > 0) text = text//' AND'
-      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' ' &
-         //drives_listed(m, f%many_drives, .false.)
+      text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG '
+      if (size(pairs) > 0) text = text//counted('PAIR', m%pairs(pairs)%name)
+      if (size(pairs) > 0 .and. size(f%many_drives) > 0) text = text//' AND '
+      if (size(f%many_drives) > 0) text = text//counted('DRIVE', drive_names(m, f%many_drives))
    end function surplus
 
 end module structure

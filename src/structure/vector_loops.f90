@@ -71,25 +71,40 @@ contains
    end function new_vector_loops
 
    !> Adds to `loops` the one from point `q` to point `p` by the path that `s` found last from p's link to q's; `q` = 0
-   !> is the origin of all places, and the path then leads to the ground or to a root.
+   !> is the origin of all places, and the path then leads to the ground or to a root. Points are added from the origins
+   !> of their links, never the difference of two: the largest that was added tells which sums are rounding alone.
    subroutine add_vector_loop(m, t, p, q, s, loops)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, intent(in) :: p, q
       type(search_t), intent(in) :: s
       type(vector_loops_t), intent(inout) :: loops
-      integer :: link, i
+      integer :: link, i, exit_point, entry_point, sign_of
 
       link = m%points(p)%link
-      call add_point(m, t, p, 1, loops)
+      call add_term([p, 0], t%orientation(link))
       do i = 1, s%length
-         call cross(m, t, s%pairs(i), link, loops)
+         associate (k => m%pairs(s%pairs(i)))
+            ! From a place of `link` through the pair to the link at its other end. Ground links are one: the pair may
+            ! be another one's than that of the ground link reached.
+            sign_of = merge(1, -1, node(m, m%points(k%point_i)%link) == node(m, link))
+            exit_point = merge(k%point_i, k%point_j, sign_of > 0)
+            entry_point = merge(k%point_j, k%point_i, sign_of > 0)
+            call add_term([-exit_point, 0], t%orientation(m%points(exit_point)%link))
+            if (k%kind == pair_prismatic) then
+               ! P - Q = h n - s e, all in the orientation that the two links share.
+               call add_slide(t%orientation(link), t%slide(s%pairs(i)), -sign_of*s%pairs(i))
+               call add_term([0, sign_of*s%pairs(i)], t%orientation(link))
+            end if
+            link = m%points(entry_point)%link
+            call add_term([entry_point, 0], t%orientation(link))
+         end associate
       end do
       if (q > 0) then
-         call add_point(m, t, q, -1, loops)
+         call add_term([-q, 0], t%orientation(m%points(q)%link))
       else if (t%root(link) > 0) then
-         call add_slide(loops, 0, t%slides + 2*t%root(link) - 1, 0)
-         call add_slide(loops, 0, t%slides + 2*t%root(link), 0)
+         call add_slide(0, t%slides + 2*t%root(link) - 1, 0)
+         call add_slide(0, t%slides + 2*t%root(link), 0)
       end if
 
       loops%vector_of(loops%vector_orientation(loops%first_vector(loops%count + 1):loops%vectors)) = 0
@@ -97,89 +112,44 @@ contains
       loops%first_vector(loops%count + 1) = loops%vectors + 1
       loops%first_slide(loops%count + 1) = loops%slides + 1
       loops%first_term(loops%count + 1) = loops%term_count + 1
-   end subroutine add_vector_loop
 
-   !> Goes from a place of `link` through `pair` to the link at its other end, which becomes `link`. Ground
-   !> links are one: the pair may be another one's than that of the ground link reached.
-   subroutine cross(m, t, pair, link, loops)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: pair
-      integer, intent(inout) :: link
-      type(vector_loops_t), intent(inout) :: loops
-      integer :: exit_point, entry_point, sign_of
-      logical :: forward
+   contains
 
-      associate (k => m%pairs(pair))
-         forward = is_on(m, k%point_i, link)
-         exit_point = merge(k%point_i, k%point_j, forward)
-         entry_point = merge(k%point_j, k%point_i, forward)
-         call add_point(m, t, exit_point, -1, loops)
-         if (k%kind == pair_prismatic) then
-            ! P - Q = h n - s e, all in the orientation that the two links share.
-            sign_of = merge(1, -1, forward)
-            call add_slide(loops, t%orientation(link), t%slide(pair), -sign_of*pair)
-            call add_term(loops, [0, sign_of*pair], t%orientation(link))
+      !> Adds a term, which turns with an orientation, to the loop in the making.
+      subroutine add_term(term, orientation)
+         integer, intent(in) :: term(2), orientation
+
+         if (loops%vector_of(orientation) == 0) then
+            loops%vectors = loops%vectors + 1
+            if (loops%vectors > size(loops%vector_orientation)) &
+               loops%vector_orientation = [loops%vector_orientation, loops%vector_orientation]
+            loops%vector_of(orientation) = loops%vectors
+            loops%vector_orientation(loops%vectors) = orientation
          end if
-         link = m%points(entry_point)%link
-         call add_point(m, t, entry_point, 1, loops)
-      end associate
-   end subroutine cross
+         loops%term_count = loops%term_count + 1
+         if (loops%term_count > size(loops%term_vector)) then
+            loops%term_vector = [loops%term_vector, loops%term_vector]
+            loops%terms = reshape([loops%terms, loops%terms], [2, size(loops%term_vector)])
+         end if
+         loops%terms(:, loops%term_count) = term
+         loops%term_vector(loops%term_count) = loops%vector_of(orientation)
+      end subroutine add_term
 
-   !> Point `i` is on `link`, or both belong to the ground.
-   pure logical function is_on(m, i, link)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, link
+      !> Adds slide number `slide` along the guide of `pair`, with its sign, to the loop in the making.
+      subroutine add_slide(orientation, slide, pair)
+         integer, intent(in) :: orientation, slide, pair
 
-      is_on = m%points(i)%link == link .or. (m%links(m%points(i)%link)%ground .and. m%links(link)%ground)
-   end function is_on
-
-   !> Adds point number `i`, from its link's origin, with a sign to the loop in the making. Never the difference of two
-   !> points: the largest that was added tells which sums are rounding alone.
-   subroutine add_point(m, t, i, sign_of, p)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: i, sign_of
-      type(vector_loops_t), intent(inout) :: p
-
-      call add_term(p, [sign_of*i, 0], t%orientation(m%points(i)%link))
-   end subroutine add_point
-
-   !> Adds a term, which turns with an orientation, to the loop in the making.
-   subroutine add_term(p, term, orientation)
-      type(vector_loops_t), intent(inout) :: p
-      integer, intent(in) :: term(2), orientation
-
-      if (p%vector_of(orientation) == 0) then
-         p%vectors = p%vectors + 1
-         if (p%vectors > size(p%vector_orientation)) p%vector_orientation = [p%vector_orientation, p%vector_orientation]
-         p%vector_of(orientation) = p%vectors
-         p%vector_orientation(p%vectors) = orientation
-      end if
-      p%term_count = p%term_count + 1
-      if (p%term_count > size(p%term_vector)) then
-         p%term_vector = [p%term_vector, p%term_vector]
-         p%terms = reshape([p%terms, p%terms], [2, size(p%term_vector)])
-      end if
-      p%terms(:, p%term_count) = term
-      p%term_vector(p%term_count) = p%vector_of(orientation)
-   end subroutine add_term
-
-   !> Adds slide number `slide` along the guide of `pair`, with its sign, to the loop in the making.
-   subroutine add_slide(p, orientation, slide, pair)
-      type(vector_loops_t), intent(inout) :: p
-      integer, intent(in) :: orientation, slide, pair
-
-      p%slides = p%slides + 1
-      if (p%slides > size(p%slide_number)) then
-         p%slide_orientation = [p%slide_orientation, p%slide_orientation]
-         p%slide_number = [p%slide_number, p%slide_number]
-         p%slide_pair = [p%slide_pair, p%slide_pair]
-      end if
-      p%slide_orientation(p%slides) = orientation
-      p%slide_number(p%slides) = slide
-      p%slide_pair(p%slides) = pair
-   end subroutine add_slide
+         loops%slides = loops%slides + 1
+         if (loops%slides > size(loops%slide_number)) then
+            loops%slide_orientation = [loops%slide_orientation, loops%slide_orientation]
+            loops%slide_number = [loops%slide_number, loops%slide_number]
+            loops%slide_pair = [loops%slide_pair, loops%slide_pair]
+         end if
+         loops%slide_orientation(loops%slides) = orientation
+         loops%slide_number(loops%slides) = slide
+         loops%slide_pair(loops%slides) = pair
+      end subroutine add_slide
+   end subroutine add_vector_loop
 
    !> Gives `x`, the sums of the loops `p`, the numbers of `m`, whose links stand in the axes `a` on the tree `t`;
    !> lengths in units of `length`.
@@ -190,7 +160,7 @@ contains
       real(wp), intent(in) :: length
       type(vector_loops_t), intent(in) :: p
       type(loop_sums_t), intent(inout) :: x
-      real(wp) :: places(2)
+      real(wp) :: places(2), place(2), more(2), sign_of
       integer :: i, k
 
       x%body_vector = 0.0_wp
@@ -200,8 +170,18 @@ contains
          ! wherever that stands, and leave no rounding of their size.
          places = 0.0_wp
          do k = p%first_term(i), p%first_term(i + 1) - 1
-            associate (v => p%term_vector(k))
-               call add_term_to(x%body_vector(:, v), x%largest(v), places, p%terms(:, k))
+            associate (v => p%term_vector(k), point => abs(p%terms(1, k)), pair => abs(p%terms(2, k)))
+               sign_of = real(sign(1, sum(p%terms(:, k))), wp)
+               place = 0.0_wp
+               if (point == 0) then
+                  more = sign_of*m%pairs(pair)%offset/length*guide(m, a, pair, across=.true.)
+               else
+                  more = sign_of*offset_in_drawing(m, a, length, point)
+                  if (m%links(m%points(point)%link)%ground) place = ground_place(m, a, length, m%points(point)%link)
+                  places = places + sign_of*place
+               end if
+               x%body_vector(:, v) = x%body_vector(:, v) + more
+               x%largest(v) = max(x%largest(v), maxval(abs(more)), maxval(abs(place)))
             end associate
          end do
          do k = p%first_vector(i), p%first_vector(i + 1) - 1
@@ -216,31 +196,6 @@ contains
             x%slide_body_vector(:, k) = sign(1, p%slide_pair(k))*guide(m, a, abs(p%slide_pair(k)), across=.false.)
          end if
       end do
-
-   contains
-
-      !> Adds the `term` to the sum `d`, of a ground link its place to `places`; `largest`: the largest component added.
-      pure subroutine add_term_to(d, largest, places, term)
-         real(wp), intent(inout) :: d(2), largest, places(2)
-         integer, intent(in) :: term(2)
-         real(wp) :: more(2), place(2), sign_of
-
-         sign_of = real(sign(1, sum(term)), wp)
-         if (term(1) == 0) then
-            more = sign_of*m%pairs(abs(term(2)))%offset/length*guide(m, a, abs(term(2)), across=.true.)
-         else
-            more = sign_of*offset_in_drawing(m, a, length, abs(term(1)))
-            associate (link => m%points(abs(term(1)))%link)
-               if (m%links(link)%ground) then
-                  place = ground_place(m, a, length, link)
-                  places = places + sign_of*place
-                  largest = max(largest, maxval(abs(place)))
-               end if
-            end associate
-         end if
-         d = d + more
-         largest = max(largest, maxval(abs(more)))
-      end subroutine add_term_to
    end subroutine put_sums
 
    !> What is left of body vectors that cancel is rounding: it would put an angle into equations that do not hold it.

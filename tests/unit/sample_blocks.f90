@@ -5,7 +5,7 @@ module sample_blocks
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, numbers_t
-   use block_partition, only: new_blocks
+   use block_structure, only: new_blocks
    use block_numbers, only: add_numbers, fill_numbers, lipschitz_of
    implicit none
    private
