@@ -251,9 +251,7 @@ contains
       character(*), intent(in) :: taken
       logical, intent(out) :: cut(:)
       type(input_errors_t), intent(inout) :: errors
-      type(error_code_t) :: error
-      real(wp) :: value
-      integer :: i, start, finish, border, place
+      integer :: i, start, finish, border
       logical :: numeric, fills
 
       cut = .false.
@@ -268,11 +266,13 @@ contains
          if (fills .and. .not. numeric) cycle
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
          if (fills) then
-            call read_real(card%text(start:finish), value, error, place)
-            if (error%number > 0) cycle
-         else if (is_signed(card%text(start:finish), border + 2 - start, numeric)) then
-            call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
-            cycle
+            if (.not. is_real(card%text(start:finish))) cycle
+         else if (scan(card%text(border + 1:border + 1), '+-') == 1) then
+            ! The sign must not be that of the exponent of a number before it; after a label a number must follow.
+            if (merge(scan(card%text(border:border), 'EeDd') == 0, is_real(card%text(border + 1:finish)), numeric)) then
+               call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
+               cycle
+            end if
          end if
          cut(i:i + 1) = .true.
          call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), whole(border) &
@@ -285,35 +285,22 @@ contains
       type(card_t), intent(in) :: card
       character(*), intent(in) :: text
       character(:), allocatable :: hint
-      type(error_code_t) :: error
-      real(wp) :: value
-      integer :: place
 
       hint = ''
       if (len(text) <= card_fields(real_1)%last - card_fields(real_1)%first + 1 .or. card%text(1:1) == '*') return
-      call read_real(text, value, error, place)
-      if (error%number == 0) hint = ' (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
+      if (is_real(text)) hint = ' (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
    end function longer_number
 
-   !> Whether a number with a sign begins with the character number `first` of `text`. Where what is before it is a
-   !> number too (`numeric`), it must not be the exponent of that; where it is a label, it must be a number without an
-   !> error.
-   pure logical function is_signed(text, first, numeric)
+   !> Whether `text` is a real number without an error.
+   pure logical function is_real(text)
       character(*), intent(in) :: text
-      integer, intent(in) :: first
-      logical, intent(in) :: numeric
       type(error_code_t) :: error
       real(wp) :: value
       integer :: place
 
-      is_signed = scan(text(first:first), '+-') == 1
-      if (numeric) then
-         is_signed = is_signed .and. scan(text(first - 1:first - 1), 'EeDd') == 0
-      else if (is_signed) then
-         call read_real(text(first:), value, error, place)
-         is_signed = error%number == 0
-      end if
-   end function is_signed
+      call read_real(text, value, error, place)
+      is_real = error%number == 0
+   end function is_real
 
    !> Reads the labels and the whole number of `parsed`. `cut`: label fields that have an error already.
    subroutine read_labels(parsed, cut, errors)

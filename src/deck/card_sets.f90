@@ -44,6 +44,15 @@ module card_sets
    integer, parameter :: first_room = 64
    !> Characters of the longest text of a real, on a `*` card.
    integer, parameter :: real_length = wide_fields(1)%last - wide_fields(1)%first + 1
+   !> A form of the cards that define links, points or pairs, and the label that has their name.
+   type :: definer_t
+      integer :: kind = 0, form = 0, label = label_a
+   end type definer_t
+   !> A JOINT card defines two points.
+   type(definer_t), parameter :: definers(*) = [definer_t(request_link, form_ground), definer_t(request_link, form_link), &
+      definer_t(request_point, form_point), definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
+      definer_t(request_pair, form_revolute, label_c), definer_t(request_pair, form_prism, label_c), &
+      definer_t(request_pair, form_cylinder, label_c), definer_t(request_pair, form_joint)]
    !> The errors of names that no link, no point, no pair has.
    type(error_code_t), parameter :: unknown(request_link:request_pair) = [link_unknown, point_unknown, pair_unknown]
 
@@ -66,11 +75,9 @@ contains
    subroutine begin_mechanism(set, number)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: number
-      integer :: k, kind
+      integer :: kind
 
-      do k = 1, set%count
-         set%cards(k)%subject = 0
-      end do
+      if (allocated(set%cards)) set%cards%subject = 0
       do kind = request_link, request_pair
          set%named(kind) = named_t()
       end do
@@ -117,21 +124,17 @@ contains
    !> differ by small letters alone; then all labels stay as they are typed.
    subroutine read_small_letters(set)
       type(card_set_t), intent(inout) :: set
-      integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair, &
-         request_pair, request_point, request_pair]
-      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, &
-         form_cylinder, form_joint, form_joint]
       type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
       integer :: k, i, earlier
 
       if (set%small%number == 0) return
       do k = 1, set%count
          do i = 1, size(definers)
-            if (set%cards(k)%form /= definers(i)) cycle
-            associate (name => set%cards(k)%label(name_field(definers(i))))
-               call put_name(typed(kinds(i)), name, k, earlier)
+            if (set%cards(k)%form /= definers(i)%form) cycle
+            associate (name => set%cards(k)%label(definers(i)%label), kind => definers(i)%kind)
+               call put_name(typed(kind), name, k, earlier)
                if (earlier > 0 .or. name == '') cycle
-               call put_name(upper(kinds(i)), capitals(name), k, earlier)
+               call put_name(upper(kind), capitals(name), k, earlier)
                if (earlier > 0) return
             end associate
          end do
@@ -148,7 +151,7 @@ contains
    pure integer function name_field(form)
       integer, intent(in) :: form
 
-      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism, form_cylinder]))
+      name_field = definers(findloc(definers%form, form, dim=1))%label
    end function name_field
 
    !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
@@ -156,12 +159,12 @@ contains
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: unit
-      integer :: n
+      integer :: kind, n
 
       unit = angle_in_radians(set%mechanism)
-      set%named(request_link)%card = cards_of([form_ground, form_link])
-      set%named(request_point)%card = cards_of([form_point, form_joint, form_joint])
-      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_cylinder, form_joint])
+      do kind = request_link, request_pair
+         set%named(kind)%card = cards_of(pack(definers%form, definers%kind == kind))
+      end do
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
@@ -170,7 +173,7 @@ contains
             set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
                position=card%real*[1.0_wp, 1.0_wp, unit])
          end associate
-         call define_name(request_link, label_a)
+         call define_name(request_link)
       end do
       do n = 1, size(set%mechanism%points)
          call build_point()
@@ -190,7 +193,7 @@ contains
 
          k = set%named(request_point)%card(n)
          if (set%cards(k)%form /= form_joint) then
-            call define_name(request_point, label_a)
+            call define_name(request_point)
             call look_up(set, request_link, k, label_b, link)
             set%mechanism%points(n) = point_t(set%cards(k)%label(label_a), link, set%cards(k)%real(1:2))
             return
@@ -206,7 +209,7 @@ contains
             is_ground = .false.
             if (link > 0) is_ground = m%links(link)%ground
          end associate
-         if (is_first .neqv. is_ground) call define_name(request_point, label_a)
+         if (is_first .neqv. is_ground) call define_name(request_point)
       end subroutine build_point
 
       !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
@@ -234,7 +237,7 @@ contains
          end associate
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
             call add_card_error(set, cylinder_drawing, k, card_name)
-         call define_name(request_pair, name_field(set%cards(k)%form))
+         call define_name(request_pair)
          if (i == 0 .or. j == 0) return
          i = set%mechanism%points(i)%link
          j = set%mechanism%points(j)%link
@@ -266,13 +269,14 @@ contains
          end do
       end function cards_of
 
-      !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A
-      !> name that is there already is an error. Of two JOINT cards the error of their points stands for both.
-      subroutine define_name(kind, i)
-         integer, intent(in) :: kind, i
-         integer :: k, earlier
+      !> Enters the name on the card of link, point or pair (`kind`) number `n`. A name that is there already is an
+      !> error. Of two JOINT cards the error of their points stands for both.
+      subroutine define_name(kind)
+         integer, intent(in) :: kind
+         integer :: k, i, earlier
 
          k = set%named(kind)%card(n)
+         i = name_field(set%cards(k)%form)
          if (set%cards(k)%form /= form_joint) set%cards(k)%subject = n
          if (set%cards(k)%label(i) == '') return
          call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
@@ -381,12 +385,11 @@ contains
       type(parsed_card_t), intent(in) :: card
       integer, intent(in) :: i
       character(real_length) :: text
+      type(card_t) :: on
+      type(field_t) :: at
 
-      if (card%on_star(i)) then
-         text = card%star%text(first_column(card%star, wide_fields(i)):wide_fields(i)%last)
-      else
-         text = card%card%text(first_column(card%card, card_fields(label_c + i)):card_fields(label_c + i)%last)
-      end if
+      call find_field(card, label_c + i, on, at)
+      text = on%text(first_column(on, at):at%last)
    end function real_text
 
    !> Where `field` of `card` stands: `on` the card itself or, a real, on the `*` card below it, `at` these columns.

@@ -52,13 +52,6 @@ module cards
       character(78) :: layout = ''   !< the name of the card, then what each field holds, in its columns
    end type form_t
 
-   !> A card that takes fewer reals if its label A holds a certain word.
-   type :: exception_t
-      integer :: form = 0
-      character(label_length) :: word = ''
-      integer :: reals = 0
-   end type exception_t
-
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
@@ -101,8 +94,6 @@ module cards
    character(*), parameter :: star_layout = '*       R1 OF THE CARD ABOVE    R2                      R3'
    !> Their names, each as one number.
    integer(int64), parameter :: keys(form_end) = transfer(forms%layout(:label_length), [0_int64])
-   type(exception_t), parameter :: exceptions(*) = &
-      [exception_t(form_add, 'POWER', 2), exception_t(form_add, 'TABLE', 2)]
 
 contains
 
@@ -183,15 +174,10 @@ contains
    pure integer function reals_of(form, word) result(taken)
       integer, intent(in) :: form
       character(label_length), intent(in) :: word
-      integer :: i
 
       taken = 0
-      if (form == form_unknown) return
-      taken = forms(form)%reals
-      do i = 1, size(exceptions)
-         if (exceptions(i)%form /= form) cycle
-         if (exceptions(i)%word == capitals(word)) taken = exceptions(i)%reals
-      end do
+      if (form /= form_unknown) taken = forms(form)%reals
+      if (form == form_add .and. any(capitals(word) == ['POWER', 'TABLE'])) taken = 2
    end function reals_of
 
    !> The card name of a form.

@@ -10,7 +10,7 @@ module deck
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
-   use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
+   use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
@@ -217,7 +217,6 @@ contains
       call build_bodies(set)
       call build_drives(set)
       call build_requests(set)
-      call build_centres(set)
       call build_branches(set)
       call build_tolerances(set)
    end subroutine build_mechanism

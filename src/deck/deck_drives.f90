@@ -1,5 +1,5 @@
-!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at
-!> all instants, one of `check_term`.
+!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_terms` and, if it does not exist at
+!> all instants, one of `check_terms`.
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
@@ -200,39 +200,31 @@ contains
 
       call find_instants(set%mechanism, first, last)
       do k = 1, set%count
-         if (set%cards(k)%row == 1) call check_term(set, k, first, last)
+         if (set%cards(k)%row /= 1) cycle
+         associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
+            if (term%kind == term_table) then
+               ! As doubles: in real128 a double may lie outside by its rounding.
+               if (real(first, dp) < real(term%knots(1), dp)) call add_instant_error(table_range, first)
+               if (real(last, dp) > real(term%knots(size(term%knots)), dp)) call add_instant_error(table_range, last)
+            else if (term%kind == term_power) then
+               ! t**p exists for t < 0 if p is a whole number, and with two derivatives at t = 0 if p is 0, 1 or at
+               ! least 2.
+               associate (p => term%r(2))
+                  if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
+                     call add_instant_error(power_negative, first)
+                  else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp) then
+                     if (meets_zero(set%mechanism)) call add_instant_error(power_zero, 0.0_wp)
+                  end if
+               end associate
+               if (is_large(term, first)) call add_instant_error(power_large, first)
+               if (is_large(term, last)) call add_instant_error(power_large, last)
+            end if
+         end associate
       end do
-   end subroutine check_terms
-
-   !> The term that begins with card `k`, at the instants, which lie between `first` and `last`. t**p exists for t < 0
-   !> if p is a whole number, and with two derivatives at t = 0 if p is 0, 1 or at least 2.
-   subroutine check_term(set, k, first, last)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      real(wp), intent(in) :: first, last
-
-      associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
-         select case (term%kind)
-         case (term_table)
-            ! As doubles: in real128 a double may lie outside by its rounding.
-            if (real(first, dp) < real(term%knots(1), dp)) call add_instant_error(table_range, first)
-            if (real(last, dp) > real(term%knots(size(term%knots)), dp)) call add_instant_error(table_range, last)
-         case (term_power)
-            associate (p => term%r(2))
-               if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
-                  call add_instant_error(power_negative, first)
-               else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp) then
-                  if (meets_zero(set%mechanism)) call add_instant_error(power_zero, 0.0_wp)
-               end if
-            end associate
-            if (is_large(term, first)) call add_instant_error(power_large, first)
-            if (is_large(term, last)) call add_instant_error(power_large, last)
-         end select
-      end associate
 
    contains
 
-      !> Adds the error `code` about the instant `t`.
+      !> Adds the error `code` of card `k` about the instant `t`.
       subroutine add_instant_error(code, t)
          type(error_code_t), intent(in) :: code
          real(wp), intent(in) :: t
@@ -241,7 +233,7 @@ contains
          write (text, '(es13.5e3)') t
          call add_card_error(set, code, k, label_a, trim(adjustl(text)))
       end subroutine add_instant_error
-   end subroutine check_term
+   end subroutine check_terms
 
    !> Whether the power `term`, or a derivative of it, comes near the end of the range of reals at the time `t`.
    pure logical function is_large(term, t)

@@ -3,8 +3,8 @@
 module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
-   use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
-      method_words, request_pole, request_curve
+   use mechanism, only: request_t, branch_request_t, request_links, request_link, request_point, request_pair, &
+      request_pole, request_curve, method_newton, method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, form_range, &
@@ -17,7 +17,7 @@ module deck_options
    use independent, only: part_of_links
    implicit none
    private
-   public :: build_options, build_requests, build_branches, build_centres, check_centres
+   public :: build_options, build_requests, build_branches, check_centres
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
@@ -117,8 +117,8 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject
-   !> of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE and
+   !> then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
    !> not ground are printed; in the listing of a drawing its points as well, and of links without axes of their own
    !> the angle alone. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
@@ -126,10 +126,10 @@ contains
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
-      integer :: k, n, i, every
+      integer :: k, n, i, form
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
-         allocate (requests(sum(sizes)))
+         allocate (requests(sum(sizes) + sum(set%number_of([form_pole, form_curve]))))
          allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
@@ -147,9 +147,7 @@ contains
       end if
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
-         every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
-         if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
-         call read_subjects(k, request_t(every=every))
+         call read_subjects(k, request_t(every=every(k)))
       end do
       seen = name_table_t()
       do k = 1, set%count
@@ -164,9 +162,48 @@ contains
                dwell=dwell*[1.0_wp, angle_in_radians(set%mechanism)]))
          end associate
       end do
+      do form = form_pole, form_curve
+         do k = 1, set%count
+            if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
+            call read_centre(k, requests(n + 1))
+            associate (one => requests(n + 1))
+               i = findloc(one%subject > 0 .and. requests(:n)%kind == one%kind .and. requests(:n)%second == one%second &
+                  .and. requests(:n)%subject == one%subject, .true., dim=1)
+            end associate
+            if (i > 0) i = findloc(set%cards(:k)%form == form .and. set%cards(:k)%subject == i, .true., dim=1)
+            if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(i)%card%number))
+            n = n + 1
+            set%cards(k)%subject = n
+         end do
+      end do
       set%mechanism%requests = requests(:n)
 
    contains
+
+      !> At which instants the PRINT, POLE or CURVE card `k` asks for rows: at every such one.
+      integer function every(k)
+         integer, intent(in) :: k
+
+         every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
+         if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
+      end function every
+
+      !> What the POLE or CURVE card `k` asks for. A name that is unknown is number 0.
+      subroutine read_centre(k, one)
+         integer, intent(in) :: k
+         type(request_t), intent(out) :: one
+
+         one%every = every(k)
+         if (set%cards(k)%form == form_pole) then
+            one%kind = request_pole
+            call look_up(set, request_link, k, label_a, one%second)
+            call look_up(set, request_link, k, label_b, one%subject)
+         else
+            one%kind = request_curve
+            call look_up(set, request_point, k, label_a, one%subject)
+            call look_up(set, request_link, k, label_b, one%second)
+         end if
+      end subroutine read_centre
 
       !> Asks what `request` does about the subjects of card `k`.
       subroutine read_subjects(k, request)
@@ -272,73 +309,27 @@ contains
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
 
-   !> Adds to `set`%mechanism%requests what the POLE cards ask for, then what the CURVE cards do, both in their order.
-   !> Unknown names and repeated cards are errors.
-   subroutine build_centres(set)
-      type(card_set_t), intent(inout) :: set
-      type(request_t) :: requests(set%number_of(form_pole) + set%number_of(form_curve))
-      integer :: card_of(size(requests)), form, k, i, n
-
-      if (size(requests) == 0) return
-      n = 0
-      do form = form_pole, form_curve
-         do k = 1, set%count
-            if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
-            n = n + 1
-            card_of(n) = k
-            call read_centre(set, k, requests(n))
-            associate (one => requests(n), earlier => requests(:n - 1))
-               i = findloc(one%subject > 0 .and. earlier%kind == one%kind .and. earlier%subject == one%subject &
-                  .and. earlier%second == one%second, .true., dim=1)
-            end associate
-            if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(card_of(i))%card%number))
-         end do
-      end do
-      if (n > 0) set%mechanism%requests = [set%mechanism%requests, requests(:n)]
-   end subroutine build_centres
-
-   !> What the POLE or CURVE card `k` asks for. A name that is unknown is number 0.
-   subroutine read_centre(set, k, one)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(request_t), intent(out) :: one
-
-      one%every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
-      if (one%every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
-      if (set%cards(k)%form == form_pole) then
-         one%kind = request_pole
-         call look_up(set, request_link, k, label_a, one%second)
-         call look_up(set, request_link, k, label_b, one%subject)
-      else
-         one%kind = request_curve
-         call look_up(set, request_point, k, label_a, one%subject)
-         call look_up(set, request_link, k, label_b, one%second)
-      end if
-   end subroutine read_centre
-
    !> Of a set without errors: each pole and curve must be of two links that move relative to one another, in one
    !> independent mechanism. A link that nothing uses is ground by now.
    subroutine check_centres(set)
       type(card_set_t), intent(inout) :: set
       type(request_t) :: one
       integer, allocatable :: part(:)
-      integer :: k, link, part_i, part_j
+      integer :: k, links(3)
 
-      if (set%number_of(form_pole) + set%number_of(form_curve) == 0) return
+      if (sum(set%number_of([form_pole, form_curve])) == 0) return
       part = part_of_links(set%mechanism)
       do k = 1, set%count
          if (all(set%cards(k)%form /= [form_pole, form_curve])) cycle
-         call read_centre(set, k, one)
-         link = one%subject
-         if (one%kind == request_curve) link = set%mechanism%points(link)%link
-         part_j = part(link)
-         part_i = 0
-         if (one%second > 0) part_i = part(one%second)
-         if (link == one%second .or. max(part_i, part_j) == 0) then
-            call add_card_error(set, centre_still, k, card_name)
-         else if (part_i /= part_j .and. min(part_i, part_j) > 0) then
-            call add_card_error(set, centre_apart, k, label_b)
-         end if
+         one = set%mechanism%requests(set%cards(k)%subject)
+         links = request_links(set%mechanism, one)
+         associate (parts => [part(links(1)), merge(part(links(3)), 0, one%second > 0)])
+            if (links(1) == one%second .or. maxval(parts) == 0) then
+               call add_card_error(set, centre_still, k, card_name)
+            else if (parts(1) /= parts(2) .and. minval(parts) > 0) then
+               call add_card_error(set, centre_apart, k, label_b)
+            end if
+         end associate
       end do
    end subroutine check_centres
 end module deck_options

@@ -21,15 +21,14 @@ module deck_remarks
       form_rise, form_name, reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, &
       form_vary
    use input_errors, only: link_unused
-   use card_reader, only: parsed_card_t
    implicit none
    private
    public :: check_unused, check_angles, check_guides, check_drawing, build_echo
 
    !> The echo: its characters in a line, and in a real.
    integer, parameter :: line_length = 119, real_width = 25
-   !> Column of the first label, column of the first real, and columns from one label to the next.
-   integer, parameter :: label_column = 10, real_column = 37, label_step = 9
+   !> Column of the first real.
+   integer, parameter :: real_column = 37
    character(*), parameter :: default_mark = '(DEFAULT)'
    !> What follows a number that is as drawn, in English and in Polish ("according to the drawing").
    character(*), parameter :: drawn_marks(2) = ['(AS DRAWN)', '(WG RYS.) ']
@@ -47,7 +46,9 @@ module deck_remarks
    !> characteristic length, contradicts nothing.
    real(wp), parameter :: drawn_digits = 1.0e-4_wp
    !> Two joints of a link that are nearer than this part of the greatest distance of joints may be meant as one point.
+   !> That is, some per thousand too small at most, the greatest extent of all joints in one of so many directions.
    real(wp), parameter :: near = 0.03_wp
+   integer, parameter :: directions = 32
    !> So many such remarks are enough. Of more joints than some thousand of one link many are near one another: the
    !> search then ends early.
    integer, parameter :: max_near = 50
@@ -113,12 +114,13 @@ contains
       end do
    end subroutine check_angles
 
-   !> A remark on each guide that the estimate of the links does not meet, but would meet if it were turned by a right
-   !> angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
+   !> A remark on each guide that the estimate of the links does not meet, eq. (9), but would meet if it were turned by a
+   !> right angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
    subroutine check_guides(set)
       type(card_set_t), intent(inout) :: set
-      real(wp) :: length
-      integer :: i
+      type(pair_t) :: turned
+      real(wp) :: length, opening(-1:1)
+      integer :: i, k
 
       if (set%number_of(form_prism) == 0) return
       associate (m => set%mechanism)
@@ -127,90 +129,81 @@ contains
                    i=1, size(m%pairs))])) return
          do i = 1, size(m%pairs)
             if (m%pairs(i)%kind /= pair_prismatic) cycle
-            if (opening(m, m%pairs(i), 0.0_wp) < open*length) cycle
-            if (min(opening(m, m%pairs(i), 0.5_wp*pi), opening(m, m%pairs(i), -0.5_wp*pi)) > closed*length) cycle
+            turned = m%pairs(i)
+            do k = -1, 1
+               turned%alpha = m%pairs(i)%alpha + 0.5_wp*pi*k
+               opening(k) = abs(drawn_opening(m, turned))
+            end do
+            if (opening(0) < open*length .or. min(opening(-1), opening(1)) > closed*length) cycle
             call add_card_remark(set, remark_guide, set%named(request_pair)%card(i), real_1)
          end do
       end associate
    end subroutine check_guides
 
-   !> By how much the prismatic `pair` is open where the deck has its links, eq. (9), its guide turned by `turn` (rad).
-   pure real(wp) function opening(m, pair, turn)
-      type(mechanism_t), intent(in) :: m
-      type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: turn
-      type(pair_t) :: turned
-
-      turned = pair
-      turned%alpha = pair%alpha + turn
-      opening = abs(drawn_opening(m, turned))
-   end function opening
-
    !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
    !> TITLE, and one for each default that no card replaces.
    subroutine build_echo(set)
       type(card_set_t), intent(inout) :: set
-      character(:), allocatable :: text
-      integer :: k, n, i, line(set%count)
+      integer :: k, n, i
 
-      line = 0
-      associate (m => set%mechanism)
-         allocate (m%echo(set%count + set%apart + 4))
-         n = 0
-         i = set%count + 1
-         do k = 1, set%count
-            if (set%cards(k)%form /= form_title) call add_line(set%cards(k))
-            line(k) = n
-            do i = i, set%count + set%apart
-               if (set%cards(i)%below > k) exit
-               call add_line(set%cards(i))
-            end do
+      allocate (set%mechanism%echo(set%count + set%apart + 4))
+      n = 0
+      i = set%count + 1
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_title) call add_card(k)
+         do i = i, set%count + set%apart
+            if (set%cards(i)%below > k) exit
+            call add_card(i)
          end do
-         call add_drawn()
+      end do
+      associate (m => set%mechanism)
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
-         if (any(m%requests%angle_alone)) then
-            ! Of the links printed by default, the angles alone are: of all of them or of some.
-            text = angles
-            if (.not. all(m%requests%angle_alone .or. m%requests%kind /= request_link)) text = angles//of_some
-            m%echo(n)(real_column:real_column + len(text) - 1) = text
-         end if
+         ! Of the links printed by default, the angles alone may be: of all of them or of some.
+         if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = angles &
+            //merge(repeat(' ', len(of_some)), of_some, all(m%requests%angle_alone .or. m%requests%kind /= request_link))
          if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
          m%echo = m%echo(1:n)
       end associate
 
    contains
 
-      !> Adds the line of `card`.
-      subroutine add_line(card)
-         type(parsed_card_t), intent(in) :: card
-
-         n = n + 1
-         call write_card(card, set%mechanism%length_unit, set%mechanism%time_unit, set%mechanism%echo(n))
-      end subroutine add_line
-
-      !> Puts the numbers that are as drawn into the lines of their cards.
-      subroutine add_drawn()
+      !> Adds the line of card `k`. A blank real is as drawn or 0.0, its value; a blank field of AT and of VARY has none.
+      subroutine add_card(k)
+         integer, intent(in) :: k
          type(card_number_t) :: number
          type(unit_t) :: unit
+         character(label_length) :: labels(3)
+         character(real_width) :: text
          real(wp) :: x
-         integer :: k, i, column
+         integer :: i, column
 
-         do k = 1, set%count
-            if (all(set%cards(k)%form /= [form_prism, form_drive])) cycle
-            do i = 1, 3
+         associate (card => set%cards(k), m => set%mechanism)
+            labels = card%label
+            if (any(card%form == [form_print, form_pole, form_curve]) .and. labels(3) == '') labels(3) = '1'
+            if (card%form == form_units) then
+               if (labels(2) == '') labels(2) = 'RAD'
+               labels = [m%length_unit, labels(2), m%time_unit]
+            end if
+            call add_head(card%form, labels)
+            do i = 1, reals_of(card%form, card%label(label_a))
                number = number_on_card(set, k, i)
-               if (.not. is_as_drawn(set%mechanism, number)) cycle
-               x = number_value(set%mechanism, number)
-               unit = number_unit(set%mechanism, number)
-               if (unit%name == 'DEG') x = in_degrees(x)
+               if (is_as_drawn(m, number)) then
+                  x = number_value(m, number)
+                  unit = number_unit(m, number)
+                  if (unit%name == 'DEG') x = in_degrees(x)
+                  text = drawn_text(x)//' '//drawn_marks(merge(2, 1, m%polish))
+               else if (card%given(i)) then
+                  text = real_text(card, i)
+               else
+                  text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
+               end if
                column = real_column + (i - 1)*real_width
-               set%mechanism%echo(line(k))(column:column + real_width - 1) = drawn_text(x)//' ' &
-                  //drawn_marks(merge(2, 1, set%mechanism%polish))
+               set%mechanism%echo(n)(column:column + real_width - 1) = text
             end do
-         end do
-      end subroutine add_drawn
+         end associate
+      end subroutine add_card
 
       !> Adds the line of a form that has no card in the set: its defaults.
       subroutine add_default(form, labels)
@@ -218,51 +211,19 @@ contains
          character(label_length), intent(in) :: labels(3)
 
          if (set%number_of(form) > 0) return
-         n = n + 1
-         call write_head(form, labels, set%mechanism%echo(n))
+         call add_head(form, labels)
          set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
+
+      !> Adds a line with the name and the labels of a card.
+      subroutine add_head(form, labels)
+         integer, intent(in) :: form
+         character(label_length), intent(in) :: labels(3)
+
+         n = n + 1
+         write (set%mechanism%echo(n), '(4(a8, 1x))') form_name(form), labels
+      end subroutine add_head
    end subroutine build_echo
-
-   !> The `line` of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
-   pure subroutine write_card(card, length_unit, time_unit, line)
-      type(parsed_card_t), intent(in) :: card
-      character(label_length), intent(in) :: length_unit, time_unit
-      character(*), intent(out) :: line
-      character(label_length) :: labels(3)
-      integer :: i, column
-
-      labels = card%label
-      if (any(card%form == [form_print, form_pole, form_curve]) .and. labels(3) == '') labels(3) = '1'
-      if (card%form == form_units) then
-         labels(1) = length_unit
-         if (labels(2) == '') labels(2) = 'RAD'
-         labels(3) = time_unit
-      end if
-      call write_head(card%form, labels, line)
-      do i = 1, reals_of(card%form, card%label(label_a))
-         column = real_column + (i - 1)*real_width
-         if (card%given(i)) then
-            line(column:column + real_width - 1) = real_text(card, i)
-         else if (all(card%form /= [form_at, form_vary])) then
-            line(column:column + real_width - 1) = '0.0'
-         end if
-      end do
-   end subroutine write_card
-
-   !> The name and the labels of a card as its `line`, in the columns of the echo.
-   pure subroutine write_head(form, labels, line)
-      integer, intent(in) :: form
-      character(label_length), intent(in) :: labels(3)
-      character(*), intent(out) :: line
-      integer :: i, column
-
-      line = form_name(form)
-      do i = 1, 3
-         column = label_column + (i - 1)*label_step
-         line(column:column + label_length - 1) = labels(i)
-      end do
-   end subroutine write_head
 
    !> Remarks on the drawing of `set`, if it is one. The set has no errors.
    subroutine check_drawing(set)
@@ -320,7 +281,7 @@ contains
    subroutine check_joints(set)
       type(card_set_t), intent(inout) :: set
       type(sorted_t) :: joints_of
-      real(wp), allocatable :: place(:, :)
+      real(wp), allocatable :: place(:, :), along(:)
       logical, allocatable :: is_remarked(:)
       integer, allocatable :: cards(:), list(:)
       real(wp) :: limit, distance
@@ -333,7 +294,11 @@ contains
       end do
       is_remarked = .false.
       found = 0
-      limit = near*extent(place)
+      limit = 0.0_wp
+      do i = 1, directions
+         along = matmul(direction(pi*real(i, wp)/real(directions, wp)), place)
+         limit = max(limit, near*(maxval(along) - minval(along)))
+      end do
       associate (m => set%mechanism)
          joints_of = sorted([m%points(set%cards(cards)%subject)%link, m%points(set%cards(cards)%subject + 1)%link], &
             size(m%links))
@@ -357,21 +322,6 @@ contains
          end do
       end do
    end subroutine check_joints
-
-   !> The greatest distance of the places `p` (2, :), some per thousand too small at most: the greatest extent of all of
-   !> them in one of 32 directions.
-   pure real(wp) function extent(p)
-      real(wp), intent(in) :: p(:, :)
-      integer, parameter :: directions = 32
-      real(wp) :: along(size(p, 2))
-      integer :: i
-
-      extent = 0.0_wp
-      do i = 1, directions
-         along = matmul(direction(acos(-1.0_wp)*real(i, wp)/real(directions, wp)), p)
-         extent = max(extent, maxval(along) - minval(along))
-      end do
-   end function extent
 
    !> The length or angle `x` (rad) of `m`, with its unit.
    pure function with_unit(m, x, is_angle) result(text)
