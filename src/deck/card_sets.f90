@@ -49,8 +49,9 @@ module card_sets
       integer :: kind = 0, form = 0, label = label_a
    end type definer_t
    !> A JOINT card defines two points.
-   type(definer_t), parameter :: definers(*) = [definer_t(request_link, form_ground), definer_t(request_link, form_link), &
-      definer_t(request_point, form_point), definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
+   type(definer_t), parameter :: definers(*) = [ &
+      definer_t(request_link, form_ground), definer_t(request_link, form_link), definer_t(request_point, form_point), &
+      definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
       definer_t(request_pair, form_revolute, label_c), definer_t(request_pair, form_prism, label_c), &
       definer_t(request_pair, form_cylinder, label_c), definer_t(request_pair, form_joint)]
    !> The errors of names that no link, no point, no pair has.

@@ -177,7 +177,8 @@ contains
 
       taken = 0
       if (form /= form_unknown) taken = forms(form)%reals
-      if (form == form_add .and. any(capitals(word) == ['POWER', 'TABLE'])) taken = 2
+      if (form /= form_add) return
+      if (any(capitals(word) == ['POWER', 'TABLE'])) taken = 2
    end function reals_of
 
    !> The card name of a form.

@@ -117,10 +117,10 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE and
-   !> then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
-   !> not ground are printed; in the listing of a drawing its points as well, and of links without axes of their own
-   !> the angle alone. Unknown words and names and repeated cards are errors.
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE
+   !> and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts.
+   !> Without a PRINT card, all links that are not ground are printed; in the listing of a drawing its points as well,
+   !> and of links without axes of their own the angle alone. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form

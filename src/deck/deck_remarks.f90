@@ -114,8 +114,8 @@ contains
       end do
    end subroutine check_angles
 
-   !> A remark on each guide that the estimate of the links does not meet, eq. (9), but would meet if it were turned by a
-   !> right angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
+   !> A remark on each guide that the estimate of the links does not meet, eq. (9), but would meet if it were turned by
+   !> a right angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
    subroutine check_guides(set)
       type(card_set_t), intent(inout) :: set
       type(pair_t) :: turned
@@ -161,15 +161,16 @@ contains
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
          ! Of the links printed by default, the angles alone may be: of all of them or of some.
-         if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = angles &
-            //merge(repeat(' ', len(of_some)), of_some, all(m%requests%angle_alone .or. m%requests%kind /= request_link))
+         if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = &
+            merge(angles//repeat(' ', len(of_some)), angles//of_some, &
+            all(m%requests%angle_alone .or. m%requests%kind /= request_link))
          if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
          m%echo = m%echo(1:n)
       end associate
 
    contains
 
-      !> Adds the line of card `k`. A blank real is as drawn or 0.0, its value; a blank field of AT and of VARY has none.
+      !> Adds the line of card `k`. A blank real is as drawn or 0.0, its value; a blank field of AT or VARY has none.
       subroutine add_card(k)
          integer, intent(in) :: k
          type(card_number_t) :: number
@@ -221,7 +222,7 @@ contains
          character(label_length), intent(in) :: labels(3)
 
          n = n + 1
-         write (set%mechanism%echo(n), '(4(a8, 1x))') form_name(form), labels
+         set%mechanism%echo(n) = form_name(form)//' '//labels(1)//' '//labels(2)//' '//labels(3)
       end subroutine add_head
    end subroutine build_echo
 

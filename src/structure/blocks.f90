@@ -214,8 +214,8 @@ contains
          associate (loops => b%loops(block%first_loop:block%last_loop))
             associate (v => loops(1)%first_vector, w => loops(size(loops))%last_vector, &
                s => loops(1)%first_slide, t => loops(size(loops))%last_slide)
-               list = [list, loops%orientation, loops%less, b%body_vectors(v:w)%orientation, b%slides(s:t)%orientation, &
-                  b%slides(s:t)%unknown]
+               list = [list, loops%orientation, loops%less, b%body_vectors(v:w)%orientation, &
+                  b%slides(s:t)%orientation, b%slides(s:t)%unknown]
             end associate
          end associate
       end associate

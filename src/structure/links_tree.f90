@@ -60,7 +60,8 @@ contains
 
    contains
 
-      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from every link not yet seen.
+      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from every link not yet
+      !> seen.
       subroutine find_orientations()
          integer :: first, last, next, link, far, i, k
          logical :: used(size(m%pairs))
