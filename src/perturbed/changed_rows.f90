@@ -37,6 +37,7 @@ module changed_rows
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
+      real(wp) :: tolerance = 0.0_wp             !< a correction (rad, unit of the block) no larger ends a search
       !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -166,7 +167,7 @@ contains
             if (place%only_driven .and. .not. block%direct) lack = missing_all
             if (lack < missing_all) then
                c = convergence_t()
-               call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
+               call solve_block(e%blocks, i, place%tolerance, e%work, e%state, c)
                place%ratio = max(place%ratio, c%kantorovich_ratio)
                place%change = max(place%change, c%change)
                place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open

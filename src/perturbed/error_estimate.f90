@@ -158,7 +158,8 @@ contains
       end subroutine find_changes
 
       !> The changes of the rows by a rounding of each vector in each loop: those of the calculation, which
-      !> count by themselves where no number of the deck does, as in the rates of links that turn as one.
+      !> count by themselves where no number of the deck does, as in the rates of links that turn as one. One correction
+      !> of the position is made: after more, all sums would be of the same vectors, and would cancel as they should.
       subroutine find_own()
          type(row_t) :: rows(size(found%solved))
          integer :: k, i
@@ -166,6 +167,8 @@ contains
          if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
          found%own = 0.0_wp
          if (s%place%is_singular) return
+         s%place%stays = .true.
+         s%place%tolerance = 1.0_wp
          do k = directions + 1, 2*directions
             call find_changed(k, 1.0_wp, rows)
             do i = 1, size(rows)
@@ -173,6 +176,8 @@ contains
                found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
             end do
          end do
+         s%place%stays = .false.
+         s%place%tolerance = 0.0_wp
       end subroutine find_own
    end subroutine estimate_errors
 
@@ -184,8 +189,7 @@ contains
       type(error_estimate_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp), dimension(3, 0:2) :: error
-      logical, dimension(3, 0:2) :: is_zero
-      integer :: k
+      logical :: is_zero(3, 0:2)
 
       error = 0.0_wp
       associate (request => m%requests(i))
@@ -197,17 +201,12 @@ contains
          if (.not. s%taken) return
          associate (largest => s%changes(:, :, i))
             error = caution*largest + error_of_sums(s%of_sums, request, row)
-            ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
+            ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels. A coordinate of
+            ! what moves is zero by chance only.
             is_zero = .not. (abs(row%value) > 0.0_wp .or. largest > 0.0_wp)
+            is_zero(:, 0) = all(is_zero, dim=2)
             if (request%kind == request_link) is_zero(3, 0) = .false.
             if (request%kind == request_pair .and. row%angular) is_zero(1, 0) = .false.
-            ! A coordinate of what moves is zero by chance only.
-            is_zero(:, 0) = is_zero(:, 0) .and. .not. any(abs(row%value(:, 1:)) > 0.0_wp, dim=2)
-            ! A rate that is no larger than its error is zero by chance only, and so is then the other one.
-            do k = 1, 2
-               is_zero(:, k) = is_zero(:, k) .and. .not. (abs(row%value(:, 3 - k)) > 0.0_wp &
-                  .and. abs(row%value(:, 3 - k)) <= error(:, 3 - k))
-            end do
             where (is_zero) error = 0.0_wp
             where (largest >= nothing_known) error = nothing_known
          end associate
@@ -222,15 +221,16 @@ contains
       type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp) :: error(3, 0:2)
+      real(wp), dimension(3, 0:2) :: error, least
       type(row_t) :: row
 
       row = row_of(m, q, m%requests(i))
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
-      ! What is zero without a sum stays so.
-      where (error > 0.0_wp .and. error < nothing_known) error = max(error, caution*s%own(:, :, i))
-      where (error < nothing_known) error = error + difference(row, s%solved(i))
+      ! A rate that is zero may be a sum that cancels; a coordinate that is zero without a sum stays so.
+      least = max(caution*s%own(:, :, i), error_of_sums(s%of_sums, m%requests(i), row))
+      where (error(:, 0) <= 0.0_wp) least(:, 0) = 0.0_wp
+      where (error < nothing_known) error = max(error, least) + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
 
