@@ -45,8 +45,9 @@ module column_search
 contains
 
    !> Takes `node` of mechanism `c` away, and searches between it and the last one of which all is known. Two parts of
-   !> one length are searched together, if accelerations are simple there: the node between them is the one in the
-   !> middle, and no motion is looked for.
+   !> one length, from an instant with an even number on, are searched together, if accelerations are simple there: the
+   !> node between them is the one in the middle, and no motion is looked for. What is found does so not depend on where
+   !> the search began: lanes begin it at any such instant.
    subroutine add_node(x, s, c, node)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
@@ -64,19 +65,20 @@ contains
          track%filled = track%filled + 1
          call move_node(node, nodes(track%filled))
          if (track%filled == 1) call take_node(x, c, nodes(1), .true.)
-         if (track%filled == 2 .and. .not. x%in_pairs) call search_waiting(x, s, c)
-         if (track%filled < 3) return
-         length = abs(nodes(3)%t - nodes(1)%t)
-         is_searched = length <= track%longest .and. 0.5_wp*length > shortest_of(x, c, nodes(1)%t, nodes(3)%t) &
-            .and. abs(nodes(3)%t - 2.0_wp*nodes(2)%t + nodes(1)%t) <= alike_part*length
-         if (is_searched) call search_three(x, s, c, nodes, .false., is_searched)
-         if (is_searched) then
-            call take_node(x, c, nodes(3), .true.)
-            call move_node(nodes(3), nodes(1))
-            track%filled = 1
-         else
-            call search_waiting(x, s, c)
+         if (track%filled == 3) then
+            length = abs(nodes(3)%t - nodes(1)%t)
+            is_searched = length <= track%longest .and. 0.5_wp*length > shortest_of(x, c, nodes(1)%t, nodes(3)%t) &
+               .and. abs(nodes(3)%t - 2.0_wp*nodes(2)%t + nodes(1)%t) <= alike_part*length
+            if (is_searched) call search_three(x, s, c, nodes, .false., is_searched)
+            if (is_searched) then
+               call take_node(x, c, nodes(3), .true.)
+               call move_node(nodes(3), nodes(1))
+               track%filled = 1
+            else
+               call search_waiting(x, s, c)
+            end if
          end if
+         if (track%filled == 2 .and. .not. nodes(1)%begins_pair) call search_waiting(x, s, c)
       end associate
    end subroutine add_node
 

@@ -46,6 +46,7 @@ contains
          associate (track => x%tracks(c))
             if (size(track%rows) == 0) cycle
             call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
+            now%begins_pair = mod(k, 2) == 0
             known = is_known(now, track%rows)
             is_lost = any(now%known(track%rows) < 0)
             if (k == 0) then
@@ -240,8 +241,8 @@ contains
       end subroutine look_at
    end subroutine note_instant
 
-   !> Takes the instant to which `s` has advanced as one before which nothing is searched for: up to there all numbers
-   !> and their derivatives have gone on as they went at the last instant that was taken.
+   !> Takes the instant to which `s` has advanced, one with an even number, as one before which nothing is searched for:
+   !> up to there all numbers and their derivatives have gone on as they went at the last instant that was taken.
    subroutine note_start(x, s)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
@@ -253,6 +254,7 @@ contains
             if (size(track%rows) == 0) cycle
             track%filled = 0
             call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
+            now%begins_pair = .true.
             track%t = now%t
             track%is_known = is_known(now, track%rows)
             track%is_lost = any(now%known(track%rows) < 0)

@@ -115,7 +115,6 @@ module extremes
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
-      logical :: in_pairs = .true.                     !< two steps may be searched together
    end type extremes_t
 
 contains
@@ -143,8 +142,6 @@ contains
       real(wp) :: length, rate, fastest
       integer :: i, c, k, q, n
 
-      ! Lanes search the steps of a variant one by one; what the engine finds of a variant has the same digits.
-      x%in_pairs = s%variants == 0
       x%asked = rows_asked(s)
       n = size(x%asked)
       x%part = s%rows(x%asked)%part

@@ -44,6 +44,7 @@ module nodes
       real(wp), allocatable :: value(:, :, :)          !< (3, 0:2, asked) in the deck's units and rad
       real(wp), allocatable :: error(:, :, :)          !< of them, where digits of a table could be in doubt
       real(wp) :: growth = 0.0_wp                      !< by which roundings grow where they could not
+      logical :: begins_pair = .false.                 !< it is an instant of TIME with an even number
    end type node_t
 
    !> The limits (3, 0:2, asked) on one side of a time.
@@ -92,6 +93,7 @@ contains
 
       to%t = from%t
       to%growth = from%growth
+      to%begins_pair = from%begins_pair
       call move_alloc(from%known, to%known)
       call move_alloc(from%value, to%value)
       call move_alloc(from%error, to%error)

@@ -1,7 +1,8 @@
 !> Several variants of a set, whose rows alone are asked for, solved together. Each begins by the ordinary engine; lanes
 !> take over after three instants, and go on as long as they can certify each step. The ordinary engine comes in again
-!> where a lane is refused and where a number of EXTREMES may have an extreme: there it goes back two instants, from
-!> the motions that the lane remembers, and searches as ever. What happens in one lane depends on that lane alone.
+!> where a lane is refused and where a number of EXTREMES may have an extreme: there it goes back to an instant with an
+!> even number, from the motions that the lane remembers, and searches as ever. What happens in one lane depends on that
+!> lane alone.
 module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, request_link, request_point, request_pair, instant, instant_count
@@ -265,14 +266,17 @@ contains
       end do
    end subroutine fill_lanes
 
-   !> Instants `first` to `last` of `r`, as far as there are such, by the engine. `starts`: EXTREMES begin anew there.
+   !> Instants `first` to `last` of `r`, as far as there are such, by the engine; one more, if EXTREMES search the last
+   !> step with the next one. `starts`: EXTREMES begin anew there.
    subroutine by_engine(r, first, last, starts)
       type(lane_run_t), intent(inout) :: r
       integer, intent(in) :: first, last
       logical, intent(in) :: starts
-      integer :: k, steps
+      integer :: end, k, steps
 
-      do k = first, min(last, instant_count(r%m) - 1)
+      end = last
+      if (r%asked%extremes_asked) end = end + mod(end, 2)
+      do k = first, min(end, instant_count(r%m) - 1)
          call advance_set(r%s, instant(r%m, k))
          if (k > r%counted) call note_flag(r%row, r%s)
          r%counted = max(k, r%counted)
@@ -318,7 +322,8 @@ contains
       starts = .false.
       first = r%at + 1
       if (r%asked%extremes_asked) then
-         first = max(r%at + 1 - steps, r%noted + 1)
+         first = r%at + 1 - steps
+         first = max(first - mod(first, 2), r%noted + 1)
          starts = first > r%noted + 1
       end if
       last = r%at + 1

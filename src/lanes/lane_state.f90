@@ -15,8 +15,8 @@ module lane_state
    private
    public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, unload_lane, depth
 
-   !> Motions that a lane remembers: the last three are needed to predict, and two before to go back to.
-   integer, parameter :: depth = 5
+   !> Motions that a lane remembers: the last three are needed to predict, and three before to go back to.
+   integer, parameter :: depth = 6
 
    !> The motions of an unknown that are remembered, by slots.
    type :: lane_past_t
@@ -41,7 +41,7 @@ module lane_state
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
-      integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4]    !< of the motions remembered, the latest first
+      integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4, 5]    !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
       type(lane_past_t), allocatable :: past(:)         !< (0:unknowns)
       type(lane_block_t), allocatable :: block(:)
