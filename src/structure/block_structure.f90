@@ -1,15 +1,18 @@
 !> The structure by which the engine of one independent mechanism solves it: its blocks, that is matching and strongly
-!> connected components on which unknown is in which equation, the part with too many equations first.
+!> connected components on which unknown is in which equation, the part with too many equations first. The vector loops
+!> of each block are split into what it knows and what it solves for. Each entry of the block's Jacobian has its place:
+!> in a dense matrix by columns, or in the order of a sparse one's pattern, which is made here.
 module block_structure
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
+   use klu, only: pattern_t, order_columns
+   use block_matrix, only: shape_t, is_sparse_better
    use links_tree, only: tree_t, new_tree
    use matching, only: incidence_t, match, find_blocks, overdetermined
-   use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers, incidence, &
-      equation_angle, equation_slide
-   use blocks, only: blocks_t
-   use block_loops, only: fill_block_loops, find_places
+   use loop_equations, only: equations_t, equation_t, new_equations, equation_numbers_t, new_equation_numbers, &
+      incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
+   use blocks, only: blocks_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, loop_angles
    use block_numbers, only: add_numbers
    implicit none
    private
@@ -108,4 +111,211 @@ contains
       b%equations = e
       call find_places(b)
    end function new_blocks
+
+   !> The loops of all blocks that iterate. `member`: the equations of `e` by
+   !> block.
+   subroutine fill_block_loops(e, member, b)
+      type(equations_t), intent(in) :: e
+      integer, intent(in) :: member(:)
+      type(blocks_t), intent(inout) :: b
+      integer :: column(0:b%unknowns)                 ! of the block being filled; 0: not its own
+      integer :: latest(0:e%vector_loops%count)       ! the block loop made of each vector loop last
+      integer :: loops, body_vectors, slides          ! how many of each have been filled
+      integer :: i, k
+
+      ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
+      body_vectors = 0
+      slides = 0
+      do i = 1, e%count
+         associate (p => e%vector_loops, k => e%list(i)%vector_loop)
+            body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
+            slides = slides + p%first_slide(k + 1) - p%first_slide(k)
+         end associate
+      end do
+      allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
+
+      column = 0
+      latest = 0
+      loops = 0
+      body_vectors = 0
+      slides = 0
+      do i = 1, size(b%list)
+         associate (block => b%list(i))
+            block%first_loop = loops + 1
+            if (.not. block%direct) then
+               do k = block%first, block%last
+                  column(b%unknown(k)) = k - block%first + 1
+               end do
+               do k = block%first_row, block%last_row
+                  call add_row(e%list(member(k)), k - block%first_row + 1, block%first_loop)
+               end do
+               column(b%unknown(block%first:block%last)) = 0
+            end if
+            block%last_loop = loops
+         end associate
+      end do
+      b%loops = b%loops(:loops)
+      b%body_vectors = b%body_vectors(:body_vectors)
+      b%slides = b%slides(:slides)
+
+   contains
+
+      !> Row `row`, in a loop of its own unless x and y of one vector loop share it.
+      subroutine add_row(equation, row, first_loop)
+         type(equation_t), intent(in) :: equation
+         integer, intent(in) :: row, first_loop
+
+         if (any(equation%kind == [equation_x, equation_y])) then
+            if (latest(equation%vector_loop) < first_loop) then
+               call add_block_loop(equation%vector_loop, loop_components)
+               latest(equation%vector_loop) = loops
+            end if
+            associate (block_loop => b%loops(latest(equation%vector_loop)))
+               if (equation%kind == equation_x) block_loop%row_x = row
+               if (equation%kind == equation_y) block_loop%row_y = row
+            end associate
+            return
+         end if
+         call add_block_loop(equation%vector_loop, merge(loop_projection, loop_angles, &
+            equation%kind == equation_projection))
+         associate (block_loop => b%loops(loops))
+            block_loop%row_x = row
+            block_loop%orientation = equation%orientation
+            if (equation%kind == equation_slide) block_loop%orientation = b%orientations + equation%orientation
+            block_loop%orientation_column = column(block_loop%orientation)
+            block_loop%less = equation%less
+            block_loop%less_column = column(equation%less)
+         end associate
+      end subroutine add_row
+
+      !> Vector loop `i`, 0 for one without vectors, as the block with these columns has it: first the body vectors that
+      !> it knows, then those of its own orientations.
+      subroutine add_block_loop(i, kind)
+         integer, intent(in) :: i, kind
+         integer :: k, side
+
+         loops = loops + 1
+         associate (block_loop => b%loops(loops), p => e%vector_loops)
+            block_loop%kind = kind
+            block_loop%vector_loop = i
+            block_loop%first_vector = body_vectors + 1
+            do side = 0, 1
+               if (side == 1) block_loop%first_own = body_vectors + 1
+               do k = p%first_vector(i), p%first_vector(i + 1) - 1
+                  if (.not. e%has_vector(k) .or. p%vector_orientation(k) == 0) cycle
+                  if (min(column(p%vector_orientation(k)), 1) /= side) cycle
+                  body_vectors = body_vectors + 1
+                  b%body_vectors(body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &
+                     column=column(p%vector_orientation(k)), source=k)
+               end do
+            end do
+            block_loop%last_vector = body_vectors
+            block_loop%first_slide = slides + 1
+            do k = p%first_slide(i), p%first_slide(i + 1) - 1
+               slides = slides + 1
+               b%slides(slides) = slide_t(orientation=p%slide_orientation(k), &
+                  orientation_column=column(p%slide_orientation(k)), &
+                  unknown=b%orientations + p%slide_number(k), column=column(b%orientations + p%slide_number(k)), &
+                  source=k)
+            end do
+            block_loop%last_slide = slides
+         end associate
+      end subroutine add_block_loop
+   end subroutine fill_block_loops
+
+   !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.
+   subroutine find_places(b)
+      type(blocks_t), intent(inout) :: b
+      type(pattern_t) :: pattern
+      ! Entries come row by row: of each column the row noted latest and where its last entry stands.
+      integer, allocatable :: latest(:), last(:)
+      integer :: i, c, patterns, rows                 ! rows: of a dense matrix; 0: sparse
+
+      allocate (b%patterns(count(may_be_sparse(b%list%shape))))
+      patterns = 0
+      do i = 1, size(b%list)
+         if (b%list(i)%direct) cycle
+         associate (shape => b%list(i)%shape)
+            if (may_be_sparse(shape)) then
+               ! The entries of the columns are counted first, then filled in.
+               rows = 0
+               pattern = pattern_t()
+               latest = spread(0, 1, shape%n)
+               last = latest
+               call place_entries(b%list(i))
+               pattern%first = [0, last]
+               do c = 1, shape%n
+                  pattern%first(c + 1) = pattern%first(c) + last(c)
+               end do
+               allocate (pattern%row(pattern%first(shape%n + 1)))
+               latest = 0
+               last = pattern%first(:shape%n)
+               call place_entries(b%list(i))
+               if (is_sparse_better(shape%n, size(pattern%row))) then
+                  call order_columns(pattern)
+                  patterns = patterns + 1
+                  b%patterns(patterns) = pattern
+                  shape%pattern = patterns
+                  shape%entries = size(pattern%row)
+                  cycle
+               end if
+            end if
+            rows = shape%rows
+            call place_entries(b%list(i))
+         end associate
+      end do
+      b%patterns = b%patterns(:patterns)
+
+   contains
+
+      !> The places of all entries of `block`, row by row.
+      subroutine place_entries(block)
+         type(block_t), intent(in) :: block
+         integer :: m, k, side, row
+
+         do m = block%first_loop, block%last_loop
+            associate (g => b%loops(m))
+               do side = 1, 2
+                  row = merge(g%row_x, g%row_y, side == 1)
+                  if (row == 0) cycle
+                  do k = g%first_own, g%last_vector
+                     call place(row, b%body_vectors(k)%column, b%body_vectors(k)%at(side))
+                  end do
+                  do k = g%first_slide, g%last_slide
+                     call place(row, b%slides(k)%column, b%slides(k)%at(side))
+                     call place(row, b%slides(k)%orientation_column, b%slides(k)%orientation_at(side))
+                  end do
+               end do
+               call place(g%row_x, g%orientation_column, g%orientation_at)
+               call place(g%row_x, g%less_column, g%less_at)
+            end associate
+         end do
+      end subroutine place_entries
+
+      !> The place `at` of entry (row, column), 0 where there is no column.
+      subroutine place(row, column, at)
+         integer, intent(in) :: row, column
+         integer, intent(out) :: at
+
+         at = 0
+         if (column == 0) return
+         if (rows > 0) then
+            at = row + (column - 1)*rows
+            return
+         end if
+         if (latest(column) /= row) then
+            latest(column) = row
+            last(column) = last(column) + 1
+            if (allocated(pattern%row)) pattern%row(last(column)) = row - 1
+         end if
+         at = last(column)
+      end subroutine place
+   end subroutine find_places
+
+   !> A square Jacobian of so many rows may be better sparse, if it has few entries.
+   elemental logical function may_be_sparse(shape)
+      type(shape_t), intent(in) :: shape
+
+      may_be_sparse = shape%rows == shape%n .and. is_sparse_better(shape%n, 0)
+   end function may_be_sparse
 end module block_structure
