@@ -7,8 +7,8 @@ module deck_remarks
    use planar, only: pi, in_degrees, without_turns, direction
    use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_drawn_value, &
       remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, mechanism_t, pair_t, card_number_t, &
-      drive_links, pair_links, used_points, instant, pair_prismatic, drive_words, driven_kinds, drive_angle, &
-      drive_relangle, request_link, request_point, request_pair, request_curve, method_words, method_newton
+      drive_links, pair_links, used_points, instant, pair_prismatic, driven_kinds, request_link, request_point, &
+      request_pair, request_curve, method_words, method_newton
    use drives, only: new_law, drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_drive
@@ -17,9 +17,8 @@ module deck_remarks
    use numerals, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
-   use cards, only: label_a, label_b, label_c, real_1, form_ground, form_link, form_prism, form_joint, form_drive, &
-      form_rise, form_name, reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, &
-      form_vary
+   use cards, only: label_a, label_b, label_c, real_1, form_prism, form_joint, form_drive, form_add, form_name, reals_of, &
+      form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
    use input_errors, only: link_unused
    implicit none
    private
@@ -84,33 +83,26 @@ contains
    end subroutine check_unused
 
    !> A remark on the first angle in radians that looks like degrees: beyond a turn, up to two turns of degrees, a whole
-   !> number or a half.
+   !> number or a half. The numbers of ADD cards are none that someone has read from a drawing.
    subroutine check_angles(set)
       type(card_set_t), intent(inout) :: set
-      logical :: is_angle(3)
+      type(card_number_t) :: number
+      type(unit_t) :: unit
       integer :: k, i
 
       if (set%mechanism%degrees) return
       do k = 1, set%count
-         associate (card => set%cards(k))
-            select case (card%form)
-            case (form_ground, form_link)
-               is_angle = [.false., .false., .true.]
-            case (form_prism)
-               is_angle = [.true., .false., .true.]
-            case (form_drive)
-               is_angle = [any(card%label(label_a) == drive_words([drive_angle, drive_relangle])), .false., .false.]
-            case (form_rise)
-               is_angle = [.false., .false., driven_kinds(set%mechanism%drives(card%subject)%kind) == request_link]
-            case default
-               cycle
-            end select
-            i = findloc(is_angle .and. abs(card%real) > 2.0_wp*pi .and. abs(card%real) <= max_degrees &
-                        .and. .not. abs(2.0_wp*card%real - anint(2.0_wp*card%real)) > 0.0_wp, .true., dim=1)
-         end associate
-         if (i == 0) cycle
-         call add_card_remark(set, remark_radians, k, label_c + i)
-         return
+         do i = 1, 3
+            associate (x => set%cards(k)%real(i))
+               if (abs(x) <= 2.0_wp*pi .or. abs(x) > max_degrees .or. abs(2.0_wp*x - anint(2.0_wp*x)) > 0.0_wp) cycle
+            end associate
+            number = number_on_card(set, k, i)
+            if (number%kind == 0 .or. set%cards(k)%form == form_add) cycle
+            unit = number_unit(set%mechanism, number)
+            if (unit%name /= 'RAD') cycle
+            call add_card_remark(set, remark_radians, k, label_c + i)
+            return
+         end do
       end do
    end subroutine check_angles
 

@@ -145,86 +145,99 @@ contains
    subroutine build_variation(set, v)
       type(card_set_t), intent(inout) :: set
       type(variation_t), intent(out) :: v
-      integer :: i
+      type(varied_t) :: one
+      integer(int64) :: total
+      integer :: i, first
 
       if (set%number_of(form_vary) == 0) return
       allocate (v%numbers(0), v%counts(0))
       do i = set%count + 1, set%count + set%apart
-         if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card(set, i, v)
+         if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card()
       end do
-      call count_variants(set, v)
+
+      ! Numbers that are tied must have equal counts; the grid must not be too large.
+      total = 1
+      do i = 1, size(v%numbers)
+         one = v%numbers(i)
+         first = findloc(v%numbers%axis, one%axis, dim=1)
+         if (first < i) then
+            if (one%count /= v%numbers(first)%count) call add_card_error(set, vary_tie, one%vary, label_c, &
+               whole(set%cards(v%numbers(first)%vary)%card%number))
+            cycle
+         end if
+         v%counts(one%axis) = one%count
+         total = total*one%count
+         if (total <= max_variants) cycle
+         call add_card_error(set, vary_many, one%vary, label_b, whole(max_variants))
+         total = 1
+         exit
+      end do
+      v%total = int(total)
       set%mechanism%variants = max(1, v%total)
       if (error_count(set%errors) > 0) return
       v%set = set
-   end subroutine build_variation
-
-   !> Takes the VARY card `i`: a number that varies, or more values of the list above it.
-   subroutine take_card(set, i, v)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: i
-      type(variation_t), intent(inout) :: v
-      type(varied_t) :: one
-      type(unit_t) :: unit
-      character(:), allocatable :: name
-      logical :: continues
-      integer :: n, k, border
-
-      associate (card => set%cards(i), above => one%card)
-         one%card = card%below
-         one%vary = i
-         one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
-         if (above == 0) then
-            call add_card_error(set, vary_alone, i, card_name)
-            return
-         end if
-         if (set%cards(above)%form == form_unknown) return
-         if (all(set%cards(above)%form /= varied_forms)) then
-            call add_card_error(set, vary_alone, i, card_name)
-            return
-         end if
-         if (one%place == 0 .or. one%place > reals_of(set%cards(above)%form, set%cards(above)%label(label_a))) then
-            call add_card_error(set, vary_number, i, label_a)
-            return
-         end if
-         call read_values(card)
-         if (one%count == 0) return
-         n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
-         ! More values of the list on the VARY card above it.
-         continues = i > set%count + 1
-         if (continues) continues = card%below == set%cards(i - 1)%below &
-            .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
-         if (n == 0) then
-            if (error_count(set%errors) == 0) then
-               one%number = number_on_card(set, one%card, one%place)
-               name = number_name(set%mechanism, one%number)
-               border = index(name, ' ', back=.true.)
-               one%owner = name(:border - 1)
-               one%word = name(border + 1:)
-               unit = number_unit(set%mechanism, one%number)
-               one%unit = unit%name
-               one%factor = unit%factor
-               one%stands_alone = stands_alone(set, set%cards(one%card)%form)
-            end if
-            ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
-            do k = 1, size(v%numbers)
-               if (card%label(label_c) /= '' .and. &
-                   capitals(set%cards(v%numbers(k)%vary)%label(label_c)) == capitals(card%label(label_c))) &
-                  one%axis = v%numbers(k)%axis
-            end do
-            if (one%axis == 0) then
-               v%counts = [v%counts, 0]
-               one%axis = size(v%counts)
-            end if
-            v%numbers = [v%numbers, one]
-         else if (continues .and. allocated(one%list)) then
-            v%numbers(n)%list = [v%numbers(n)%list, one%list]
-            v%numbers(n)%count = size(v%numbers(n)%list)
-         else
-            call add_card_error(set, vary_twice, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
-         end if
-      end associate
 
    contains
+
+      !> Takes the VARY card `i`: a number that varies, or more values of the list above it.
+      subroutine take_card()
+         type(unit_t) :: unit
+         character(:), allocatable :: name
+         logical :: continues
+         integer :: form, n, k, border
+
+         one = varied_t(card=set%cards(i)%below, vary=i)
+         associate (card => set%cards(i), above => set%cards(i)%below)
+            one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
+            form = form_vary
+            if (above > 0) form = set%cards(above)%form
+            if (form == form_unknown) return
+            if (all(form /= varied_forms)) then
+               call add_card_error(set, vary_alone, i, card_name)
+               return
+            end if
+            if (one%place == 0 .or. one%place > reals_of(form, set%cards(above)%label(label_a))) then
+               call add_card_error(set, vary_number, i, label_a)
+               return
+            end if
+            call read_values(card)
+            if (one%count == 0) return
+            n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
+            ! More values of the list on the VARY card above it.
+            continues = i > set%count + 1
+            if (continues) continues = card%below == set%cards(i - 1)%below &
+               .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
+            if (n == 0) then
+               if (error_count(set%errors) == 0) then
+                  one%number = number_on_card(set, one%card, one%place)
+                  name = number_name(set%mechanism, one%number)
+                  border = index(name, ' ', back=.true.)
+                  one%owner = name(:border - 1)
+                  one%word = name(border + 1:)
+                  unit = number_unit(set%mechanism, one%number)
+                  one%unit = unit%name
+                  one%factor = unit%factor
+                  one%stands_alone = stands_alone(set, form)
+               end if
+               ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
+               do k = 1, size(v%numbers)
+                  if (card%label(label_c) /= '' .and. &
+                      capitals(set%cards(v%numbers(k)%vary)%label(label_c)) == capitals(card%label(label_c))) &
+                     one%axis = v%numbers(k)%axis
+               end do
+               if (one%axis == 0) then
+                  v%counts = [v%counts, 0]
+                  one%axis = size(v%counts)
+               end if
+               v%numbers = [v%numbers, one]
+            else if (continues .and. allocated(one%list)) then
+               v%numbers(n)%list = [v%numbers(n)%list, one%list]
+               v%numbers(n)%count = size(v%numbers(n)%list)
+            else
+               call add_card_error(set, vary_twice, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
+            end if
+         end associate
+      end subroutine take_card
 
       !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
       subroutine read_values(card)
@@ -259,7 +272,7 @@ contains
             one%last = card%real(2)
          end if
       end subroutine read_values
-   end subroutine take_card
+   end subroutine build_variation
 
    !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT cards
    !> depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term of a
@@ -277,33 +290,6 @@ contains
          stands_alone = form == form_drive
       end select
    end function stands_alone
-
-   !> Sets v%counts and v%total. Numbers that are tied must have equal counts; the grid must not be too large.
-   subroutine count_variants(set, v)
-      type(card_set_t), intent(inout) :: set
-      type(variation_t), intent(inout) :: v
-      integer(int64) :: total
-      integer :: i, first
-
-      total = 1
-      do i = 1, size(v%numbers)
-         associate (one => v%numbers(i))
-            first = findloc(v%numbers%axis, one%axis, dim=1)
-            if (first < i) then
-               if (one%count /= v%numbers(first)%count) call add_card_error(set, vary_tie, one%vary, label_c, &
-                  whole(set%cards(v%numbers(first)%vary)%card%number))
-               cycle
-            end if
-            v%counts(one%axis) = one%count
-            total = total*one%count
-            if (total > max_variants) then
-               call add_card_error(set, vary_many, one%vary, label_b, whole(max_variants))
-               return
-            end if
-         end associate
-      end do
-      v%total = int(total)
-   end subroutine count_variants
 
    !> Gives the cards of `v` the numbers of variant `n`, ready to be built.
    subroutine take_values(v, n)
