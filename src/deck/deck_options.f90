@@ -42,16 +42,11 @@ contains
       first = 0
       n = 0
       do k = 1, set%count
-         associate (card => set%cards(k))
+         associate (card => set%cards(k), label => set%cards(k)%label, m => set%mechanism)
             if (card%form == form_unknown) cycle
             if (first(card%form) == 0) first(card%form) = k
             if (forms(card%form)%once .and. first(card%form) < k) &
                call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(card%form))%card%number))
-         end associate
-      end do
-
-      do k = 1, set%count
-         associate (card => set%cards(k), label => set%cards(k)%label, m => set%mechanism)
             select case (card%form)
             case (form_title)
                m%title = card%card%text(title_field%first:title_field%last)
@@ -97,17 +92,11 @@ contains
                   m%t0 = card%real(1)
                   m%t1 = card%real(2)
                end if
+            case (form_at)
+               if (card%valid .and. .not. any(card%given)) call add_card_error(set, field_blank, k, real_1)
+               instants(n + 1:n + count(card%given)) = pack(card%real, card%given)
+               n = n + count(card%given)
             end select
-         end associate
-      end do
-
-      ! The instants of the AT cards, in their order, and the method of PROVE.
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_at) cycle
-         associate (card => set%cards(k), more => count(set%cards(k)%given))
-            if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
-            instants(n + 1:n + more) = pack(card%real, card%given)
-            n = n + more
          end associate
       end do
       set%mechanism%at = instants(:n)
