@@ -6,7 +6,7 @@ module planar
    implicit none
    private
    public :: pi, degree, in_degrees, without_turns
-   public :: vector_t, xy, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
+   public :: vector_t, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
    !> One degree in radians.
@@ -15,14 +15,6 @@ module planar
    integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
 
 contains
-
-   !> (2) `v` as an array.
-   pure function xy(v)
-      type(vector_t), intent(in) :: v
-      real(wp) :: xy(2)
-
-      xy = [v%x, v%y]
-   end function xy
 
    !> The length of `v`.
    elemental real(wp) function length_of(v) result(length)

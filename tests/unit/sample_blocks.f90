@@ -1,6 +1,7 @@
 !> Tests. Equations and blocks with all lengths in one unit that is given.
 module sample_blocks
    use kinds, only: wp
+   use planar, only: vector_t
    use mechanism, only: mechanism_t
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
@@ -9,7 +10,7 @@ module sample_blocks
    use block_numbers, only: add_numbers, fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, make_equations
+   public :: plain_blocks, make_equations, xy
 
 contains
 
@@ -48,4 +49,12 @@ contains
       end do
       call move_alloc(numbers, b%numbers)
    end function plain_blocks
+
+   !> (2) `v` as an array.
+   pure function xy(v)
+      type(vector_t), intent(in) :: v
+      real(wp) :: xy(2)
+
+      xy = [v%x, v%y]
+   end function xy
 end module sample_blocks
