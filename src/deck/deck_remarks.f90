@@ -17,8 +17,8 @@ module deck_remarks
    use numerals, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
-   use cards, only: label_a, label_b, label_c, real_1, form_prism, form_joint, form_drive, form_add, form_name, reals_of, &
-      form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
+   use cards, only: label_a, label_b, label_c, real_1, form_prism, form_joint, form_drive, form_add, form_name, &
+      reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
    use input_errors, only: link_unused
    implicit none
    private
