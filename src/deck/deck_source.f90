@@ -13,7 +13,7 @@ module deck_source
    public :: source_t, open_source, next_card, close_source
 
    integer(c_int), parameter :: standard_input = 0
-   integer, parameter :: block_length = 65536
+   integer, parameter :: block_length = 2**20
    !> A longer line is no card: what is read without an end, such as /dev/zero, is rejected there.
    integer, parameter :: max_columns = 10000000
    !> The mark that some editors put at the beginning of a file.
@@ -26,7 +26,7 @@ module deck_source
       integer(c_int) :: descriptor = standard_input
       integer :: lines = 0                   !< lines read so far
       character(:), allocatable :: buffer    !< bytes of the deck
-      integer :: at = 1, filled = 0          !< the next byte of the buffer and the last one
+      integer :: at = 1                      !< the next byte of the buffer
       logical :: ended = .false.             !< there is no more to read
       logical :: after_return = .false.      !< the last line ended with a carriage return
    end type source_t
@@ -47,12 +47,11 @@ contains
       end if
       error = last_error()
       if (source%descriptor >= 0) then
-         allocate (character(block_length) :: source%buffer)
-         do while (.not. source%ended .and. source%filled < len(byte_order_mark))
+         source%buffer = ''
+         do while (.not. source%ended .and. len(source%buffer) < len(byte_order_mark))
             call read_on(source, failure)
          end do
-         if (source%filled < len(byte_order_mark)) return
-         if (source%buffer(:len(byte_order_mark)) == byte_order_mark) source%at = len(byte_order_mark) + 1
+         if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
       else if (error == no_such_file) then
          call fail(failure, status_system, source%name//' DOES NOT EXIST')
       else
@@ -68,29 +67,28 @@ contains
       logical, intent(out) :: found
       type(failure_t), allocatable, intent(out) :: failure
       integer :: length, i
+      logical :: is_whole
 
       found = .false.
-      if (source%after_return) then
-         ! A line feed after a carriage return belongs to the line before.
-         if (source%at > source%filled .and. .not. source%ended) call read_on(source, failure)
-         if (allocated(failure)) return
-         if (source%at <= source%filled) then
-            if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
-         end if
-         source%after_return = .false.
-      end if
       do
-         length = line_length(source%buffer(source%at:source%filled))
+         if (source%after_return .and. source%at <= len(source%buffer)) then
+            ! A line feed after a carriage return belongs to the line before.
+            if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
+            source%after_return = .false.
+         end if
+         length = scan(source%buffer(source%at:), line_feed//carriage_return) - 1
+         is_whole = length >= 0
+         if (.not. is_whole) length = len(source%buffer) - source%at + 1
          if (length > max_columns) then
             call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines + 1) &
                //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')
             return
          end if
-         if (source%at + length <= source%filled .or. source%ended) exit
+         if (is_whole .or. source%ended) exit
          call read_on(source, failure)
          if (allocated(failure)) return
       end do
-      found = source%at <= source%filled
+      found = is_whole .or. length > 0
       if (.not. found) return
       source%lines = source%lines + 1
       card%number = source%lines
@@ -102,20 +100,8 @@ contains
          if (i > 0) card%beyond = line(card%overrun:)
       end associate
       source%at = source%at + length + 1
-      if (source%at - 1 <= source%filled) &
-         source%after_return = source%buffer(source%at - 1:source%at - 1) == carriage_return
+      if (is_whole) source%after_return = source%buffer(source%at - 1:source%at - 1) == carriage_return
    end subroutine next_card
-
-   !> The number of characters of `text` before the end of a line; all of them, if it has none.
-   pure integer function line_length(text) result(length)
-      character(*), intent(in) :: text
-      character(1) :: c
-
-      do length = 0, len(text) - 1
-         c = text(length + 1:length + 1)
-         if (c == line_feed .or. c == carriage_return) return
-      end do
-   end function line_length
 
    !> Closes the file of `source`; standard input stays open.
    subroutine close_source(source)
@@ -125,25 +111,18 @@ contains
       if (source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
    end subroutine close_source
 
-   !> Reads to the free end of the buffer. What is not used yet moves to its beginning; the buffer grows if a line needs
-   !> all of it. Errors: status_system.
+   !> Reads a block to the end of the buffer, of which only what is not used yet is kept. Errors: status_system.
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: rest
+      character(block_length), save :: block
       integer :: length, error
 
-      rest = source%buffer(source%at:source%filled)
-      if (2*len(rest) > len(source%buffer)) then
-         deallocate (source%buffer)
-         allocate (character(4*len(rest)) :: source%buffer)
-      end if
-      source%buffer(:len(rest)) = rest
-      source%at = 1
-      length = read_bytes(source%descriptor, source%buffer(len(rest) + 1:))
+      length = read_bytes(source%descriptor, block)
       error = last_error()
       source%ended = length <= 0
-      source%filled = len(rest) + max(0, length)
+      source%buffer = source%buffer(source%at:)//block(:max(0, length))
+      source%at = 1
       if (length >= 0) return
       if (error == is_a_directory) then
          call fail(failure, status_system, source%name//' IS A DIRECTORY')

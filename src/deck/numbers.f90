@@ -66,24 +66,24 @@ contains
       integer, intent(out) :: value
       type(error_code_t), intent(out) :: error
       integer, intent(out) :: place
-      integer(int64) :: sum
-      integer :: i, first
+      integer :: first, wrong, status
 
       value = 0
       place = 1
-      sum = 0_int64
       first = merge(2, 1, scan(text(1:1), '+-') == 1)
-      if (first > len(text)) error = number_no_digits
-      do i = first, len(text)
-         if (verify(text(i:i), '0123456789') == 1) error = error_at(text, i)
-         if (scan(text(i:i), '.') == 1 .or. (i > first .and. scan(text(i:i), 'EeDd') == 1)) error = number_point
-         place = i
-         if (error%number > 0) return
-         sum = min(10_int64*sum + digit(text(i:i)), 10_int64*huge(value))
-      end do
-      place = 1
-      if (sum > huge(value)) error = number_overflow
-      if (error%number == 0) value = int(merge(-sum, sum, text(1:1) == '-'))
+      wrong = verify(text(first:), '0123456789') + first - 1
+      if (first > len(text)) then
+         error = number_no_digits
+      else if (wrong >= first) then
+         place = wrong
+         error = error_at(text, wrong)
+         if (scan(text(wrong:wrong), '.') == 1 .or. (wrong > first .and. scan(text(wrong:wrong), 'EeDd') == 1)) &
+            error = number_point
+      else
+         read (text, '(i80)', iostat=status) value
+         if (status /= 0) error = number_overflow
+         if (status /= 0) value = 0
+      end if
    end subroutine read_whole
 
    !> Splits `text` = digits x 10**power. `n`: the number of its digits from the first that is not 0 on; `mantissa`:
