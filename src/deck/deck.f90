@@ -89,11 +89,7 @@ contains
             to = share%last
          end if
       end if
-      if (to - from + 1 == size(progress%sets)) then
-         call move_alloc(progress%sets, sets)
-      else
-         sets = progress%sets(from:to)
-      end if
+      sets = progress%sets(from:to)
    end subroutine read_deck
 
    !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.

@@ -124,16 +124,7 @@ contains
       integer :: i, k
 
       ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
-      body_vectors = 0
-      slides = 0
-      do i = 1, e%count
-         associate (p => e%vector_loops, k => e%list(i)%vector_loop)
-            body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
-            slides = slides + p%first_slide(k + 1) - p%first_slide(k)
-         end associate
-      end do
-      allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
-
+      allocate (b%loops(e%count), b%body_vectors(2*e%vector_loops%vectors), b%slides(2*e%vector_loops%slides))
       column = 0
       latest = 0
       loops = 0
