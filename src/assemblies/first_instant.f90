@@ -7,14 +7,14 @@
 module first_instant
    use kinds, only: wp
    use planar, only: without_turns
-   use convergence, only: convergence_t, is_solved, gather, ended_inconsistent
+   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent
    use motion, only: motion_t, new_motion
    use blocks, only: blocks_t, largest_known, blocks_below
    use block_state, only: set_values, values_of
    use block_solver, only: solve_block
    use link_motion, only: move_links
    use levenberg_marquardt, only: levenberg_marquardt_solve
-   use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, begin_record, is_certain
+   use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, is_certain
    use block_branches, only: is_short_and_right
    use block_assemblies, only: block_positions_t, find_positions
    implicit none
@@ -84,8 +84,7 @@ contains
                choice%is_close = one%distance(1) > about_equal*one%distance(2)
          end associate
       end do
-      c = convergence_t()
-      call begin_record(c)
+      c = nothing_gathered
       k = findloc(found(e%needed)%chosen, 0, dim=1)
       if (k == 0) then
          call solve_each(e, e%needed, .false., c)

@@ -13,7 +13,7 @@ module block_branches
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use predictor, only: predict, is_even
-   use drives, only: law_t, drive_motion
+   use drives, only: law_t, drive_motion, halve, middle_of
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
    use block_rank, only: values_t, decomposed, curvature_of, gauss_newton_step
@@ -72,7 +72,9 @@ contains
          if (.not. passed) exit
          associate (i => e%moving(k), before => e%history%t(0))
             if (.not. crossed(i)) cycle
-            r = change_point(e, i, t)
+            r = new_diagnostic(diagnostic_change, links_of(e, i))
+            ! The least pivot goes through zero in proportion to the values of the drives.
+            r%t = time_of_values(e, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
             if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(e, i), before, t, r%t, r%other)
                if (r%other) call take_other_branch(e, i, c, passed)
@@ -118,17 +120,6 @@ contains
       is = is .and. correction <= min(right, max_wrong*e%change)
    end function is_short_and_right
 
-   !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion to the
-   !> values of the drives.
-   type(diagnostic_t) function change_point(e, i, t) result(r)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-
-      r = new_diagnostic(diagnostic_change, links_of(e, i))
-      r%t = time_of_values(e, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
-   end function change_point
-
    !> The time at which the fastest drive has made this `part` of its way in the substep to `t`, by its law in the
    !> deck. If it is so slow there that its value does not give the time, it is the one until which it slows down.
    pure real(wp) function time_of_values(e, t, part) result(at)
@@ -163,19 +154,17 @@ contains
       pure real(wp) function first_time(from, to, value) result(first)
          real(wp), intent(in) :: from, to
          real(wp), intent(in), optional :: value
-         real(wp) :: before, middle, f(3)
+         real(wp) :: before, f(3)
          logical :: is_before
          integer :: k
 
          before = from
          first = to
          do k = 1, digits(1.0_wp)
-            middle = before + 0.5_wp*(first - before)
-            f = drive_motion(law, middle)
+            f = drive_motion(law, middle_of(before, first))
             is_before = slows_down(f)
             if (present(value)) is_before = (f(1) - value)*way(d) < 0.0_wp
-            if (is_before) before = middle
-            if (.not. is_before) first = middle
+            call halve(is_before, before, first)
          end do
       end function first_time
 

@@ -9,10 +9,11 @@ module block_diagnostics
    use blocks, only: blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t, largest_drive_rate
-   use block_engine, only: block_engine_t
+   use block_engine, only: block_engine_t, mark_singular_links
+   use singularity, only: judge_position
    implicit none
    private
-   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, singular_links, links_of
+   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, get_link_flags, links_of
 
    !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
    !> was meant.
@@ -96,13 +97,15 @@ contains
       end do
    end function redundancies
 
-   !> The links of block `i` that can move, and those that are moved by them.
+   !> The links of block `i` that can move, and those that are moved by them; and the drives of the block, and of those
+   !> it builds on, that hold nothing, both at the position found and `aside`, where its links can move to.
    subroutine add_mobility(e, i, list)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(state_t) :: aside
       logical, allocatable :: moves(:), moved(:)
+      logical, dimension(size(e%laws)) :: idle, repeated, idle_aside, repeated_aside
       integer :: k
 
       moves = moving_unknowns(e%blocks, i, e%state, aside)
@@ -116,27 +119,16 @@ contains
          end associate
       end do
       list = [list, new_diagnostic(diagnostic_mobile, moved)]
-      call add_idle_drives(e, i, aside, list)
-   end subroutine add_mobility
 
-   !> The drives of block `i`, and of those it builds on, that hold nothing, both at the position found and `aside`,
-   !> where its links can move to: at one alone it may be a dead point.
-   subroutine add_idle_drives(e, i, aside, list)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: aside
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      logical, dimension(size(e%laws)) :: idle, repeated, idle_aside, repeated_aside
-      integer :: d
-
+      ! At one position alone it may be a dead point.
       call judge_drives(e%blocks, blocks_below(e%blocks, i), e%state, idle, repeated)
       call judge_drives(e%blocks, blocks_below(e%blocks, i), aside, idle_aside, repeated_aside)
-      do d = 1, size(idle)
-         if (any(list%drive == d .and. (list%kind == diagnostic_idle .or. list%kind == diagnostic_repeated))) cycle
-         if (idle(d) .and. idle_aside(d)) list = [list, diagnostic_t(kind=diagnostic_idle, drive=d)]
-         if (repeated(d) .and. repeated_aside(d)) list = [list, diagnostic_t(kind=diagnostic_repeated, drive=d)]
+      do k = 1, size(idle)
+         if (any(list%drive == k .and. (list%kind == diagnostic_idle .or. list%kind == diagnostic_repeated))) cycle
+         if (idle(k) .and. idle_aside(k)) list = [list, diagnostic_t(kind=diagnostic_idle, drive=k)]
+         if (repeated(k) .and. repeated_aside(k)) list = [list, diagnostic_t(kind=diagnostic_repeated, drive=k)]
       end do
-   end subroutine add_idle_drives
+   end subroutine add_mobility
 
    !> (links) Those whose angle is an unknown of block `i`; of a block of slides alone those that slide.
    pure function links_of(e, i) result(chosen)
@@ -176,8 +168,9 @@ contains
       logical, intent(in) :: creeps
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
-      real(wp) :: left
-      integer :: k
+      real(wp) :: left, f(3)
+      logical :: moves(0:size(e%laws))
+      integer :: d, k
 
       allocate (list(0))
       if (e%history%filled == 0) return
@@ -186,15 +179,35 @@ contains
          left = time_to_limit(e%moving(k))
          if (abs(left) <= 0.0_wp) left = time_to_infinity(e%moving(k))
          if (abs(left) <= 0.0_wp) cycle
-         associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
+         associate (i => e%moving(k))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
             r%in_line = is_in_line(e, i, r, e%history%past%value)
             r%t = e%history%t(0) + left
-            call name_drive(i)
          end associate
-         list = [r]
-         return
+         exit
       end do
+      if (k > size(e%moving)) return
+
+      ! The first drive that moves the block there, itself or through what it builds on; where all stand still, the
+      ! first that could.
+      moves = .false.
+      associate (below => blocks_below(e%blocks, e%moving(k)))
+         do d = 1, size(below)
+            associate (block => e%blocks%list(below(d)))
+               moves(e%blocks%rows(block%first_row:block%last_row)%drive) = .true.
+            end associate
+         end do
+      end associate
+      do d = 1, size(e%laws)
+         if (.not. moves(d)) cycle
+         f = drive_motion(e%laws(d), r%t)
+         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+         r%drive = d
+         r%value = f(1)
+         r%is_angle = e%is_angle(d)
+         if (abs(f(2)) > 0.0_wp) exit
+      end do
+      list = [r]
 
    contains
 
@@ -244,43 +257,25 @@ contains
          end do
       end function time_to_infinity
 
-      !> The first drive that moves block `i` at r%t, itself or through what the block builds on; where all stand still,
-      !> the first that could.
-      subroutine name_drive(i)
-         integer, intent(in) :: i
-         real(wp) :: f(3)
-         logical :: moves(0:size(e%laws))
-         integer :: d, k
-
-         moves = .false.
-         associate (below => blocks_below(e%blocks, i))
-            do k = 1, size(below)
-               associate (block => e%blocks%list(below(k)))
-                  moves(e%blocks%rows(block%first_row:block%last_row)%drive) = .true.
-               end associate
-            end do
-         end associate
-         do d = 1, size(e%laws)
-            if (.not. moves(d)) cycle
-            f = drive_motion(e%laws(d), r%t)
-            if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
-            r%drive = d
-            r%value = f(1)
-            r%is_angle = e%is_angle(d)
-            if (abs(f(2)) > 0.0_wp) return
-         end do
-      end subroutine name_drive
    end function limit_diagnostic
 
-   !> The links of block `i`, which is singular at the position found last, and whether they are in line.
-   function singular_links(e, i) result(r)
+   !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
+   !> is: its links, and whether they are in line. `all_at_once`: all equations are solved at once, and have one
+   !> Jacobian.
+   subroutine get_link_flags(e, found, all_at_once)
       type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
+      type(motion_t), intent(inout) :: found
+      logical, intent(in) :: all_at_once
       type(diagnostic_t) :: r
+      integer :: i
 
+      call mark_singular_links(e, found, all_at_once)
+      call judge_position(e, found%singularity, i)
+      if (i == 0) return
       r = new_diagnostic(diagnostic_singular, links_of(e, i))
       r%in_line = is_in_line(e, i, r, e%state%u%value)
-   end function singular_links
+      found%singular_links = r
+   end subroutine get_link_flags
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
    !> the unknowns have the values `value` (0:unknowns).

@@ -8,7 +8,7 @@ module block_engine
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, find_drive_motion
-   use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
+   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use planar, only: without_turns
    use blocks, only: blocks_t, numbers_t, loop_angles, moving_blocks, needed_blocks, iterated_unknowns, largest_known
@@ -23,8 +23,8 @@ module block_engine
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
-      begin_record, is_certain, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, &
-      followed_state, follows_values, slide_unit
+      is_certain, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, &
+      followed_state, slide_unit
 
    !> A change of more than this, in radians or characteristic lengths, is a jump to another branch.
    real(wp), parameter :: branch_jump = 0.5_wp
@@ -233,7 +233,7 @@ contains
       if (.not. e%blocks%solvable) return
       e%t = t
       call set_drive_values(e, t)
-      call begin_record(c)
+      c = nothing_gathered
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          c%keeps_signs = e%change <= largest_change
@@ -318,7 +318,7 @@ contains
 
       e%t = t
       call set_drive_values(e, t)
-      call begin_record(c)
+      c = nothing_gathered
       call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., c)
       c%singular = .true.
    end subroutine stay
@@ -328,18 +328,9 @@ contains
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(out) :: c
 
-      call begin_record(c)
+      c = nothing_gathered
       call solve_each(e, e%moving, .true., c)
    end subroutine solve_again
-
-   !> The record `c`, in which nothing is gathered yet, before the first block.
-   pure subroutine begin_record(c)
-      type(convergence_t), intent(inout) :: c
-
-      c%ended = ended_converged
-      c%reciprocal_condition = 1.0_wp
-      c%determinant = 1
-   end subroutine begin_record
 
    !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
    subroutine solve_each(e, list, follows, c)
@@ -477,14 +468,6 @@ contains
          end if
       end do
    end subroutine followed_state
-
-   !> Some unknown is searched for from its value before.
-   pure logical function follows_values(e)
-      type(block_engine_t), intent(in) :: e
-
-      follows_values = .true.
-      if (allocated(e%history%predicted)) follows_values = size(e%history%predicted) > 0
-   end function follows_values
 
    !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.
    subroutine note_block(e, i, own, missing)

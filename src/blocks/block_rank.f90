@@ -47,26 +47,12 @@ contains
       integer, allocatable :: list(:)
       type(values_t) :: v
       integer, allocatable :: order(:), pivot(:)
-
-      allocate (list(0))
-      if (b%list(i)%shape%rows > max_rows) return
-      v = decomposed(b, i, s)
-      order = row_order(b, i)
-      associate (null => v%left(:, v%rank + 1:))
-         call find_pivots(order, null, pivot)
-      end associate
-      list = pack(b%list(i)%first_row + order - 1, pivot(order) > 0)
-   end function redundant_rows
-
-   !> Rows from the last pair of the deck to the first, then the drives likewise.
-   pure function row_order(b, i) result(order)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      integer, allocatable :: order(:)
       integer :: k, n
 
+      allocate (list(0), order(0))
+      if (b%list(i)%shape%rows > max_rows) return
+      v = decomposed(b, i, s)
       associate (rows => b%rows(b%list(i)%first_row:b%list(i)%last_row))
-         allocate (order(0))
          do n = max(maxval(rows%pair), 0), 1, -1
             order = [order, pack([(k, k=1, size(rows))], rows%pair == n)]
          end do
@@ -74,7 +60,11 @@ contains
             order = [order, pack([(k, k=1, size(rows))], rows%pair == 0 .and. rows%drive == n)]
          end do
       end associate
-   end function row_order
+      associate (null => v%left(:, v%rank + 1:))
+         call find_pivots(order, null, pivot)
+      end associate
+      list = pack(b%list(i)%first_row + order - 1, pivot(order) > 0)
+   end function redundant_rows
 
    !> Gauss's elimination of the columns of `y` (rows, any number), the rows taken in the `order`: `pivot` (rows) is the
    !> column that has a row as its pivot, with 1 where all others have 0; 0 of rows that are no pivot.
@@ -299,14 +289,23 @@ contains
       integer, intent(in) :: list(:)
       type(state_t), intent(in) :: s
       logical, intent(out) :: idle(:), repeated(:)
-      real(wp), allocatable :: y(:, :)
-      integer, allocatable :: pivot(:)
-      integer :: d
+      real(wp), allocatable :: a(:, :), y(:, :)
+      integer, allocatable :: drive_of(:), pivot(:)
+      type(values_t) :: v
+      integer :: d, k
 
       idle = .false.
       repeated = .false.
       if (sum(b%list(list)%last - b%list(list)%first + 1) > max_unknowns) return
-      y = null_drives(size(idle))
+      call fill(a, drive_of)
+      v%rows = size(a, 1)
+      v%n = size(a, 2)
+      call decompose(a, 0.0_wp, v)
+      ! The components of drives in the left null vectors, as columns (drives, vectors).
+      allocate (y(size(idle), v%rows - v%rank), source=0.0_wp)
+      do k = 1, v%rows
+         if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
+      end do
       call find_pivots([(d, d=size(idle), 1, -1)], y, pivot)
       do d = 1, size(idle)
          if (pivot(d) == 0) cycle
@@ -315,25 +314,6 @@ contains
       end do
 
    contains
-
-      !> The components of drives in the left null vectors, as columns (drives, vectors).
-      function null_drives(drives) result(y)
-         integer, intent(in) :: drives
-         real(wp), allocatable :: y(:, :)
-         real(wp), allocatable :: a(:, :)
-         integer, allocatable :: drive_of(:)
-         type(values_t) :: v
-         integer :: k
-
-         call fill(a, drive_of)
-         v%rows = size(a, 1)
-         v%n = size(a, 2)
-         call decompose(a, 0.0_wp, v)
-         allocate (y(drives, v%rows - v%rank), source=0.0_wp)
-         do k = 1, v%rows
-            if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
-         end do
-      end function null_drives
 
       !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's). The
       !> coefficients of an unknown of an earlier block are what its rate 1 alone leaves to the rates of a block.

@@ -128,7 +128,7 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of
-      integer :: info, iteration, second
+      integer :: info, iteration, second, k
       logical :: is_closed, is_right
 
       second = block%shape%rows + 1
@@ -161,7 +161,10 @@ contains
             exit
          end if
          c%step = largest_size(block%shape%n, w%r)
-         if (is_stalled(block%shape, c, before, max(size_of, numbers%coarse))) then
+         ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
+         ! it is their gap.
+         if (c%step > 0.5_wp*before .and. (c%residual <= rounding_level*max(size_of, numbers%coarse) .or. &
+            (block%shape%rows > block%shape%n .and. c%step <= small_turn))) then
             c%ended = ended_stalled
          else
             call move(b, block, numbers, w%r, s, c%step, tolerance, size_of, is_right)
@@ -176,7 +179,11 @@ contains
          call solve_next_side(block%shape, w, w%r(second))
          exit
       end do
-      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
+      if (c%iterations > 1 .or. c%step > 0.0_wp) then
+         do k = 1, block%shape%n
+            c%change = max(c%change, abs(s%u(b%unknown(block%first + k - 1))%value - w%start(k)))
+         end do
+      end if
       call finish(b, i, block, numbers, w, s, c)
    end subroutine solve_equations
 
@@ -214,17 +221,6 @@ contains
          call solve_again(shape, w%a, w%pivots, w%work, v, w%sparse(shape%pattern))
       end if
    end subroutine solve_next_side
-
-   !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
-   !> it is their gap.
-   pure logical function is_stalled(shape, c, before, size_of)
-      type(shape_t), intent(in) :: shape
-      type(convergence_t), intent(in) :: c
-      real(wp), intent(in) :: before, size_of
-
-      is_stalled = c%step > 0.5_wp*before .and. c%residual <= rounding_level*size_of
-      if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
-   end function is_stalled
 
    !> Directions at the start of the iteration for the unknowns with the numbers `unknown`(first:last) among `u`, the
    !> first `angles` of which are angles; the values `start`, and the largest of them, 1 at least.
@@ -287,20 +283,6 @@ contains
          if (.not. abs(x(k)) <= largest) largest = abs(x(k))
       end do
    end function largest_size
-
-   !> The largest change of the values of `block` from `start`.
-   pure real(wp) function largest_change(b, block, s, start) result(change)
-      type(blocks_t), intent(in) :: b
-      type(block_t), intent(in) :: block
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: start(*)
-      integer :: k
-
-      change = 0.0_wp
-      do k = 1, block%shape%n
-         change = max(change, abs(s%u(b%unknown(block%first + k - 1))%value - start(k)))
-      end do
-   end function largest_change
 
    !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
    !> having no inverse.

@@ -5,8 +5,8 @@ module convergence
    use blocks, only: blocks_t
    implicit none
    private
-   public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
+   public :: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
+      ended_diverged, ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
       note_closure_error, is_inconsistent, contradict
 
    !> The largest change of a predicted position over the distance of the next root, by the Jacobian and its Lipschitz
@@ -61,6 +61,10 @@ module convergence
       type(closure_error_t) :: open            !< the equation that is open the most
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
    end type convergence_t
+
+   !> A record in which nothing is gathered yet.
+   type(convergence_t), parameter :: nothing_gathered = convergence_t(ended=ended_converged, &
+      reciprocal_condition=1.0_wp, determinant=1)
 
 contains
 

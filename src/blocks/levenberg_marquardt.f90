@@ -46,22 +46,26 @@ contains
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: reached
       type(room_t) :: w
-      real(wp), allocatable :: start(:)
+      real(wp), allocatable :: start(:), even(:)
       real(wp) :: least, found
-      integer :: k
+      integer :: k, m
 
       reached = .false.
       associate (block => b%list(i))
          if (block%shape%n == 0 .or. block%shape%n > max_unknowns) return
-         call make_room(w, block%shape)
-         start = values_of(b, i, s)
+         w%shape = shape_t(rows=block%shape%rows, n=block%shape%n)
+         w%damped = shape_t(rows=block%shape%rows + block%shape%n, n=block%shape%n)
       end associate
+      allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
+      allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%pivots(w%shape%n))
+      start = values_of(b, i, s)
       call find_known_parts(b, i, s)
       w%best = start
       least = huge(least)
       do k = 0, max_starts - 1
          ! Off by nothing at first, then by more and more, up to half a turn.
-         call set_values(b, i, start + 3.0_wp*real(k, wp)/real(max_starts, wp)*golden_numbers(k, size(start)), s)
+         even = [(2.0_wp*modulo(golden*real(k*size(start) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(start))]
+         call set_values(b, i, start + 3.0_wp*real(k, wp)/real(max_starts, wp)*even, s)
          call descend(b, i, near, w, s, found)
          if (found < least) then
             least = found
@@ -75,26 +79,6 @@ contains
       reached = least <= near
    end subroutine levenberg_marquardt_solve
 
-   !> Room for a block of this `shape`.
-   subroutine make_room(w, shape)
-      type(room_t), intent(out) :: w
-      type(shape_t), intent(in) :: shape
-
-      w%shape = shape_t(rows=shape%rows, n=shape%n)
-      w%damped = shape_t(rows=shape%rows + shape%n, n=shape%n)
-      allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
-      allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%x(shape%n), w%best(shape%n), w%pivots(shape%n))
-   end subroutine make_room
-
-   !> The `n` numbers of row `k` of a sequence that fills the interval from -1 to 1 evenly.
-   pure function golden_numbers(k, n) result(x)
-      integer, intent(in) :: k, n
-      real(wp) :: x(n)
-      integer :: m
-
-      x = [(2.0_wp*modulo(golden*real(k*n + m, wp), 1.0_wp) - 1.0_wp, m=1, n)]
-   end function golden_numbers
-
    !> Reduces the sum of squares from the values of `s`; `found`: the largest residual at the end.
    subroutine descend(b, i, near, w, s, found)
       type(blocks_t), intent(in) :: b
@@ -104,7 +88,7 @@ contains
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: found
       real(wp) :: damping, square, step
-      integer :: iteration
+      integer :: iteration, k, info
 
       damping = first_damping
       call assemble_dense(b, i, s, w%a, w%r)
@@ -113,7 +97,19 @@ contains
          if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
          square = sum(w%r(:w%shape%rows)**2)
          w%x = values_of(b, i, s)
-         call damped_step(w, damping, step)
+         ! Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
+         associate (m => w%shape%rows, n => w%shape%n)
+            w%b = 0.0_wp
+            do k = 1, n
+               w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = w%a((k - 1)*m + 1:k*m)
+               w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
+            end do
+            w%d(:m) = w%r(:m)
+            w%d(m + 1:) = 0.0_wp
+            call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
+            step = maxval(abs(w%d(:n)))
+            if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
+         end associate
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
          call assemble_dense(b, i, s, w%a, w%r)
          if (sum(w%r(:w%shape%rows)**2) < square) then
@@ -128,24 +124,4 @@ contains
       found = maxval(abs(w%r(:w%shape%rows)))
    end subroutine descend
 
-   !> Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
-   subroutine damped_step(w, damping, step)
-      type(room_t), intent(inout) :: w
-      real(wp), intent(in) :: damping
-      real(wp), intent(out) :: step
-      integer :: k, info
-
-      associate (m => w%shape%rows, n => w%shape%n)
-         w%b = 0.0_wp
-         do k = 1, n
-            w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = w%a((k - 1)*m + 1:k*m)
-            w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
-         end do
-         w%d(:m) = w%r(:m)
-         w%d(m + 1:) = 0.0_wp
-         call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
-         step = maxval(abs(w%d(:n)))
-         if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
-      end associate
-   end subroutine damped_step
 end module levenberg_marquardt

@@ -37,12 +37,19 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(values_t) :: v
-      real(wp) :: x(b%list(i)%shape%n), y(b%list(i)%shape%n), q, left_open, level
+      real(wp) :: x(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed, angle
 
       if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
       x = values_of(b, i, s)
       v = decomposed(b, i, s)
-      level = max(sum_size, maxval(abs(x)), b%numbers%blocks(i)%coarse, size_of_driven())
+      level = max(sum_size, maxval(abs(x)), b%numbers%blocks(i)%coarse)
+      ! A rounding of an angle that drives and earlier blocks give counts along w: at a dead point in full, at a change
+      ! point, which such an angle leaves as it is to the first order, not at all.
+      call find_driven(b, i, s, speed, angle)
+      if (speed > 0.0_wp) then
+         call right_hand_side(b, i, 1, s, r)
+         level = max(level, angle*abs(dot_product(v%left(:, v%n), r))/speed)
+      end if
       q = curvature_of(b, i, x, v%left(:, v%n), v%right(v%n, :), s)
       if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%numbers%blocks(i)%lipschitz) return
       associate (left => v%left(:, v%n), k => v%right(v%n, :))
@@ -65,17 +72,5 @@ contains
          call gauss_newton_step(b, i, s, before)
          y = values_of(b, i, s)
       end subroutine go_to
-
-      !> The largest angle that drives and earlier blocks give, as far as a rounding of it counts along w: at a dead
-      !> point in full, at a change point, which such an angle leaves as it is to the first order, not at all.
-      real(wp) function size_of_driven()
-         real(wp) :: r(b%list(i)%shape%rows), speed, angle
-
-         size_of_driven = 0.0_wp
-         call find_driven(b, i, s, speed, angle)
-         if (.not. speed > 0.0_wp) return
-         call right_hand_side(b, i, 1, s, r)
-         size_of_driven = angle*abs(dot_product(v%left(:, v%n), r))/speed
-      end function size_of_driven
    end subroutine settle
 end module singular_place

@@ -82,7 +82,8 @@ contains
       type(state_t), intent(inout) :: s
       logical, intent(out) :: agrees, crosses
       type(values_t) :: v
-      real(wp) :: r(b%list(i)%shape%rows)
+      real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), unit
+      integer :: j
 
       call find_known_parts(b, i, s)
       v = decomposed(b, i, s)
@@ -90,21 +91,9 @@ contains
       ! A position that rounding makes singular may have its least singular value above the zero level.
       agrees = norm2(matmul(r, v%left(:, min(v%rank, v%n - 1) + 1:))) <= agreement*speed
       crosses = agrees
-      if (agrees .and. v%rows == v%n .and. v%rank >= v%n - 1) &
-         crosses = has_two_roots(second_order(b, i, speed, v, r, s), b%numbers%blocks(i)%lipschitz)
-   end subroutine judge
+      if (.not. (agrees .and. v%rows == v%n .and. v%rank >= v%n - 1)) return
 
-   !> (0:2) The coefficients of w . b2(p + l k) in the module's head, l in units of the velocities p or of `speed`;
-   !> `r` (rows): b.
-   function second_order(b, i, speed, v, r, s) result(c)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: speed, r(:)
-      type(values_t), intent(in) :: v
-      type(state_t), intent(inout) :: s
-      real(wp) :: c(0:2), p(v%n), r2(v%rows), q(-1:1), unit
-      integer :: j
-
+      ! The coefficients of w . b2(p + l k) in the module's head, l in units of the velocities p or of `speed`.
       p = 0.0_wp
       do j = 1, v%n - 1
          p = p + v%right(j, :)*(dot_product(v%left(:, j), r)/v%s(j))
@@ -112,11 +101,12 @@ contains
       unit = max(speed, norm2(p))
       do j = -1, 1
          s%u(b%unknown(b%list(i)%first:b%list(i)%last))%rate = p + j*unit*v%right(v%n, :)
-         call right_hand_side(b, i, 2, s, r2)
-         q(j) = dot_product(v%left(:, v%n), r2)/unit**2
+         call right_hand_side(b, i, 2, s, r)
+         q(j) = dot_product(v%left(:, v%n), r)/unit**2
       end do
-      c = [q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)]
-   end function second_order
+      crosses = has_two_roots([q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)], &
+         b%numbers%blocks(i)%lipschitz)
+   end subroutine judge
 
    !> c(0) + c(1) l + c(2) l**2 has two real roots, one of which may be infinite; none where all coefficients are zero
    !> beside `scale`, as they are where a drive adds nothing to the others.

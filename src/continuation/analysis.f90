@@ -6,21 +6,21 @@ module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
+   use drives, only: is_at_rest, halve, middle_of
    use drive_excursion, only: has_pole_between, short_of_pole, largest_derivative
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
-   use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
+   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_engine, only: block_engine_t, renew_block_engine, get_blocks_motion => get_motion, get_driven_links, stay
-   use block_method, only: get_link_flags, is_at_rest
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
-   use block_diagnostics, only: start_diagnostics, limit_diagnostic
+   use block_diagnostics, only: start_diagnostics, limit_diagnostic, get_link_flags
    use at_bifurcation, only: stand_on, go_by_value, leave
    use following, only: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
-      go_on_from, go_back, place_t, note_place, return_to, passed_of, limits_t, note_limit, limit_before
+      go_on_from, go_back, place_t, note_place, return_to, passed_of, limit_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -42,7 +42,7 @@ module analysis
    type, extends(following_t) :: analysis_t
       type(branch_t) :: branch                             !< of the last instant
       type(certificate_counts_t) :: certificate_counts     !< of all instants
-      type(limits_t) :: limits                             !< of the motion that is followed
+      type(limit_t) :: limits(2)                           !< of the motion that is followed
       logical :: has_begun = .false.                       !< a position was found
       logical :: begins = .false.                          !< at the last instant none was followed yet
       logical :: is_lost = .false.                         !< at the last instant none was
@@ -113,8 +113,10 @@ contains
       end if
       call reach(a, to, step, list)
       if (step%arrived .and. is_over_pole) then
+         ! The motion comes to t = 0, where the law goes to infinity, without another limit.
          call go_back(a%following_t, step)
-         call end_at_pole(a)
+         call note_limit(a%limits, a%t, a%t, 0.0_wp, .false., [diagnostic_t(kind=diagnostic_limit, &
+            drive=a%drives%infinite, is_pole=.true., value=a%drives%pole(merge(1, 2, a%t < 0.0_wp)))])
          call pass_over(a, t, found)
          return
       else if (step%arrived) then
@@ -186,18 +188,13 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t) :: step
-      real(wp) :: beside, high, middle
+      real(wp) :: beside, high
       integer :: i
 
       beside = merge(t, a%last, is_near(t))
       high = t
       do i = 1, digits(1.0_wp)
-         middle = 0.5_wp*(beside + high)
-         if (is_near(middle)) then
-            beside = middle
-         else
-            high = middle
-         end if
+         call halve(is_near(middle_of(beside, high)), beside, high)
       end do
       call continue_to(a%following_t, beside, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
@@ -257,13 +254,15 @@ contains
       a%left%is_left = .false.
    end subroutine come_back
 
-   !> The motion found at the end of `step`; `list`: what there is to say of it if it stands on a change point.
+   !> The motion found at the end of `step`, what is verified of it, and what there is to say of it; `list`: if it
+   !> stands on a change point. Where the blocks have found a position and the method has not, that is said once of
+   !> instants in a row. A motion that began beside a singular position is no longer near the deck's estimate.
    subroutine arrive(a, step, list, found)
       type(analysis_t), intent(inout) :: a
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
-      logical :: had_missed, takes_other
+      logical :: had_missed, crosses, finite
 
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
@@ -271,65 +270,88 @@ contains
          if (a%convergence%singular .and. .not. allocated(list)) &
             call stand_on(a%following_t, found%t, step, list, step%stands)
       end if
-      call get_motion(a, found)
+      call take_motion(a, found, finite)
+      a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
+      call find_what_exists(a, found, finite)
+      crosses = passed_of(step) > 0
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-      takes_other = .false.
       if (allocated(list)) then
          call add_diagnostics(list, found)
-         takes_other = any(list%other)
+         crosses = crosses .or. any(list%other)
       end if
+
       if (a%has_missed) then
-         call miss(a, step, had_missed, found)
+         call cut(found, -1, mark_not_converged)
+         call get_driven_links(a%engine, found%t, found)
+         a%branch = branch_t()
+         a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
+         if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
+            other=a%convergence%ended == ended_elsewhere)], found)
          return
       end if
-      call judge_branch(a, step, passed_of(step) > 0 .or. takes_other)
-      if (.not. a%has_begun .or. (a%begins .and. found%known == 2)) call diagnose_start(a, found)
+
+      if (step%rests) then
+         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
+      else
+         a%branch = step%branch
+         a%branch%kind = merge(branch_crossed, branch_same, crosses)
+         if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
+      end if
+      if (a%begins) a%branch%kind = branch_first
+      call count_in(a%certificate_counts, a%branch, passed_of(step))
+
+      if (a%has_begun .and. .not. (a%begins .and. found%known == 2)) return
+      if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
+      a%has_begun = .true.
+      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
    end subroutine arrive
 
-   !> Tells that the blocks have found a position at the end of `step` and the method has not; once of instants in a row
-   !> (`is_known`).
-   subroutine miss(a, step, is_known, found)
-      type(analysis_t), intent(inout) :: a
-      type(step_record_t), intent(in) :: step
-      logical, intent(in) :: is_known
-      type(motion_t), intent(inout) :: found
-
-      call cut(found, -1, mark_not_converged)
-      call get_driven_links(a%engine, found%t, found)
-      a%branch = branch_t()
-      a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
-      if (.not. is_known) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
-         other=a%convergence%ended == ended_elsewhere)], found)
-   end subroutine miss
-
-   !> The motion that is followed comes to t = 0, where the law of a drive goes to infinity, without another limit.
-   subroutine end_at_pole(a)
-      type(analysis_t), intent(inout) :: a
-
-      call note_limit(a%limits, a%t, a%t, 0.0_wp, .false., [diagnostic_t(kind=diagnostic_limit, &
-         drive=a%drives%infinite, is_pole=.true., value=a%drives%pole(merge(1, 2, a%t < 0.0_wp)))])
-   end subroutine end_at_pole
-
-   !> No motion was found at `t`, at the end of `step`.
+   !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
+   !> that is said once.
    subroutine give_up(a, t, step, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t), intent(in) :: step
       type(motion_t), intent(inout) :: found
+      type(diagnostic_t), allocatable :: list(:)
+      real(wp) :: ahead
+      logical :: inconsistent
 
       a%branch = branch_t()
-      ! Not where the last substep has ended, but at the instant itself.
-      if (step%tries > 1 .and. a%convergence%ended == ended_inconsistent) &
-         call measure_closure_error(a%engine, t, a%convergence)
-      if (a%convergence%ended == ended_inconsistent) then
+      inconsistent = a%convergence%ended == ended_inconsistent
+      if (inconsistent) then
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
          call cut(found, -1, mark_inconsistent)
+         ! Not where the last substep has ended, but at the instant itself.
+         if (step%tries > 1) call measure_closure_error(a%engine, t, a%convergence)
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
          if (.not. has_pole_between(a%drives, a%t, found%t)) call get_driven_links(a%engine, t, found)
       end if
-      call diagnose_end(a, t, step, found)
+
+      allocate (list(0))
+      if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
+         associate (open => a%convergence%open)
+            call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
+               is_angle=open%is_angle, value=open%value*merge(1.0_wp, a%engine%length*open%unit, open%is_angle))], &
+               found)
+         end associate
+      else
+         ahead = t
+         ! To where a slide is infinite there are more substeps than are tried.
+         if (step%gave_up) &
+            ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
+         list = limit_diagnostic(a%engine, ahead, step%gave_up)
+         if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
+      end if
+      if (step%gave_up) then
+         if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
+      else if (allocated(step%dead_end)) then
+         if (size(step%dead_end) > 0) list = step%dead_end
+      end if
+      if (.not. a%is_lost) call add_diagnostics(list, found)
+      if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
    end subroutine give_up
 
    !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason. Beyond a
@@ -346,7 +368,7 @@ contains
       a%branch = branch_t()
       side = limit_before(a%limits, t)
       if (side > 0) then
-         associate (told => a%limits%side(side)%diagnostics)
+         associate (told => a%limits(side)%diagnostics)
             if (.not. a%is_lost) then
                call add_diagnostics(told, found)
             else if (any(told%kind == diagnostic_limit)) then
@@ -360,79 +382,6 @@ contains
       a%is_lost = .true.
    end subroutine pass_over
 
-   !> What is verified of the instant found at the end of `step`; `crosses`: by way of a change point, or on another
-   !> branch than before.
-   subroutine judge_branch(a, step, crosses)
-      type(analysis_t), intent(inout) :: a
-      type(step_record_t), intent(in) :: step
-      logical, intent(in) :: crosses
-
-      if (step%rests) then
-         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
-      else
-         a%branch = step%branch
-         a%branch%kind = merge(branch_crossed, branch_same, crosses)
-         if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
-      end if
-      if (a%begins) a%branch%kind = branch_first
-      call count_in(a%certificate_counts, a%branch, passed_of(step))
-   end subroutine judge_branch
-
-   !> What there is to say of the first position that was found, and of the first that a motion goes on from. One that
-   !> began beside a singular position is no longer near the deck's estimate.
-   subroutine diagnose_start(a, found)
-      type(analysis_t), intent(inout) :: a
-      type(motion_t), intent(inout) :: found
-      type(diagnostic_t), allocatable :: list(:)
-
-      if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
-      a%has_begun = .true.
-      if (a%follows) return
-      list = start_diagnostics(a%engine, found, a%convergence%singular)
-      call add_diagnostics(list, found)
-   end subroutine diagnose_start
-
-   !> Why there is no motion at `t`: the equation that is not satisfied, or where `step` has ended; that is said once.
-   subroutine diagnose_end(a, t, step, found)
-      type(analysis_t), intent(inout) :: a
-      real(wp), intent(in) :: t
-      type(step_record_t), intent(in) :: step
-      type(motion_t), intent(inout) :: found
-      type(diagnostic_t), allocatable :: list(:)
-      real(wp) :: ahead
-      logical :: inconsistent
-
-      allocate (list(0))
-      inconsistent = a%convergence%ended == ended_inconsistent
-      if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
-         call add_diagnostics([inconsistency(a%convergence%open, a%engine%length)], found)
-      else
-         ahead = t
-         ! To where a slide is infinite there are more substeps than are tried.
-         if (step%gave_up) &
-            ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-         list = limit_diagnostic(a%engine, ahead, step%gave_up)
-         if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
-      end if
-      if (step%gave_up) then
-         if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
-      else if (allocated(step%dead_end)) then
-         if (size(step%dead_end) > 0) list = step%dead_end
-      end if
-      if (.not. a%is_lost) call add_diagnostics(list, found)
-      if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
-   end subroutine diagnose_end
-
-   !> The equation `open` the most, in an engine with the unit `length`.
-   pure type(diagnostic_t) function inconsistency(open, length) result(r)
-      type(closure_error_t), intent(in) :: open
-      real(wp), intent(in) :: length
-
-      r = diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, is_angle=open%is_angle, &
-         value=open%value)
-      if (.not. r%is_angle) r%value = open%value*(length*open%unit)
-   end function inconsistency
-
    !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
    subroutine add_diagnostics(list, found)
       type(diagnostic_t), intent(in) :: list(:)
@@ -442,17 +391,6 @@ contains
       if (.not. allocated(found%diagnostics)) allocate (found%diagnostics(0))
       found%diagnostics = [found%diagnostics, list]
    end subroutine add_diagnostics
-
-   !> The motion found last, and what is known of it.
-   subroutine get_motion(a, found)
-      type(analysis_t), intent(inout) :: a
-      type(motion_t), intent(inout) :: found
-      logical :: finite
-
-      call take_motion(a, found, finite)
-      a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
-      call find_what_exists(a, found, finite)
-   end subroutine get_motion
 
    !> Flags what does not exist of the motion `found` last; `finite`: no number is out of range. If all drives rest, a
    !> motion that has come to a singular position rests there, too. A first position says less: undriven links may
@@ -502,25 +440,17 @@ contains
          if (last == 2 .and. .not. all(abs(found%acceleration(:, link)) <= huge(1.0_wp))) last = 1
          if (last >= 1 .and. .not. all(abs(found%velocity(:, link)) <= huge(1.0_wp))) last = 0
          if (.not. all(abs(found%position(:, link)) <= huge(1.0_wp))) last = -1
-         if (last < known_of(found, link)) call cut_link(found, link, last)
+         if (last >= known_of(found, link)) cycle
+         if (.not. allocated(found%link_known)) then
+            allocate (found%link_known(size(found%position, 2)), source=found%known)
+            allocate (found%link_mark(size(found%position, 2)), source=found%mark)
+         end if
+         found%link_known(link) = last
+         found%link_mark(link) = mark_overflow
+         if (last < found%known) found%mark = mark_overflow
+         found%known = min(found%known, last)
       end do
    end subroutine look_for_overflow
-
-   !> Of `link` only derivatives up to number `known` are in range.
-   pure subroutine cut_link(found, link, known)
-      type(motion_t), intent(inout) :: found
-      integer, intent(in) :: link, known
-
-      if (.not. allocated(found%link_known)) then
-         allocate (found%link_known(size(found%position, 2)), source=found%known)
-         allocate (found%link_mark(size(found%position, 2)), source=found%mark)
-      end if
-      found%link_known(link) = known
-      found%link_mark(link) = mark_overflow
-      if (known >= found%known) return
-      found%known = known
-      found%mark = mark_overflow
-   end subroutine cut_link
 
    !> Of all links only derivatives up to number `known` exist, and `mark` says why.
    pure subroutine cut(found, known, mark)

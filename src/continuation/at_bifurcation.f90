@@ -4,11 +4,10 @@
 module at_bifurcation
    use kinds, only: wp
    use drive_excursion, only: drive_excursion_t, largest_derivative
-   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
+   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: is_solved
-   use block_method, only: max_rate, is_at_rest
    use first_instant, only: solve_instant
    use block_branches, only: extrapolate, take_other_branch
    use block_diagnostics, only: links_of
@@ -42,40 +41,37 @@ contains
       type(diagnostic_t), allocatable, intent(out) :: list(:)
       logical, intent(out) :: stands
       type(place_t) :: before
+      type(step_record_t) :: on_the_way
+      real(wp) :: h, fastest
+      integer :: k
 
       allocate (list(0))
       stands = .false.
       if (.not. f%follows) return
       call go_back(f, step)
       call note_place(f, before)
-      call come_near(f, t, stands)
+
+      ! Three places at equal steps before `t`.
+      h = abs(t - f%t)/3.0_wp
+      associate (past => f%engine%history%past, predicted => f%engine%history%predicted)
+         fastest = max(0.0_wp, maxval(abs(past(predicted)%rate(0))))
+      end associate
+      fastest = max(fastest, min(largest_derivative(f%drives, 1, f%t, t), sqrt(huge(1.0_wp))))
+      if (h*fastest > short_step) h = short_step/fastest
+      h = sign(h, t - f%t)
+      stands = abs(h) > 0.0_wp
+      do k = 3, 1, -1
+         if (.not. stands) exit
+         call continue_to(f, t - k*h, on_the_way)
+         stands = on_the_way%arrived .and. .not. f%convergence%singular
+         if (stands) call go_on_from(f, t - k*h)
+      end do
+
       if (stands) call extrapolate(f%engine, t, list)
       stands = size(list) > 0
       if (.not. stands) call return_to(f, before)
       f%convergence = before%convergence
    end subroutine stand_on
-
-   !> Follows the motion to three places at equal steps before `t`.
-   subroutine come_near(f, t, arrived)
-      type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: t
-      logical, intent(out) :: arrived
-      type(step_record_t) :: step
-      real(wp) :: h, fastest
-      integer :: k
-
-      h = abs(t - f%t)/3.0_wp
-      fastest = max(max_rate(f%engine), min(largest_derivative(f%drives, 1, f%t, t), sqrt(huge(1.0_wp))))
-      if (h*fastest > short_step) h = short_step/fastest
-      h = sign(h, t - f%t)
-      arrived = abs(h) > 0.0_wp
-      do k = 3, 1, -1
-         if (.not. arrived) return
-         call continue_to(f, t - k*h, step)
-         arrived = step%arrived .and. .not. f%convergence%singular
-         if (arrived) call go_on_from(f, t - k*h)
-      end do
-   end subroutine come_near
 
    !> Leaves the singular position of the last instant, at the time `last`, at which the `blocks` stand, towards `t`. If
    !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
@@ -89,7 +85,7 @@ contains
       type(place_t) :: before
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: at_end(:)
-      real(wp) :: beside, high, middle
+      real(wp) :: beside, high
       logical :: found
       integer :: i, k
 
@@ -105,13 +101,8 @@ contains
       beside = last
       high = t
       do i = 1, digits(1.0_wp)
-         middle = 0.5_wp*(beside + high)
-         if (all([(abs(value_at(f%engine%laws(k), middle) - value_at(f%engine%laws(k), last))*f%engine%unit_of(k), &
-            k=1, size(f%engine%laws))] <= leaving)) then
-            beside = middle
-         else
-            high = middle
-         end if
+         call halve(all([(abs(value_at(f%engine%laws(k), middle_of(beside, high)) - value_at(f%engine%laws(k), last)) &
+            *f%engine%unit_of(k), k=1, size(f%engine%laws))] <= leaving), beside, high)
       end do
 
       f%branch_requests%stood_until = beside
@@ -150,12 +141,21 @@ contains
       type(place_t) :: before, reached
       type(drive_excursion_t) :: drives
       type(diagnostic_t), allocatable :: passed(:)
+      type(bounds_t) :: b
+      real(wp) :: now(3), near
       integer :: drive
-      logical :: arrived, stands
+      logical :: moves(size(f%engine%laws)), arrived, stands
 
       if (.not. f%follows) return
-      drive = stopping_drive(f, merge(f%place%t, f%t, step%tries > 1), merge(t, f%t, step%arrived), t)
-      if (drive == 0) return
+      ! The only drive that moves, if it is almost at rest there.
+      moves = .not. is_at_rest(f%engine%laws, merge(f%place%t, f%t, step%tries > 1), t)
+      if (count(moves) /= 1) return
+      drive = findloc(moves, .true., dim=1)
+      near = merge(t, f%t, step%arrived)
+      now = drive_motion(f%engine%laws(drive), near)
+      b = bounds_of(f%engine%laws(drive), min(f%drives%first, near), max(f%drives%last, near))
+      if (abs(now(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) return
+
       call note_place(f, reached)
       call go_back(f, step)
       call note_place(f, before)
@@ -253,28 +253,11 @@ contains
       value_at = f(1)
    end function value_at
 
-   !> The only drive that moves between the times `from` and `t`, if it is almost at rest at the time `near`; 0: none.
-   pure integer function stopping_drive(f, from, near, t) result(drive)
-      type(following_t), intent(in) :: f
-      real(wp), intent(in) :: from, near, t
-      type(bounds_t) :: b
-      real(wp) :: now(3)
-      logical :: moves(size(f%engine%laws))
-
-      moves = .not. is_at_rest(f%engine%laws, from, t)
-      drive = 0
-      if (count(moves) /= 1) return
-      drive = findloc(moves, .true., dim=1)
-      now = drive_motion(f%engine%laws(drive), near)
-      b = bounds_of(f%engine%laws(drive), min(f%drives%first, near), max(f%drives%last, near))
-      if (abs(now(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) drive = 0
-   end function stopping_drive
-
    !> The first time after `from`, up to `t`, at which `law` turns back, or rests before it does; otherwise `t`.
    pure real(wp) function next_turn(law, from, t) result(turn)
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: from, t
-      real(wp) :: f(3), low, middle, way
+      real(wp) :: f(3), low, way
       integer :: i
 
       f = drive_motion(law, from)
@@ -290,13 +273,8 @@ contains
       turn = merge(turn, t, i <= value_steps)
       if (i > value_steps) return
       do i = 1, digits(1.0_wp)
-         middle = low + 0.5_wp*(turn - low)
-         f = drive_motion(law, middle)
-         if (f(2)*way > 0.0_wp) then
-            low = middle
-         else
-            turn = middle
-         end if
+         f = drive_motion(law, middle_of(low, turn))
+         call halve(f(2)*way > 0.0_wp, low, turn)
       end do
    end function next_turn
 

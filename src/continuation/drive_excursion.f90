@@ -11,7 +11,7 @@ module drive_excursion
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
    use planar, only: pi
-   use drives, only: law_t, new_law, drive_motion, pole_value, bounds_t, bounds_of
+   use drives, only: law_t, new_law, drive_motion, pole_value, bounds_t, bounds_of, halve, middle_of
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
@@ -76,12 +76,11 @@ contains
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t, substep
       real(wp) :: change, away
-      logical :: inside
+      logical :: inside, is_plain
 
       allowed = substep
-      if (is_within(p, t, t + substep) .and. abs(substep) <= p%longest .and. p%curve < huge(1.0_wp)) then
-         if (0.125_wp*substep**2*p%curve <= largest_excursion) return
-      end if
+      call judge_step(p, substep, away, is_plain)
+      if (is_plain .and. is_within(p, t, t + substep)) return
       do while (abs((t + allowed) - t) > 0.0_wp)
          call examine(p, t, t + allowed, change, away)
          inside = is_within(p, t, t + allowed)
@@ -206,12 +205,8 @@ contains
       from = drive_motion(p%laws(p%infinite), t)
       high = 0.0_wp
       do i = 1, digits(1.0_wp)
-         f = drive_motion(p%laws(p%infinite), 0.5_wp*(low + high))
-         if (abs(f(1) - from(1)) < far) then
-            low = 0.5_wp*(low + high)
-         else
-            high = 0.5_wp*(low + high)
-         end if
+         f = drive_motion(p%laws(p%infinite), middle_of(low, high))
+         call halve(abs(f(1) - from(1)) < far, low, high)
       end do
    end function short_of_pole
 

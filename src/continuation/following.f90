@@ -12,15 +12,14 @@ module following
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
-   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, accept, &
-      follows_values
+   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, accept
    use first_instant, only: solve_instant
    use block_branches, only: pass
    implicit none
    private
    public :: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
       go_on_from, go_back, place_t, note_place, return_to, passed_of
-   public :: limits_t, note_limit, limit_before, largest_correction
+   public :: limit_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.
@@ -72,17 +71,13 @@ module following
       type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< change points; not allocated: none
    end type step_record_t
 
-   !> A limit on one side: instants from `t` on lie beyond it; what there is to say of it.
+   !> A limit on one side: instants from `t` on lie beyond it; what there is to say of it. A motion has two, the earlier
+   !> and the later one.
    type :: limit_t
       logical :: known = .false.                 !< there is one
       real(wp) :: t = 0.0_wp                     !< time
       type(diagnostic_t), allocatable :: diagnostics(:)
    end type limit_t
-
-   !> The limits of the motion that is followed: the earlier and the later one.
-   type :: limits_t
-      type(limit_t) :: side(2)
-   end type limits_t
 
 contains
 
@@ -104,10 +99,14 @@ contains
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), allocatable, intent(inout) :: engine
+      logical :: depends
 
       call move_alloc(engine, f%engine)
       f%branch_requests = new_branch_requests(m)
-      f%drives = new_drive_excursion(m, follows_values(f%engine))
+      ! Some unknown is searched for from its value before.
+      depends = .true.
+      if (allocated(f%engine%history%predicted)) depends = size(f%engine%history%predicted) > 0
+      f%drives = new_drive_excursion(m, depends)
    end subroutine begin_following
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
@@ -158,6 +157,8 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
+      type(diagnostic_t), allocatable :: list(:)
+      type(branch_requests_t) :: before
 
       if (f%follows) f%engine%state%excursion = likely_excursion(f%drives, f%t, t)
       call solve_instant(f%engine, t, f%follows, f%convergence)
@@ -170,8 +171,23 @@ contains
       if (accepted .and. f%engine%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
          call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
-      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
-         call pass_change_points(f, t, step)
+
+      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) then
+         ! A determinant has changed its sign: beyond a change point the motion goes on.
+         before = f%branch_requests
+         call pass(f%engine, t, f%branch_requests, f%convergence, list)
+         accepted = f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
+         if (accepted) then
+            if (.not. allocated(step%passed)) allocate (step%passed(0))
+            step%passed = [step%passed, list]
+         else
+            if (size(list) > 0 .and. .not. f%convergence%keeps_signs) &
+               step%dead_end = pack(list, list%kind == diagnostic_dead_end)
+            f%convergence%keeps_signs = .false.
+            ! Close to a dead point it may only look like a change point: no card is used up there.
+            f%branch_requests = before
+         end if
+      end if
       accepted = accepted .and. f%convergence%keeps_signs
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
@@ -203,28 +219,6 @@ contains
          c%kantorovich_ratio = ratio
       end associate
    end subroutine add_excursion
-
-   !> A determinant has changed its sign before `t`. At change points beyond which the motion goes on that is none.
-   subroutine pass_change_points(f, t, step)
-      type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: t
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable :: list(:)
-      type(branch_requests_t) :: before
-
-      before = f%branch_requests
-      call pass(f%engine, t, f%branch_requests, f%convergence, list)
-      if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_kantorovich_ratio) then
-         f%convergence%keeps_signs = .false.
-      else if (f%convergence%keeps_signs) then
-         if (.not. allocated(step%passed)) allocate (step%passed(0))
-         step%passed = [step%passed, list]
-      else if (size(list) > 0) then
-         step%dead_end = pack(list, list%kind == diagnostic_dead_end)
-      end if
-      ! Close to a dead point it may only look like a change point: no card is used up there.
-      if (.not. f%convergence%keeps_signs) f%branch_requests = before
-   end subroutine pass_change_points
 
    !> How many change points were passed in the `step`.
    pure integer function passed_of(step) result(passed)
@@ -292,13 +286,13 @@ contains
    !> The step from `place` to `t` has ended at `reached`. `blocked`: no substep could be made there; otherwise it
    !> is only known that `t` was not reached. `diagnostics`: what there is to say of it.
    pure subroutine note_limit(limits, place, reached, t, blocked, diagnostics)
-      type(limits_t), intent(inout) :: limits
+      type(limit_t), intent(inout) :: limits(2)
       real(wp), intent(in) :: place, reached, t
       logical, intent(in) :: blocked
       type(diagnostic_t), intent(in) :: diagnostics(:)
 
       if (abs(t - place) <= 0.0_wp) return
-      associate (limit => limits%side(merge(2, 1, t > place)))
+      associate (limit => limits(merge(2, 1, t > place)))
          limit%known = .true.
          limit%t = t
          if (blocked) limit%t = reached + near_part*(t - place)
@@ -308,11 +302,11 @@ contains
 
    !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.
    pure integer function limit_before(limits, t) result(k)
-      type(limits_t), intent(in) :: limits
+      type(limit_t), intent(in) :: limits(2)
       real(wp), intent(in) :: t
 
       k = 0
-      if (limits%side(1)%known .and. t <= limits%side(1)%t) k = 1
-      if (limits%side(2)%known .and. t >= limits%side(2)%t) k = 2
+      if (limits(1)%known .and. t <= limits(1)%t) k = 1
+      if (limits(2)%known .and. t >= limits(2)%t) k = 2
    end function limit_before
 end module following

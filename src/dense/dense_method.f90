@@ -84,6 +84,9 @@ contains
       type(convergence_t), intent(out) :: c
       type(convergence_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
+      type(motion_t) :: before
+      type(state_t) :: s
+      real(wp) :: w(3)
       logical :: finite
       integer :: k, iterations
 
@@ -92,10 +95,28 @@ contains
       call get_motion(e, found, finite)
       there = found%position
       there(:2, :) = there(:2, :)/d%system%length
-      start = predicted(d, e, found%t)
+
+      ! It begins at the position that the blocks follow, corrected through its velocities and accelerations; at first
+      ! at the deck's estimate.
+      call followed_state(e, s)
+      before = new_motion(size(there, 2))
+      call move_links(e%whole, s, e%length, before, finite)
+      w = 0.0_wp
+      if (e%history%filled > 0) w = order_weights(d%order, found%t - e%history%t(0), 0.0_wp)
+      start = before%position + w(1)*before%velocity + w(2)*before%acceleration
+      start(:2, :) = start(:2, :)/d%system%length
+
       do k = 1, max_starts
          d%pose%q = start
-         call search(d, c)
+         if (d%method == method_matrix) then
+            call solve_matrix(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
+         else
+            call solve_newton(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
+         end if
+         if (is_solved(c) .and. .not. c%singular) then
+            call reciprocal_condition(d%factors, c%reciprocal_condition)
+            c%determinant = determinant_sign(d%factors)
+         end if
          iterations = iterations + c%iterations
          if (is_solved(c)) then
             if (.not. is_found_by_blocks(d, e)) c%ended = ended_elsewhere
@@ -118,42 +139,6 @@ contains
       end if
       found%position(:2, :) = d%system%length*found%position(:2, :)
    end subroutine solve_all_links
-
-   !> Where the iteration begins at `t` (3, links): the position that `e` follows, corrected through its velocities and
-   !> accelerations; at first the deck's estimate.
-   function predicted(d, e, t) result(q)
-      type(dense_t), intent(in) :: d
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t
-      real(wp) :: q(3, size(d%pose%q, 2)), w(3)
-      logical :: is_finite
-      type(motion_t) :: before
-      type(state_t) :: s
-
-      call followed_state(e, s)
-      before = new_motion(size(q, 2))
-      call move_links(e%whole, s, e%length, before, is_finite)
-      w = 0.0_wp
-      if (e%history%filled > 0) w = order_weights(d%order, t - e%history%t(0), 0.0_wp)
-      q = before%position + w(1)*before%velocity + w(2)*before%acceleration
-      q(:2, :) = q(:2, :)/d%system%length
-   end function predicted
-
-   !> The position by the method's iteration from that of `d`; the factors of the Jacobian there, its condition and the
-   !> sign of its determinant.
-   subroutine search(d, c)
-      type(dense_t), intent(inout) :: d
-      type(convergence_t), intent(out) :: c
-
-      if (d%method == method_matrix) then
-         call solve_matrix(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
-      else
-         call solve_newton(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
-      end if
-      if (.not. is_solved(c) .or. c%singular) return
-      call reciprocal_condition(d%factors, c%reciprocal_condition)
-      c%determinant = determinant_sign(d%factors)
-   end subroutine search
 
    !> The position of `d` is the one that the blocks of `e` have found: no other is as near to that (Newton and
    !> Kantorovich).

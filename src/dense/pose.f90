@@ -173,15 +173,7 @@ contains
       real(wp), intent(in) :: psi, zeros(2)
       real(wp) :: c(2)
 
-      c(1) = -sin(zeros(1))*sinc(psi - zeros(1))
-      c(2) = cos(zeros(2))*sinc(psi - zeros(2))
+      c = [-sin(zeros(1)), cos(zeros(2))]
+      where (abs(psi - zeros) > tiny(psi)) c = c*(sin(psi - zeros)/(psi - zeros))
    end function secants
-
-   !> sin(h)/h.
-   pure real(wp) function sinc(h)
-      real(wp), intent(in) :: h
-
-      sinc = 1.0_wp
-      if (abs(h) > tiny(h)) sinc = sin(h)/h
-   end function sinc
 end module pose

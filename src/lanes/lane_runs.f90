@@ -224,7 +224,7 @@ contains
       step = instant(r%m, r%at + 1) - instant(r%m, r%at)
       associate (a => r%s%list(1))
          call come_back(a)
-         if (.not. a%follows .or. any(a%limits%side%known) .or. r%s%now%motions(1)%rests) return
+         if (.not. a%follows .or. any(a%limits%known) .or. r%s%now%motions(1)%rests) return
          call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.

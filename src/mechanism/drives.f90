@@ -23,7 +23,7 @@ module drives
    implicit none
    private
    public :: law_t, new_law, drive_motion, find_drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
-   public :: joint_distance, growing_sizes
+   public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
    !> A drive made ready for evaluation.
    type :: law_t
@@ -46,6 +46,8 @@ module drives
    real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
    !> The largest derivatives 0 to 3 of a rise of the lift 1 and the duration 1, whatever its law.
    real(wp), parameter :: rise_most(0:3) = [1.0_wp, 2.0_wp, 6.3_wp, 60.0_wp]
+   !> A drive may come to rest by so much before a joint or after, in parts of the joints' times.
+   real(wp), parameter :: rest_part = 4096.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
 
@@ -512,6 +514,41 @@ contains
          end associate
       end do
    end function sizes_at
+
+   !> The drive of `law` does not move between the times `t1` and `t2`, by the bounds of its rate; or, if they are
+   !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
+   elemental logical function is_at_rest(law, t1, t2)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t1, t2
+      type(bounds_t) :: b
+      real(wp) :: width, from
+
+      ! A law without joints rests always or never.
+      width = rest_part*maxval(abs([t1, t2, joints_of(law%drive)]))
+      if (.not. width > 0.0_wp) width = 1.0_wp
+      from = min(t1, t2) + width
+      b = bounds_of(law, from, max(max(t1, t2) - width, from + width))
+      is_at_rest = b%low(1) >= 0.0_wp .and. b%high(1) <= 0.0_wp
+   end function is_at_rest
+
+   !> Halves the interval from `low`, until which a condition holds, to `high`, from which it does not; `holds`: at the
+   !> middle of the two. In digits(1.0_wp) calls the interval becomes that of two neighbours.
+   pure subroutine halve(holds, low, high)
+      logical, intent(in) :: holds
+      real(wp), intent(inout) :: low, high
+      real(wp) :: middle
+
+      middle = middle_of(low, high)
+      if (holds) low = middle
+      if (.not. holds) high = middle
+   end subroutine halve
+
+   !> The time halfway between `low` and `high`.
+   pure real(wp) function middle_of(low, high) result(middle)
+      real(wp), intent(in) :: low, high
+
+      middle = low + 0.5_wp*(high - low)
+   end function middle_of
 
    !> Of c t**p, c >= 0: its value, or that at the time `last` where it grows more slowly than the time.
    pure real(wp) function power_size(c, p, t, last) result(size_of)

@@ -9,10 +9,9 @@ module digits_in_doubt
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
    use sum_errors, only: growth_in_centres
    use block_engine, only: block_engine_t
-   use block_method, only: growth_of_roundings, growth_of_angles
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, is_in_doubt, safe_growth
+   public :: sizes_t, sizes_of, find_growth, growth_of_roundings, growth_of_angles, is_in_doubt, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
@@ -32,6 +31,13 @@ module digits_in_doubt
       real(wp) :: length = 1.0_wp, rate = 1.0_wp
       real(wp) :: law(0:1) = 0.0_wp            !< size of the drives' laws at t = 0, and how it grows with |t|; no units
    end type sizes_t
+
+   !> With smaller pivots everything is in doubt.
+   real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
+   !> A digit of a rate is worth so many of an angle, at least.
+   real(wp), parameter :: rate_digits = 6.0_wp
+   !> What a block knows may be so many times as large as its own vectors before its roundings count for more.
+   real(wp), parameter :: usual_coarse = 16.0_wp
 
 contains
 
@@ -108,6 +114,49 @@ contains
       end if
    end subroutine find_growth
 
+   !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones. Where a block knows
+   !> much larger vectors than its own, their roundings count.
+   pure real(wp) function growth_of_roundings(e) result(growth)
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: inverse
+      integer :: k
+
+      growth = 0.0_wp
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+            if (e%blocks%list(e%needed(k))%direct) cycle
+            inverse = 1.0_wp/pivot_of(e, e%needed(k))
+            growth = max(growth, block%lipschitz*inverse**2)
+            if (block%coarse > usual_coarse) &
+               growth = max(growth, block%coarse*inverse*max(1.0_wp, block%lipschitz*inverse))
+         end associate
+      end do
+   end function growth_of_roundings
+
+   !> The same of an angle's rounding, in positions or, over `rate_digits`, in accelerations: with 1/p for the inverse
+   !> of the Jacobian and L for its Lipschitz constant 1/p, L/p^2 and L^2/p^3.
+   pure real(wp) function growth_of_angles(e) result(growth)
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: inverse
+      integer :: k
+
+      growth = 1.0_wp
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+            if (e%blocks%list(e%needed(k))%direct) cycle
+            inverse = 1.0_wp/pivot_of(e, e%needed(k))
+            growth = max(growth, block%coarse*inverse*max(1.0_wp, (block%lipschitz*inverse)**2/rate_digits))
+         end associate
+      end do
+   end function growth_of_angles
+
+   !> The least pivot of block `i`, 1 at most; roundings do not grow by less.
+   pure real(wp) function pivot_of(e, i) result(pivot)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+
+      pivot = max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)
+   end function pivot_of
    !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
    pure subroutine find_largest(n, x, largest)
       integer, intent(in) :: n
