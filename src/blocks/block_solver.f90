@@ -15,7 +15,7 @@ module block_solver
    use klu, only: klu_t
    use block_matrix, only: shape_t, solve_dense, solve_first, substitute, solve_again, pivot_range, inverse_norm, &
       spread_by_inverse, entries_of, work_length
-   use nearby_matrix, only: nearby_t, solve_nearby, stay_near, set_aside
+   use nearby_matrix, only: nearby_t, solve_nearby, stay_near
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t, block_numbers_t
@@ -144,7 +144,10 @@ contains
          end if
          c%iterations = iteration
          call assemble_with_velocities(b, i, s, w%a, w%r, w%r(second))
-         if (w%near%distance > 0.0_wp) call set_aside(w%a, w%near)
+         if (w%near%distance > 0.0_wp) then
+            w%near%a = w%a(:4)
+            w%a(:4) = w%near%factors
+         end if
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
          is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
@@ -339,7 +342,7 @@ contains
       end if
       if (block%shape%pattern > 0) then
          ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork, w%sparse(block%shape%pattern))
+         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork, w%sparse(block%shape%pattern))
          least = 1.0_wp/inverse
       end if
       c%min_pivot = 1.0_wp
@@ -359,7 +362,7 @@ contains
       if (is_single) then
          inverse = 1.0_wp/least
       else if (block%shape%pattern == 0) then
-         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork)
+         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
       end if
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*numbers%lipschitz*inverse

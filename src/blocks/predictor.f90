@@ -89,32 +89,29 @@ contains
    end subroutine remember
 
    !> Sets the values of `u` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`: the
-   !> largest difference from the latest. `order`: instead of that of `h`.
-   pure subroutine predict(h, t, u, change, order)
+   !> largest difference from the latest.
+   pure subroutine predict(h, t, u, change)
       type(history_t), intent(in) :: h
       real(wp), intent(in) :: t
       type(unknown_t), intent(inout) :: u(0:*)
       real(wp), intent(out) :: change
-      integer, intent(in), optional :: order
       real(wp) :: step, d, w(3)
-      integer :: i, k, known, by
+      integer :: i, k, known
 
       change = 0.0_wp
       step = t - h%t(0)
       known = 0
-      by = h%order
-      if (present(order)) by = order
       if (max(h%uncertain(0), h%uncertain(1), h%uncertain(2))*abs(step) > largest_part) then
          known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
-      else if (by == h%order .and. is_even(h, step)) then
+      else if (is_even(h, step)) then
          call predict_evenly(size(h%predicted), h%predicted, h%past, step, u, change)
          return
       end if
-      if (by /= own_predictor) w = order_weights(by, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
+      if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
       do k = 1, size(h%predicted)
          i = h%predicted(k)
          associate (v => h%past(i)%rate, a => h%past(i)%acceleration)
-            if (by /= own_predictor) then
+            if (h%order /= own_predictor) then
                d = w(1)*v(0) + w(2)*a(0) + w(3)*(a(0) - a(1))
             else
                d = step*v(0)

@@ -4,7 +4,7 @@
 !> One right-hand side a call: for more OpenBLAS starts threads, at ten times the cost of a small system.
 module block_matrix
    use kinds, only: wp
-   use lapack, only: gesv, getrs, gecon, geqrf, ormqr, trtrs, trcon, lacn2
+   use lapack, only: gesv, getrs, geqrf, ormqr, trtrs, lacn2
    use klu, only: klu_t, klu_serves, factor, solve, solve_transposed, determinant_sign
    implicit none
    private
@@ -158,31 +158,46 @@ contains
       if (s%rows > s%n) sign_of = 1
    end subroutine pivot_range
 
-   !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DGECON, DLACN2, DTRCON);
-   !> `iwork` (n). `work` keeps what the next solve_again needs.
-   real(wp) function inverse_norm(s, a, work, iwork, k)
+   !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2); `iwork` (n).
+   !> `work` keeps what the next solve_again needs.
+   real(wp) function inverse_norm(s, a, pivots, work, iwork, k) result(norm)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
+      integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       integer, intent(inout) :: iwork(*)
       type(klu_t), intent(inout), optional :: k
-      real(wp) :: rcond
-      integer :: info
+      integer :: asks, state(3), info
 
-      rcond = 0.0_wp
-      if (s%pattern > 0) then
-         inverse_norm = sparse_norm(s%n, k, work, work(s%n + 1), iwork)
-      else if (s%rows > s%n) then
-         call trcon('I', 'U', 'N', s%n, a, s%rows, rcond, work(s%n + 1), iwork, info)
-         inverse_norm = 1.0_wp/(max(rcond, tiny(rcond))*triangle_norm(s, a))
-      else if (s%n == 1) then
-         inverse_norm = 1.0_wp/abs(a(1))
-      else if (s%n == 2) then
-         inverse_norm = inverse_norm_of_two(a)
-      else
-         call gecon('I', s%n, a, s%n, 1.0_wp, rcond, work, iwork, info)
-         inverse_norm = 1.0_wp/max(rcond, tiny(rcond))
+      if (s%rows == 1) then
+         norm = 1.0_wp/abs(a(1))
+         return
+      else if (s%rows == 2 .and. s%n == 2) then
+         norm = inverse_norm_of_two(a)
+         return
       end if
+      asks = 0
+      norm = 0.0_wp
+      state = 0
+      do
+         associate (x => work(2*s%n + 1:3*s%n))
+            call lacn2(s%n, work(s%n + 1:2*s%n), x, iwork, norm, asks, state)
+            if (asks == 0) exit
+            ! DLACN2 estimates the largest column sum: that of the transposed inverse.
+            associate (side => merge('T', 'N', asks == 1))
+               if (s%rows > s%n) then
+                  call trtrs('U', side, 'N', s%n, 1, a, s%rows, x, s%n, info)
+               else if (s%pattern == 0) then
+                  call getrs(side, s%n, 1, a, s%n, pivots, x, s%n, info)
+               else if (asks == 1) then
+                  call solve_transposed(k, x)
+               else
+                  call solve(k, x)
+               end if
+            end associate
+         end associate
+      end do
+      if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
    !> The same of two unknowns, from the factors l = `a`(2), u = a(1), a(3), a(4): columns are swapped by the pivots,
@@ -192,43 +207,6 @@ contains
 
       norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
    end function inverse_norm_of_two
-
-   !> The same of sparse factors; `v`, `x`, `signs` (n): room.
-   real(wp) function sparse_norm(n, k, v, x, signs) result(norm)
-      integer, intent(in) :: n
-      type(klu_t), intent(inout) :: k
-      real(wp), intent(inout) :: v(*), x(*)
-      integer, intent(inout) :: signs(*)
-      integer :: asks, state(3)
-
-      asks = 0
-      norm = 0.0_wp
-      state = 0
-      do
-         call lacn2(n, v, x, signs, norm, asks, state)
-         ! DLACN2 estimates the largest column sum: that of the transposed inverse.
-         select case (asks)
-         case (1)
-            call solve_transposed(k, x)
-         case (2)
-            call solve(k, x)
-         case default
-            exit
-         end select
-      end do
-   end function sparse_norm
-
-   !> The largest row sum of R.
-   pure real(wp) function triangle_norm(s, a) result(norm)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(in) :: a(s%rows, *)
-      integer :: k
-
-      norm = tiny(norm)
-      do k = 1, s%n
-         norm = max(norm, sum(abs(a(k, k:s%n))))
-      end do
-   end function triangle_norm
 
    !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
    subroutine spread_by_inverse(s, a, pivots, work, h, spread, k)

@@ -181,14 +181,20 @@ contains
       type(view_t), target :: v
       type(c_ptr) :: numeric
       integer(c_int) :: done
+      integer :: i, at
+      logical :: serves
 
       call set_view(k, v)
       associate (p => k%pattern)
          if (allocated(k%lu)) then
             done = klu_refactor(p%first, p%row, c_loc(a), c_loc(v%symbolic), c_loc(v%numeric), k%common)
-            info = merge(0, 1, done /= 0 .and. k%common%status == 0)
-            if (info == 0) info = merge(0, 1, has_small_multipliers(k))
-            if (info == 0) return
+            serves = done /= 0 .and. k%common%status == 0
+            do i = 1, size(k%pivots)
+               at = k%l_at(i) + (k%l_length(i) + 1)/2
+               serves = serves .and. all(abs(k%lu(at + 1:at + k%l_length(i))) <= max_multiplier)
+            end do
+            info = 0
+            if (serves) return
          end if
          call set_common(k%common)
          numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(v%symbolic), k%common)
@@ -198,18 +204,6 @@ contains
       call take_factors(numeric, k)
       done = klu_free_numeric(numeric, k%common)
    end subroutine factor
-
-   !> No multiplier of the factors is larger than `max_multiplier`.
-   pure logical function has_small_multipliers(k) result(has)
-      type(klu_t), intent(in) :: k
-      integer :: i, at
-
-      has = .true.
-      do i = 1, size(k%pivots)
-         at = k%l_at(i) + (k%l_length(i) + 1)/2
-         has = has .and. all(abs(k%lu(at + 1:at + k%l_length(i))) <= max_multiplier)
-      end do
-   end function has_small_multipliers
 
    !> Copies the factors `numeric` that KLU has made.
    subroutine take_factors(numeric, k)

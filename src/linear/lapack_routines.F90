@@ -83,17 +83,6 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(trtrs)
-      !> Reciprocal condition number of a triangular matrix.
-      subroutine NAMED(trcon)(norm, uplo, diag, n, a, lda, rcond, work, iwork, info)
-         import :: wp
-         character(1), intent(in) :: norm, uplo, diag
-         integer, intent(in) :: n, lda
-         real(wp), intent(in) :: a(lda, *)
-         real(wp), intent(out) :: rcond
-         real(wp), intent(inout) :: work(*)
-         integer, intent(inout) :: iwork(*)
-         integer, intent(out) :: info
-      end subroutine NAMED(trcon)
       !> Singular value decomposition.
       subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
          import :: wp

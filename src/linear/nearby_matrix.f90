@@ -5,7 +5,7 @@ module nearby_matrix
    use block_matrix, only: shape_t, inverse_norm_of_two
    implicit none
    private
-   public :: nearby_t, stay_near, set_aside, solve_nearby
+   public :: nearby_t, stay_near, solve_nearby
 
    !> It, the factors of the other, and how far they are apart.
    type :: nearby_t
@@ -46,15 +46,6 @@ contains
          error = error*near%distance
       end do
    end subroutine stay_near
-
-   !> The changed matrix, now in `a`, goes to `near`, and the factors come back.
-   pure subroutine set_aside(a, near)
-      real(wp), intent(inout) :: a(*)
-      type(nearby_t), intent(inout) :: near
-
-      near%a = a(:4)
-      a(:4) = near%factors
-   end subroutine set_aside
 
    !> Solves `near` x = `b` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy and
    !> Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two, to

@@ -6,7 +6,7 @@ module quad_lapack
    use, intrinsic :: iso_fortran_env, only: qp => real128
    implicit none
    private
-   public :: gesv, getrf, getrs, gecon, lacn2, ptsv, geqrf, ormqr, trtrs, trcon, gesvd
+   public :: gesv, getrf, getrs, gecon, lacn2, ptsv, geqrf, ormqr, trtrs, gesvd
 
    integer, parameter :: max_sweeps = 60
 
@@ -220,7 +220,8 @@ contains
       end do
    end subroutine ormqr
 
-   !> Solves R x = `b` (n, nrhs); `uplo` is U, `trans` N, `diag` N. `info` > 0: that diagonal entry is zero.
+   !> Solves R x = `b` (n, nrhs), or R^T x = `b`: `trans` T; `uplo` is U, `diag` N.
+   !> `info` > 0: that diagonal entry is zero.
    pure subroutine trtrs(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
       character(1), intent(in) :: uplo, trans, diag
       integer, intent(in) :: n, nrhs, lda, ldb
@@ -229,48 +230,25 @@ contains
       integer, intent(out) :: info
       integer :: j, k
 
-      info = merge(0, -1, uplo == 'U' .and. trans == 'N' .and. diag == 'N')
+      info = merge(0, -1, uplo == 'U' .and. any(trans == ['N', 'T']) .and. diag == 'N')
       if (info < 0) return
       do k = 1, n
          if (abs(a(k, k)) <= 0.0_qp) info = k
          if (info > 0) return
       end do
       do j = 1, nrhs
+         if (trans == 'T') then
+            do k = 1, n
+               b(k, j) = (b(k, j) - dot_product(a(:k - 1, k), b(:k - 1, j)))/a(k, k)
+            end do
+            cycle
+         end if
          do k = n, 1, -1
             b(k, j) = b(k, j)/a(k, k)
             b(:k - 1, j) = b(:k - 1, j) - b(k, j)*a(:k - 1, k)
          end do
       end do
    end subroutine trtrs
-
-   !> 1/(|R| |R^-1|) in the maximum norm, exactly, row by row; `norm` is I, `uplo` U, `diag` N. `work` (2 n).
-   pure subroutine trcon(norm, uplo, diag, n, a, lda, rcond, work, iwork, info)
-      character(1), intent(in) :: norm, uplo, diag
-      integer, intent(in) :: n, lda
-      real(qp), intent(in) :: a(lda, *)
-      real(qp), intent(out) :: rcond
-      real(qp), intent(inout) :: work(*)
-      integer, intent(inout) :: iwork(*)
-      integer, intent(out) :: info
-      real(qp) :: largest
-      integer :: k
-
-      rcond = 0.0_qp
-      info = merge(0, -1, norm == 'I')
-      if (info < 0) return
-      iwork(:n) = 0
-      work(n + 1:2*n) = 0.0_qp
-      largest = 0.0_qp
-      do k = 1, n
-         largest = max(largest, sum(abs(a(k, k:n))))
-         work(:n) = 0.0_qp
-         work(k) = 1.0_qp
-         call trtrs(uplo, 'N', diag, n, 1, a, lda, work, n, info)
-         if (info /= 0) return
-         work(n + 1:2*n) = work(n + 1:2*n) + abs(work(:n))
-      end do
-      if (n > 0) rcond = 1.0_qp/(largest*maxval(work(n + 1:2*n)))
-   end subroutine trcon
 
    !> `a` (m, n) = `u` (m, m) diag(`s`) `vt` (n, n), `s` (min(m, n)) in falling order; `a` is lost. `jobu`
    !> and `jobvt` are A. `info` > 0: not all columns are at right angles. `work`(1): what `lwork` must be.
