@@ -4,8 +4,7 @@ module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use mechanism, only: remark_jumps
-   use mechanism, only: mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
+   use mechanism, only: remark_jumps, mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
       drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
@@ -114,7 +113,7 @@ contains
       !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
       subroutine build_terms(d)
          integer, intent(in) :: d
-         integer :: i, n, row, last, kind
+         integer :: i, n, last, kind
 
          set%cards(k)%subject = d
          n = 0
@@ -132,28 +131,32 @@ contains
          end do
          allocate (drive%terms(n))
          do i = k + 1, last
-            if (set%cards(i)%row > 1) cycle
-            associate (term => drive%terms(set%cards(i)%term))
-               if (set%cards(i)%form == form_rise) then
+            associate (card => set%cards(i), term => drive%terms(set%cards(i)%term), row => set%cards(i)%row)
+               if (card%form == form_rise) then
                   call match_word(set, i, rise_words, rise_law, kind)
                   term%kind = term_cycloid + max(kind, 1) - 1
-                  term%r = set%cards(i)%real*[1.0_wp, 1.0_wp, unit_of(drive)]
-                  if (set%cards(i)%valid .and. set%cards(i)%real(2) <= 0.0_wp) &
-                     call add_card_error(set, rise_duration, i, real_2)
+                  term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
+                  if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, i, real_2)
                   if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, i, label_a)
-               else if (is_row(set%cards(i))) then
-                  call build_table(pack([(row, row=i, last)], set%cards(i:last)%term == set%cards(i)%term), &
-                     unit_of(drive), term)
+                  cycle
+               end if
+
+               if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, i, card_name)
+               if (is_row(card)) then
+                  if (row == 1) n = count(set%cards(i:last)%term == card%term)
+                  if (row == 1) allocate (term%knots(n), term%values(n))
+                  term%kind = term_table
+                  term%knots(row) = card%real(1)
+                  term%values(row) = card%real(2)*unit_of(drive)
+                  if (row > 1 .and. card%valid .and. any(card%given) .and. set%cards(i - 1)%valid &
+                     .and. card%real(1) <= set%cards(i - 1)%real(1)) call add_card_error(set, table_order, i, real_1)
+                  if (n == 1) call add_card_error(set, table_short, i, label_a)
                else
                   call match_word(set, i, term_words, add_kind, kind)
                   if (kind == term_harmonic) &
-                     term%r = set%cards(i)%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
-                  if (kind == term_power) then
-                     term%kind = term_power
-                     term%r = set%cards(i)%real*[unit_of(drive), 1.0_wp, 1.0_wp]
-                  end if
-                  if (set%cards(i)%valid .and. .not. any(set%cards(i)%given)) &
-                     call add_card_error(set, add_blank, i, card_name)
+                     term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
+                  if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
+                  if (kind == term_power) term%kind = term_power
                end if
             end associate
          end do
@@ -165,30 +168,6 @@ contains
 
          is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
       end function is_row
-
-      !> The table on the ADD cards `rows`, as `term`. `unit`: that of its values.
-      subroutine build_table(rows, unit, term)
-         integer, intent(in) :: rows(:)
-         real(wp), intent(in) :: unit
-         type(term_t), intent(inout) :: term
-         integer :: i
-
-         term%kind = term_table
-         term%knots = set%cards(rows)%real(1)
-         term%values = set%cards(rows)%real(2)*unit
-         do i = 1, size(rows)
-            associate (k => rows(i), above => rows(max(1, i - 1)))
-               if (.not. set%cards(k)%valid) cycle
-               if (.not. any(set%cards(k)%given)) then
-                  call add_card_error(set, add_blank, k, card_name)
-               else if (i > 1) then
-                  if (set%cards(above)%valid .and. set%cards(k)%real(1) <= set%cards(above)%real(1)) &
-                     call add_card_error(set, table_order, k, real_1)
-               end if
-            end associate
-         end do
-         if (size(rows) == 1) call add_card_error(set, table_short, rows(1), label_a)
-      end subroutine build_table
    end subroutine build_drives
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no

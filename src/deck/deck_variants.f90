@@ -12,7 +12,7 @@ module deck_variants
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
       form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_toler, &
-      form_vary, forms, reals_of, card_fields
+      form_vary, form_end, forms, reals_of, card_fields
    use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
       vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long, toler_alone, &
@@ -66,18 +66,16 @@ contains
       type(tolerance_t) :: list(3*set%number_of(form_toler))
       type(card_number_t) :: number
       type(unit_t) :: unit
-      integer :: k, i, n, taken
+      integer :: k, i, n, form
 
       n = 0
       do k = set%count + 1, set%count + set%apart
          if (set%cards(k)%form /= form_toler .or. .not. set%cards(k)%valid) cycle
          associate (card => set%cards(k), above => set%cards(k)%below, before => set%cards(set%count + 1:k - 1))
-            taken = 0
-            if (above > 0) then
-               if (set%cards(above)%form == form_unknown) cycle
-               taken = forms(set%cards(above)%form)%reals
-            end if
-            if (taken == 0) then
+            form = form_end
+            if (above > 0) form = set%cards(above)%form
+            if (form == form_unknown) cycle
+            if (forms(form)%reals == 0) then
                call add_card_error(set, toler_alone, k, card_name)
             else if (any(before%below == above .and. before%form == form_toler)) then
                call add_card_error(set, toler_second, k, card_name)
