@@ -156,7 +156,7 @@ module input_errors
 contains
 
    !> Adds the error `code` about `text` (may be ''), which begins at `column` in `field` of `card`. `more` ends the
-   !> sentence.
+   !> sentence. Above it stand the card, a ruler in tens up to the end of the card or to the mark, and the mark.
    subroutine add_error(errors, code, card, field, column, text, more)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
@@ -165,16 +165,27 @@ contains
       integer, intent(in) :: column
       character(*), intent(in) :: text
       character(*), intent(in), optional :: more
-      character(:), allocatable :: quoted
-      integer :: form
+      character(:), allocatable :: head, shown, margin, quoted
+      integer :: form, tens
 
       errors%count = errors%count + 1
       if (errors%count > max_printed) return
+      head = whole(card%number)//' |'
+      head = ' CARD '//repeat(' ', max(6 - len(head), 0))//head
+      shown = trim(card%text)
+      ! Text beyond the last column is shown if there is room for it in a line.
+      if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
+         shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
+      call add_line(errors, head//printable(shown))
+      margin = repeat(' ', len(head) - 1)//'|'
+      tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
+      call add_line(errors, margin//ruler(:10*tens))
+      if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
+
       quoted = ''
       if (text /= '') quoted = ' "'//printable(trim(text))//'"'
       ! A sentence without a subject would be read twice.
       if (text == '' .and. index(code%sentence, 'IS ') == 1) quoted = ' A BLANK FIELD'
-      call add_picture(errors, card, column)
       call add_message(errors, code, '  CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '// &
                        trim(field%name)//':'//quoted, more)
       form = code%layout
@@ -257,27 +268,6 @@ contains
       if (errors%count > max_printed) &
          report = report//new_line('a')//' *** AND '//whole(errors%count - max_printed)//' MORE'
    end function error_report
-
-   !> Adds the card, a ruler in tens up to the end of the card or to the mark, and the mark.
-   subroutine add_picture(errors, card, column)
-      type(input_errors_t), intent(inout) :: errors
-      type(card_t), intent(in) :: card
-      integer, intent(in) :: column
-      character(:), allocatable :: head, shown, number, margin
-      integer :: tens
-
-      number = whole(card%number)
-      head = ' CARD '//repeat(' ', max(4 - len(number), 0))//number//' |'
-      shown = trim(card%text)
-      ! Text beyond the last column is shown if there is room for it in a line.
-      if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
-         shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
-      call add_line(errors, head//printable(shown))
-      margin = repeat(' ', len(head) - 1)//'|'
-      tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
-      call add_line(errors, margin//ruler(:10*tens))
-      if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
-   end subroutine add_picture
 
    !> `text` with ? for each byte that is not printable ASCII, so that every column stays one character wide.
    pure function printable(text) result(shown)
