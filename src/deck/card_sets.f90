@@ -78,7 +78,7 @@ contains
       integer, intent(in) :: number
       integer :: kind
 
-      if (allocated(set%cards)) set%cards%subject = 0
+      if (set%count > 0) set%cards(:set%count)%subject = 0
       do kind = request_link, request_pair
          set%named(kind) = named_t()
       end do

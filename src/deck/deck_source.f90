@@ -76,9 +76,11 @@ contains
             if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
             source%after_return = .false.
          end if
-         length = scan(source%buffer(source%at:), line_feed//carriage_return) - 1
-         is_whole = length >= 0
-         if (.not. is_whole) length = len(source%buffer) - source%at + 1
+         do i = source%at, len(source%buffer)
+            if (source%buffer(i:i) == line_feed .or. source%buffer(i:i) == carriage_return) exit
+         end do
+         length = i - source%at
+         is_whole = i <= len(source%buffer)
          if (length > max_columns) then
             call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines + 1) &
                //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')
