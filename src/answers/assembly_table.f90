@@ -180,7 +180,7 @@ contains
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
       digits = digits_of(estimate_digits, largest, characteristic_length(m))
       if (any(is_joint)) digits = drawing_digits
-      call put(o, ruler_card())
+      call put(o, ruler_card)
       do i = 1, size(m%links)
          if (m%links(i)%ground) cycle
          names = ''

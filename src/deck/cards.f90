@@ -42,6 +42,10 @@ module cards
       [field_t('REAL-1', 9, 32), field_t('REAL-2', 33, 56), field_t('REAL-3', 57, 80)]
    type(field_t), parameter :: title_field = field_t('TITLE', 9, 80)
 
+   !> The comment card that shows the columns of all fields.
+   character(card_columns), parameter :: ruler_card = &
+      '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|'
+
    !> The fields that a card takes.
    type :: form_t
       !> A letter for each label field: L for a label, W for a whole number, a small letter where the field may be
@@ -131,31 +135,11 @@ contains
    !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
       type(card_t), intent(in) :: card
-
       integer :: first
 
-      first = verify(card%text, ' ')
-      if (first == 0) then
-         is_passed_over = card%overrun == 0
-      else
-         is_passed_over = scan(card%text(first:first), '$#!') > 0
-      end if
+      first = max(verify(card%text, ' '), 1)
+      is_passed_over = scan(card%text(first:first), '$#!') > 0 .or. (card%text == '' .and. card%overrun == 0)
    end function is_passed_over
-
-   !> The comment card that shows the columns of all fields.
-   pure function ruler_card() result(text)
-      character(card_columns) :: text
-      type(field_t) :: f
-      integer :: i
-
-      text = repeat('-', card_columns)
-      do i = 1, size(card_fields)
-         f = card_fields(i)
-         text(f%first:f%first + len_trim(f%name) - 1) = f%name
-         if (i > 1) text(f%last:f%last) = '|'
-      end do
-      text(1:5) = '$'//card_fields(card_name)%name(1:4)
-   end function ruler_card
 
    !> The ruler and, below it, the layout of the cards of the name `name`; of '', those of all cards, the `*` card last.
    pure function layout_of(name) result(text)
@@ -163,7 +147,7 @@ contains
       character(:), allocatable :: text
       integer :: form
 
-      text = ruler_card()
+      text = ruler_card
       do form = 1, size(forms)
          if (name == '' .or. form == find_form(name)) text = text//new_line('a')//trim(forms(form)%layout)
       end do
