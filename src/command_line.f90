@@ -146,6 +146,7 @@ contains
       type(word_t), intent(in) :: words(:)
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: word
       integer :: i, k
       logical :: has_deck
 
@@ -162,7 +163,12 @@ contains
          end if
          select case (words(i)%text)
          case ('--sets')
-            call take_share()
+            word = next_word()
+            k = index(word, '/')
+            options%share = whole_of(word(:max(0, k - 1)))
+            options%shares = whole_of(word(k + 1:))
+            if (options%share < 1 .or. options%share > options%shares) &
+               call reject('OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
          case ('--jobs')
             options%jobs = whole_of(next_word())
             if (options%jobs < 1 .or. options%jobs > max_jobs) &
@@ -186,17 +192,44 @@ contains
          case ('--ruler')
             options%show = 'RULER'
          case ('--explain')
-            call take_message(options%deck)
+            ! All words that follow: the code of a message, or words of it.
             options%show = 'EXPLAIN'
+            options%deck = ''
+            do while (i < size(words))
+               options%deck = trim(options%deck//' '//next_word())
+            end do
+            options%deck = trim(adjustl(options%deck))
+            if (len(options%deck) == 0) then
+               call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+            else if (len(explained(options%deck)) == 0) then
+               call reject('OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//options%deck &
+                  //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+            end if
          case default
-            call take_deck(words(i)%text)
+            word = words(i)%text
+            if (len(word) == 0) then
+               call reject('THE NAME OF THE DECK IS EMPTY')
+            else if (word(1:1) == '-' .and. word /= '-') then
+               call reject('OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+            else if (has_deck) then
+               call reject('MORE THAN ONE DECK IS NAMED: '//options%deck//' AND '//word)
+            else
+               options%deck = word
+               if (word == '-') options%deck = ''
+               has_deck = .true.
+            end if
          end select
       end do
       if (.not. allocated(failure)) call check_study()
       if (.not. allocated(failure)) call check_files()
       if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
-          find_form(options%deck) == form_unknown) call reject('OPTION --ruler: NO CARD HAS THE NAME ' &
-         //options%deck//'; CARDS ARE '//card_names())
+         find_form(options%deck) == form_unknown) then
+         word = ''
+         do k = 1, size(forms)
+            word = word//' '//trim(form_name(k))
+         end do
+         call reject('OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//word)
+      end if
       if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
          .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
 
@@ -208,18 +241,6 @@ contains
 
          call fail(failure, status_rejected, text)
       end subroutine reject
-
-      !> The names of all cards, with blanks between them.
-      pure function card_names() result(text)
-         character(:), allocatable :: text
-         integer :: form
-
-         text = ''
-         do form = 1, size(forms)
-            text = trim(text//' '//form_name(form))
-         end do
-         text = text(2:)
-      end function card_names
 
       !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
       subroutine check_files()
@@ -251,23 +272,6 @@ contains
          end if
       end subroutine check_study
 
-      !> Takes `word` as the deck. Errors: a second deck, an empty word, an unknown option.
-      subroutine take_deck(word)
-         character(*), intent(in) :: word
-
-         if (len(word) == 0) then
-            call reject('THE NAME OF THE DECK IS EMPTY')
-         else if (word(1:1) == '-' .and. word /= '-') then
-            call reject('OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
-         else if (has_deck) then
-            call reject('MORE THAN ONE DECK IS NAMED: '//options%deck//' AND '//word)
-         else
-            options%deck = word
-            if (word == '-') options%deck = ''
-            has_deck = .true.
-         end if
-      end subroutine take_deck
-
       !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output,
       !> or of a directory. All `files` of the option have it.
       subroutine take_file(files)
@@ -289,36 +293,6 @@ contains
             if (file_options(j)%word == option) files(j)%text = path
          end do
       end subroutine take_file
-
-      !> All words after option number `i`: the code of a message, or words of it.
-      subroutine take_message(message)
-         character(:), allocatable, intent(out) :: message
-
-         message = ''
-         do while (i < size(words))
-            message = trim(message//' '//next_word())
-         end do
-         message = trim(adjustl(message))
-         if (len(message) == 0) then
-            call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
-         else if (len(explained(message)) == 0) then
-            call reject('OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//message &
-               //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
-         end if
-      end subroutine take_message
-
-      !> The K/N after option number `i`.
-      subroutine take_share()
-         character(:), allocatable :: word
-         integer :: slash
-
-         word = next_word()
-         slash = index(word, '/')
-         options%share = whole_of(word(:max(0, slash - 1)))
-         options%shares = whole_of(word(slash + 1:))
-         if (options%share < 1 .or. options%share > options%shares) &
-            call reject('OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
-      end subroutine take_share
 
       !> The word after word number `i`, '' if there is none; that is number `i` then.
       function next_word() result(word)

@@ -1,10 +1,11 @@
 !> The files that a job writes: those that all sets share, and those of which each set has its own.
 module outputs
+   use, intrinsic :: iso_c_binding, only: c_null_char
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed
    use processes, only: turns_t
-   use system_calls, only: identity_t, identity_of_path, make_directory, remove_directory, last_error, reason_of, &
+   use system_calls, only: identity_t, identity_of_path, make_directory, rmdir, last_error, reason_of, &
       signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
@@ -63,7 +64,7 @@ contains
       do i = 1, size(all_files)
          call abandon_output(all_files(i))
       end do
-      if (allocated(o%made_directory)) call remove_directory(o%made_directory)
+      if (allocated(o%made_directory)) i = rmdir(o%made_directory//c_null_char)
 
    contains
 

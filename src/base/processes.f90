@@ -17,7 +17,7 @@ module processes
    implicit none
    private
    public :: processor_count, make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed
-   public :: end_without_memory, report, end_of_message
+   public :: end_without_memory, report, end_of_message, memfd_create
    public :: turns_t, make_turns, close_turns, begin_part, end_part, write_in_turn, write_rest, parts_taken, parts_done
 
    !> What `wait_for_child` adds to the number of the signal that has killed a child.

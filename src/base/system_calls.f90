@@ -9,8 +9,8 @@ module system_calls
    implicit none
    private
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
-   public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
-   public :: make_directory, remove_directory, is_terminal
+   public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
+   public :: make_directory, rmdir, is_terminal
    public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
@@ -239,13 +239,6 @@ contains
       is_terminal = isatty(descriptor) /= 0
    end function is_terminal
 
-   !> Deletes the contents of an open file; false for an error.
-   logical function empty_file(descriptor)
-      integer(c_int), intent(in) :: descriptor
-
-      empty_file = ftruncate(descriptor, 0_c_long) == 0
-   end function empty_file
-
    !> Removes the file that `path` leads to; a symbolic link to it stays.
    subroutine remove_file(path)
       character(*), intent(in) :: path
@@ -268,14 +261,6 @@ contains
       exists = made
       if (.not. made) exists = last_error() == file_exists
    end subroutine make_directory
-
-   !> Removes the directory `path` if it is empty.
-   subroutine remove_directory(path)
-      character(*), intent(in) :: path
-      integer(c_int) :: status
-
-      status = rmdir(path//c_null_char)
-   end subroutine remove_directory
 
    !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
    !> next file would take their descriptors, and what is printed would go into it.

@@ -2,10 +2,10 @@
 !> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
 !> in memory until the turn has come (`processes`).
 module text_output
-   use, intrinsic :: iso_c_binding, only: c_int, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
-      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor
+      write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
@@ -223,7 +223,7 @@ contains
          o%emptied = .true.
          id = identity_of_descriptor(o%descriptor)
          if (id%regular) then
-            if (.not. empty_file(o%descriptor)) o%error = last_error()
+            if (ftruncate(o%descriptor, 0_c_long) /= 0) o%error = last_error()
          end if
       end if
       done = 0

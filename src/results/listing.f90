@@ -5,8 +5,7 @@
 module listing
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_small_letters, remark_more, request_t, request_link, &
-      request_pole
+   use mechanism, only: settings_t, mechanism_t, remark_small_letters, remark_more, request_t, request_link
    use names, only: drive_name, listed, more
    use motion
    use structure, only: findings_t, spare_drives_text
@@ -16,7 +15,7 @@ module listing
    use independent, only: set_t, request_of
    use set_motion, only: set_motion_t, is_flagged, has_words, find_row_in_set, doubt_in_set, spread_t, spread_in_set
    use listing_layout, only: layout_t, digits_t, new_layout, put_folded, angle_unit, choose_time_digits, unit_of
-   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row, put_centre
+   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row
    use text_output, only: output_t, put, add
    use numerals, only: whole, rounded, put_fixed, numeral_length
    use known_digits, only: unknown_digit
@@ -132,11 +131,7 @@ contains
          call find_row_in_set(s, i, row)
          associate (part => s%rows(i)%part)
             call put_heads(o, l%own(part), merge(l%links_table, row%kind, row%kind == request_link), table)
-            if (row%kind >= request_pole) then
-               call put_centre(o, l, l%own(part), s%polish, row, doubt_in_set(row, s, i), table)
-            else
-               call put_row(o, l, l%own(part), row, request%angle_alone, doubt_in_set(row, s, i), table)
-            end if
+            call put_row(o, l, l%own(part), s%polish, row, request%angle_alone, doubt_in_set(row, s, i), table)
             if (.not. has_tolerances(s%parts(part), request)) cycle
 
             ! What tolerances do to the row, with some more decimals: the worst case, and the root of the sum of
@@ -147,11 +142,11 @@ contains
             row%known = x%known
             row%name = ' '//phrase(say_worst, s%polish)
             row%value = worst_case(x%tolerances, x%of)
-            call put_row(o, l, d, row, request%angle_alone, worst_case(x%tolerances, x%error), table)
+            call put_row(o, l, d, s%polish, row, request%angle_alone, worst_case(x%tolerances, x%error), table)
             row%name = ' RSS'
             row%value = root_of_squares(x%tolerances, x%of)
             ! The difference of two roots is no larger than the root of the differences.
-            call put_row(o, l, d, row, request%angle_alone, root_of_squares(x%tolerances, x%error), table)
+            call put_row(o, l, d, s%polish, row, request%angle_alone, root_of_squares(x%tolerances, x%error), table)
          end associate
       end do
       if (.not. begun .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table)

@@ -12,7 +12,7 @@ module listing_tables
    use phrases, only: phrase, say_at_rest, say_infinite
    implicit none
    private
-   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, put_centre, time_text, &
+   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, &
       drive_text, known_text
 
    character(4), parameter :: between = ' .. '
@@ -184,28 +184,38 @@ contains
 
    !> One row with the digits `d`: what is not known is a word, what the row does not have is blank: of a link whose
    !> `angle_alone` is listed its place. `error` (3, 0:2) is unknown of the numbers.
-   subroutine put_row(o, l, d, row, angle_alone, error, table)
+   subroutine put_row(o, l, d, polish, row, angle_alone, error, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
+      logical, intent(in) :: polish, angle_alone
       type(row_t), intent(in) :: row
-      logical, intent(in) :: angle_alone
       real(wp), intent(in) :: error(3, 0:2)
       type(listing_state_t), intent(inout) :: table
       character(row_length) :: line
       real(wp) :: x, off
-      integer :: k, c, i, last, unit, column(3, 0:2)
+      integer :: k, c, i, first, last, unit, column(3, 0:2)
 
       column = l%column(:, :, merge(links_turning, row%kind, angle_alone))
       ! A pair has a slide or an angle, and its value is the first.
       if (row%kind == request_pair) column(merge(1, 3, row%angular), :) = 0
       line = ' '//row%name
-      last = name_length + numeral_length*maxval(column)
+      first = names_length(row%kind)
+      if (row%kind >= request_pole) then
+         i = index(row%name, ' ')
+         line(i + 1:) = ''
+         line(name_length + 1:) = ' '//row%name(i + 1:)
+      end if
       do k = 0, 2
          do c = 1, 3
             if (column(c, k) == 0) cycle
-            associate (field => line(name_length + numeral_length*(column(c, k) - 1) + 1:name_length &
-               + numeral_length*column(c, k)))
+            last = first + numeral_length*column(c, k)
+            associate (field => line(last - numeral_length + 1:last))
+               if (row%kind >= request_pole) then
+                  field = number_of_centre()
+                  table%masked = table%masked .or. index(field, unknown_digit) > 0
+                  cycle
+               end if
                unit = dimension_of(c)
                i = merge(1, c, row%kind == request_pair)
                if (k > row%known) then
@@ -227,42 +237,14 @@ contains
             end associate
          end do
       end do
-      call put(o, line(:last))
-      table%lines = table%lines + 1
-   end subroutine put_row
-
-   !> The `row` of a pole or curve, with the digits `d`; `error` (3, 0:2) is unknown of its numbers.
-   subroutine put_centre(o, l, d, polish, row, error, table)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      logical, intent(in) :: polish
-      type(row_t), intent(in) :: row
-      real(wp), intent(in) :: error(3, 0:2)
-      type(listing_state_t), intent(inout) :: table
-      character(row_length) :: line
-      integer :: c, k, last
-
-      associate (first => index(row%name, ' '))
-         line = ' '//row%name(:first)
-         line(name_length + 1:) = ' '//row%name(first + 1:)
-      end associate
-      do k = 0, 2
-         do c = 1, 3
-            if (l%column(c, k, row%kind) == 0) cycle
-            last = names_length(row%kind) + numeral_length*l%column(c, k, row%kind)
-            line(last - numeral_length + 1:last) = cell()
-         end do
-      end do
-      table%masked = table%masked .or. index(line(names_length(row%kind) + 1:), unknown_digit) > 0
       call put(o, trim(line))
       table%lines = table%lines + 1
 
    contains
 
-      !> Number (c, k) of the row, or the word in its place. A pole has a direction where it is at infinity, and where
-      !> it may be there: then nothing is known of its place.
-      pure function cell()
+      !> Number (c, k) of the row of a pole or curve, or the word in its place. A pole has a direction where it is at
+      !> infinity, and where it may be there: then nothing is known of its place.
+      pure function number_of_centre() result(cell)
          character(numeral_length) :: cell
          real(wp) :: unit
          logical :: is_direction
@@ -288,6 +270,6 @@ contains
             if (row%state == centre_infinite) cell = phrase(say_infinite, polish)
             cell = adjustr(cell)
          end if
-      end function cell
-   end subroutine put_centre
+      end function number_of_centre
+   end subroutine put_row
 end module listing_tables

@@ -38,7 +38,9 @@ contains
       type(mechanism_t), intent(in) :: m
       type(table_t), intent(in) :: table
       character(*), intent(in) :: suffix
-      integer :: rows, pages, i
+      character(:), allocatable :: ending
+      logical :: own(size(table%columns), 2)      ! (columns, lengths or angles)
+      integer :: rows, pages, page, i, k, n
 
       rows = maxval([0, table%columns%row])
       pages = min(max_pages, (rows + page_rows - 1)/page_rows)
@@ -71,29 +73,14 @@ contains
       call put(o, 'set rmargin 3')
 
       call put(o, 'do for [over = 1:'//whole(1 + size(m%drives))//'] {')
-      do i = 1, pages
-         call put_page(i)
-      end do
-      call put(o, '}')
-      if (rows > pages*page_rows) call put(o, '# The other columns of the table, from ' &
-         //whole(2 + size(m%drives))//' on, are drawn in the same way.')
-
-   contains
-
-      !> The picture of the `page`-th links, points and pairs over the column `over`: lengths beside angles, derivatives
-      !> below.
-      subroutine put_page(page)
-         integer, intent(in) :: page
-         character(:), allocatable :: ending
-         logical :: own(size(table%columns), 2)      ! (columns, lengths or angles)
-         integer :: k, i, n
-
+      ! A picture of the next links, points and pairs: lengths beside angles, derivatives below.
+      do page = 1, pages
          own(:, 1) = table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows
          own(:, 2) = own(:, 1) .and. table%columns%angular
          own(:, 1) = own(:, 1) .and. .not. table%columns%angular
-         ending = ''
-         if (page > 1) ending = '-page'//whole(page)
-         call put(o, '   set output picture(over)."'//ending//'.svg"')
+         ending = '.svg"'
+         if (page > 1) ending = '-page'//whole(page)//ending
+         call put(o, '   set output picture(over)."'//ending)
          call put(o, '   set multiplot layout 3,'//whole(count(any(own, dim=1)))//' title '//quoted(trim(m%title)) &
             //' font ",16"')
          do k = 0, 2
@@ -104,7 +91,12 @@ contains
             end do
          end do
          call put(o, '   unset multiplot')
-      end subroutine put_page
+      end do
+      call put(o, '}')
+      if (rows > pages*page_rows) call put(o, '# The other columns of the table, from ' &
+         //whole(2 + size(m%drives))//' on, are drawn in the same way.')
+
+   contains
 
       !> The panel of the columns `list`, which are, or are not, `angular`: derivatives of order `k`. It is left empty
       !> where none of them has a value.

@@ -1,7 +1,7 @@
 !> Speed against error (--study): methods, tolerances and predictors tried on a deck, each with the time of a step and
 !> the error of the printed rows. The time alone (--time).
 module study
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
    use kinds, only: wp, wp_name
    use failures, only: failure_t, status_solved, status_flagged
@@ -18,6 +18,8 @@ module study
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
    use numerals, only: whole
+   use processes, only: memfd_create
+   use system_calls, only: close_descriptor
    use progress, only: progress_t, start_progress, show_progress, end_progress
    implicit none
    private
@@ -65,14 +67,6 @@ module study
    integer, parameter :: patience = 60
    !> Cards that do not change a row of a link, point or pair, or that a study replaces.
    character(*), parameter :: left_out = 'METHOD|VARY|TOLER|EXTREMES|RANGE|CIRCUITS|ASSEMBLY|PROVE'
-
-   interface
-      !> mkdtemp(3): makes a directory and completes its name; null on error.
-      type(c_ptr) function mkdtemp(template) bind(c)
-         import :: c_ptr, c_char
-         character(kind=c_char), intent(inout) :: template(*)
-      end function mkdtemp
-   end interface
 
 contains
 
@@ -403,12 +397,16 @@ contains
    subroutine open_reference(path, unit)
       character(*), intent(in) :: path
       integer, intent(out) :: unit
-      character(:), allocatable :: folder, this
+      character(:), allocatable :: rows, this
+      integer(c_int) :: descriptor
       integer :: status, length
+      logical :: closed
 
       unit = 0
-      folder = made_folder()
-      if (folder == '') return
+      ! A file without a name, in memory, which the programs that are called have open, too.
+      descriptor = memfd_create('rows'//c_null_char, 0_c_int)
+      if (descriptor < 0) return
+      rows = '/dev/fd/'//whole(descriptor)
       call get_command_argument(0, length=length)
       allocate (character(length) :: this)
       if (length > 0) call get_command_argument(0, this)
@@ -416,11 +414,10 @@ contains
       call execute_command_line('exec 2>/dev/null; p='//shell_word(this)//'; [ -x "$p" ] || p=kinmat-quad; ' &
          //'case $("$p" --version) in *REAL128) ;; *) exit 1;; esac; ' &
          //'awk ''!/^[*]/ { kept = toupper($0) !~ /^('//left_out//')/ } kept'' '//shell_word(path) &
-         //' | timeout '//whole(patience)//' "$p" --no-listing --csv '//shell_word(folder//'/rows'), exitstat=status)
-      if (status /= 1) open (newunit=unit, file=folder//'/rows', action='read', iostat=status)
+         //' | timeout '//whole(patience)//' "$p" --no-listing --csv '//rows, exitstat=status)
+      if (status /= 1) open (newunit=unit, file=rows, action='read', iostat=status)
       if (status /= 0) unit = 0
-      ! The open file remains readable.
-      call execute_command_line('rm -rf '//shell_word(folder))
+      closed = close_descriptor(descriptor)
    end subroutine open_reference
 
    !> Reads from `unit` the next row of a link, point or pair if it is of set number `set` and instant number `step`,
@@ -456,21 +453,6 @@ contains
       read (row(comma + 1:), *, iostat=status) value
       if (status /= 0) value = no_number
    end subroutine read_reference
-
-   !> The name of a new folder for temporary files, '' if none can be made.
-   function made_folder() result(name)
-      character(:), allocatable :: name
-      character(:), allocatable :: template
-      integer :: length
-
-      call get_environment_variable('TMPDIR', length=length)
-      name = repeat(' ', length)
-      if (length > 0) call get_environment_variable('TMPDIR', name)
-      if (length == 0) name = '/tmp'
-      template = name//'/kinmat-XXXXXX'//c_null_char
-      name = ''
-      if (c_associated(mkdtemp(template))) name = template(:len(template) - 1)
-   end function made_folder
 
    !> `text` as one word of a shell's command.
    pure function shell_word(text) result(word)
