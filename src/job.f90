@@ -46,7 +46,8 @@ module job
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
-      set_record, set_errors, set_closure_error, set_closing_diagnostics
+      set_record, set_errors, set_closing_diagnostics
+   use analysis, only: redundancy_error
    implicit none
    private
    public :: run_job
@@ -81,7 +82,8 @@ contains
       type(writers_t) :: o
       type(job_share_t) :: share
       type(share_of_job_t) :: own
-      integer :: i
+      real :: work
+      integer :: i, processes
 
       status = status_solved
       o%options = options
@@ -109,9 +111,13 @@ contains
          own%first = share%first
          own%last = share%last
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) own%unit = width
-         associate (processes => process_count())
-            if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
-         end associate
+         ! One process where sets take no time, or are to be drawn on one page.
+         processes = options%jobs
+         work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
+         if (processes == 0) processes = merge(processor_count(), 1, work > least_work)
+         if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits]))) processes = 1
+         processes = min(processes, variants_before(sets, size(sets) + 1))
+         if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          if (own%is_child) o%progress%shown = .false.
          do while (next_part(o, own))
             call run_sets(sets, findings, o)
@@ -161,18 +167,6 @@ contains
                'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
          end do
       end subroutine check_variants
-
-      !> How many processes compute `sets`: one where they take no time, or are to be drawn on one page.
-      integer function process_count() result(n)
-         real :: work
-
-         n = options%jobs
-         work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
-         if (n == 0) n = merge(processor_count(), 1, work > least_work)
-         if (options%check .or. allocated(options%files(out_svg)%text) .or. &
-            allocated(options%files(out_animation)%text) .or. allocated(options%files(out_circuits)%text)) n = 1
-         n = max(1, min(n, variants_before(sets, size(sets) + 1)))
-      end function process_count
 
       !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
       function said() result(text)
@@ -502,8 +496,8 @@ contains
          return
       end do
       if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, a)
-      if (lists) call listing_end(o%files(out_listing, 0), a%now, row%solved, row%flagged, &
-         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a))
+      if (lists) call listing_end(o%files(out_listing, 0), a%now, row%solved, row%flagged, a%certificate_counts, &
+         maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))
    end subroutine run_motion
 
    !> Ends the run before its time. The last line of the listing of `m` has the `words` and the `number` of the last

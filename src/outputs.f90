@@ -5,7 +5,7 @@ module outputs
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed
    use processes, only: turns_t
-   use system_calls, only: identity_t, identity_of_path, make_directory, rmdir, last_error, reason_of, &
+   use system_calls, only: identity_t, identity_of, make_directory, rmdir, last_error, reason_of, &
       signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
@@ -78,7 +78,7 @@ contains
          name = 'STANDARD OUTPUT'
          if (len(path) > 0) then
             if (is_null_device(path)) return
-            id = identity_of_path(path)
+            id = identity_of(path=path)
             if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
             name = 'FILE '//path
          end if
@@ -109,8 +109,8 @@ contains
       character(*), intent(in) :: path
       type(identity_t) :: a, b
 
-      a = identity_of_path(path)
-      b = identity_of_path('/dev/null')
+      a = identity_of(path=path)
+      b = identity_of(path='/dev/null')
       is_null_device = a%device_or_pipe .and. a%inode == b%inode .and. all(a%device == b%device)
    end function is_null_device
 

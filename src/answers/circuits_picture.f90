@@ -261,14 +261,37 @@ contains
       type(chart_t), intent(in) :: c
       real(wp), intent(in) :: top
       character(*), intent(in) :: attributes, word
-      real(wp) :: corner(2), extent(2)
-      integer :: i
+      ! From a side to the end of a tick, and to its number.
+      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
+      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
+      character(6), parameter :: anchors(2) = ['middle', 'end   ']
+      real(wp) :: corner(2), extent(2), range, power, step, x, p(2)
+      integer(int64) :: at
+      integer :: i, k
 
       corner = [left, top + above]
       extent = [real(width, wp) - left - right, height]
       call put_group(o, attributes, c%axes(2)%name)
-      call put_ticks(c%axes(1), 1)
-      call put_ticks(c%axes(2), 2)
+      ! Ticks and numbers, below and on the left.
+      do k = 1, 2
+         associate (axis => c%axes(k))
+            range = axis%high - axis%low
+            power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
+            i = findloc(range <= steps*power*most_ticks, .true., dim=1)
+            step = steps(merge(i, size(steps), i > 0))*power
+            if (axis%is_angle .and. range > 8.0_wp) then
+               i = findloc(range <= degree_steps*most_ticks, .true., dim=1)
+               if (i > 0) step = degree_steps(i)
+            end if
+            do at = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
+               x = (real(at, wp)*step - axis%low)/(axis%high - axis%low)
+               p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
+               call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), &
+                  'style="stroke:#222;stroke-width:1"')
+               call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(at, wp)*step))
+            end do
+         end associate
+      end do
       call put_words(o, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', c%axes(2)%name)
       call put_words(o, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', c%axes(1)%name)
       call put_window(o, corner, extent)
@@ -332,32 +355,5 @@ contains
          q = (p - turns*c%axes%turn - c%axes%low)/(c%axes%high - c%axes%low)
          q = [q(1), 1.0_wp - q(2)]*extent
       end function pixel
-
-      !> Writes ticks and numbers of `axis` on side `k`, 1 below, 2 on the left,.
-      subroutine put_ticks(axis, k)
-         type(axis_t), intent(in) :: axis
-         integer, intent(in) :: k
-         ! From the side to the end of a tick, and to its number.
-         real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
-         real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
-         character(6), parameter :: anchors(2) = ['middle', 'end   ']
-         real(wp) :: range, power, step, x, p(2)
-         integer(int64) :: i
-
-         range = axis%high - axis%low
-         power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
-         i = findloc(range <= steps*power*most_ticks, .true., dim=1)
-         step = steps(merge(i, size(steps, kind=int64), i > 0))*power
-         if (axis%is_angle .and. range > 8.0_wp) then
-            i = findloc(range <= degree_steps*most_ticks, .true., dim=1)
-            if (i > 0) step = degree_steps(i)
-         end if
-         do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
-            x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
-            p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
-            call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), 'style="stroke:#222;stroke-width:1"')
-            call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(i, wp)*step))
-         end do
-      end subroutine put_ticks
    end subroutine put_chart
 end module circuits_picture

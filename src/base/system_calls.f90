@@ -8,7 +8,7 @@ module system_calls
       c_null_char, c_f_pointer, c_associated, c_intptr_t, c_funptr, c_funloc, c_null_funptr
    implicit none
    private
-   public :: identity_t, identity_of_path, identity_of_descriptor, same_file
+   public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
    public :: make_directory, rmdir, is_terminal
    public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
@@ -152,27 +152,17 @@ module system_calls
 
 contains
 
-   !> The identity of the file `path`, symbolic links followed; the default of its type if there is no such file.
-   type(identity_t) function identity_of_path(path) result(id)
-      character(*), intent(in) :: path
-
-      id = identity_of(from_working_directory, path, 0_c_int)
-   end function identity_of_path
-
-   !> The identity of the file that is open as `descriptor`.
-   type(identity_t) function identity_of_descriptor(descriptor) result(id)
-      integer(c_int), intent(in) :: descriptor
-
-      id = identity_of(descriptor, '', empty_path)
-   end function identity_of_descriptor
-
-   !> The identity of the file `path` in an open `directory`, by the `flags` of statx.
-   type(identity_t) function identity_of(directory, path, flags) result(id)
-      integer(c_int), intent(in) :: directory, flags
-      character(*), intent(in) :: path
+   !> The identity of the file `path`, symbolic links followed, or of the file that is open as `descriptor`; the default
+   !> of its type if there is no such file.
+   type(identity_t) function identity_of(path, descriptor) result(id)
+      character(*), intent(in), optional :: path
+      integer(c_int), intent(in), optional :: descriptor
       type(facts_t) :: facts
+      integer(c_int) :: status
 
-      if (statx(directory, path//c_null_char, flags, basic_facts, facts) /= 0) return
+      if (present(path)) status = statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts)
+      if (present(descriptor)) status = statx(descriptor, c_null_char, empty_path, basic_facts, facts)
+      if (status /= 0) return
       id%device = facts%device
       id%inode = facts%inode
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular

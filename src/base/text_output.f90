@@ -4,7 +4,7 @@
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
-   use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
+   use system_calls, only: identity_t, identity_of, same_file, open_to_write, &
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
@@ -64,15 +64,15 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      read_from = identity_of_descriptor(standard_input)
+      read_from = identity_of(descriptor=standard_input)
       name = 'THE DECK ON STANDARD INPUT'
       if (len(deck) > 0) then
-         read_from = identity_of_path(deck)
+         read_from = identity_of(path=deck)
          name = 'THE DECK '//deck
       end if
       do i = 1, size(list)
          if (.not. allocated(list(i)%buffer)) cycle
-         id(i) = identity_of_descriptor(list(i)%descriptor)
+         id(i) = identity_of(descriptor=list(i)%descriptor)
          if (any(same_file(id(i), id(:i - 1)))) &
             call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
       end do
@@ -221,7 +221,7 @@ contains
       ! The old contents of the file go; devices and pipes have none.
       if (.not. (o%emptied .or. has_failed(o))) then
          o%emptied = .true.
-         id = identity_of_descriptor(o%descriptor)
+         id = identity_of(descriptor=o%descriptor)
          if (id%regular) then
             if (ftruncate(o%descriptor, 0_c_long) /= 0) o%error = last_error()
          end if

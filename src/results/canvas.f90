@@ -79,8 +79,8 @@ contains
    subroutine put_shape(c, shape)
       type(canvas_t), intent(inout) :: c
       type(element_t), intent(in) :: shape
-      real(wp) :: q(2, size(shape%p, 2)), position(3), e(2)
-      integer :: k, n
+      real(wp) :: q(2, size(shape%p, 2)), line(2, size(shape%p, 2) + 1), position(3), e(2), from, to
+      integer :: k, n, used
 
       position = 0.0_wp
       if (shape%link > 0) then
@@ -101,26 +101,7 @@ contains
          call put_hatch(c%o, q(:, 1), q(:, 2), shape%attributes)
          q(2, 2) = q(2, 2) + hatch_length
       case ('cut')
-         call put_cut_line()
-         return
-      case default
-         call put_line(c%o, shape%element, q, shape%attributes, shape%title)
-      end select
-      if (shape%weight < 0.0_wp) then
-         call add_line(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius, box)
-      else if (shape%weight > 0.0_wp) then
-         do k = 1, merge(n, n - 1, shape%element == 'polygon')
-            call add_line(c, q(:, k), q(:, 1 + modulo(k, n)), shape%weight)
-         end do
-      end if
-
-   contains
-
-      !> Draws the line through the pixels `q` as far as it is in the picture.
-      subroutine put_cut_line()
-         real(wp) :: line(2, n + 1), from, to
-         integer :: used
-
+         ! As far as it is in the picture.
          used = 0
          do k = 1, n - 1
             call find_inside(q(:, k), q(:, k + 1), c%low, c%high, from, to)
@@ -135,7 +116,17 @@ contains
                used = 0
             end if
          end do
-      end subroutine put_cut_line
+         return
+      case default
+         call put_line(c%o, shape%element, q, shape%attributes, shape%title)
+      end select
+      if (shape%weight < 0.0_wp) then
+         call add_line(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius, box)
+      else if (shape%weight > 0.0_wp) then
+         do k = 1, merge(n, n - 1, shape%element == 'polygon')
+            call add_line(c, q(:, k), q(:, 1 + modulo(k, n)), shape%weight)
+         end do
+      end if
    end subroutine put_shape
 
    !> Draws the path of point number `i` through the frames, in pieces where its place is not known. Each piece is made

@@ -116,7 +116,8 @@ contains
       type(spread_t) :: spread
       type(motion_t) :: q
       real(wp) :: error(3, 0:2)
-      logical :: known(3, 0:2), asked
+      logical :: known(3, 0:2), there(3, 0:2), asked
+      character(12) :: mark
       integer :: i, k
 
       start = whole(s%set_number)//','
@@ -133,7 +134,16 @@ contains
          known = known_numbers(row, s, i)
          if (asked) error = error_in_set(s, i)
          if (row%kind >= request_pole) then
-            call add_centre()
+            ! Three rows: each has one third of the numbers under x, y, phi.
+            there = numbers_of(row)
+            other = row
+            do k = 0, 2
+               other%value(:, 0) = row%value(:, k)
+               mark = marks(row%mark)
+               if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
+               call add_row(kinds_of_centre(k, row%kind), other, reshape(there(:, k), [3, 3], [.false.]), &
+                  reshape(known(:, k), [3, 3], [.false.]), reshape(error(:, k), [3, 3], [0.0_wp]), mark)
+            end do
             cycle
          end if
          call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
@@ -230,23 +240,6 @@ contains
          end do
          call add(o, cells(:used))
       end subroutine add_values
-
-      !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
-      subroutine add_centre()
-         logical :: there(3, 0:2)
-         character(12) :: mark
-         integer :: k
-
-         there = numbers_of(row)
-         other = row
-         do k = 0, 2
-            other%value(:, 0) = row%value(:, k)
-            mark = marks(row%mark)
-            if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
-            call add_row(kinds_of_centre(k, row%kind), other, reshape(there(:, k), [3, 3], [.false.]), &
-               reshape(known(:, k), [3, 3], [.false.]), reshape(error(:, k), [3, 3], [0.0_wp]), mark)
-         end do
-      end subroutine add_centre
 
       !> The row `other`, which is what `word` says of the row; it has no errors.
       subroutine add_other(word)

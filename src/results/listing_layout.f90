@@ -92,6 +92,7 @@ contains
       class(set_t), intent(in) :: s
       type(layout_t) :: l
       type(request_t), allocatable :: requests(:)
+      real(wp) :: sizes(3, 0:1)
       logical :: slides, turns
       integer :: i, k, n
 
@@ -142,8 +143,18 @@ contains
       l%behind_time = ' '//unit_of(l%time_power, trim(s%time_unit))
       allocate (l%drives(min(size(s%drives), max_drives)))
       do k = 1, size(l%drives)
-         associate (part => s%drives(k)%part)
-            call take_drive(l%own(part), s%parts(part), s%drives(k)%number, l%drives(k))
+         associate (m => s%parts(s%drives(k)%part), own => s%parts(s%drives(k)%part)%drives(s%drives(k)%number), &
+            d => l%own(s%drives(k)%part), drive => l%drives(k))
+            n = merge(1, 2, is_length(own))
+            drive%before = '   '//trim(drive_name(m, own))//' = '
+            drive%behind = ' '//unit_of(d%power(n, 0), trim(merge(angle_unit(m), m%length_unit, n == 2)))
+            drive%law = new_law(own)
+            if (abs(pole_value(own, m%t0)) > 0.0_wp) drive%infinite = phrase(say_infinite, m%polish)
+            sizes = growing_sizes(drive%law, latest_time(m))
+            drive%size_of = sizes(1, :)
+            if (n == 2) drive%unit = l%angle
+            drive%decimals = d%decimals(n, 0)
+            drive%power = d%power(n, 0)
          end associate
       end do
       l%more_drives = more(size(s%drives) - size(l%drives), s%polish)
@@ -264,27 +275,6 @@ contains
          d%heads(kind) = text
          d%head_length(kind) = len(text)
       end subroutine take_heads
-
-      !> Drive number `k` of `m`, with the digits `d`, ready for the head of an instant.
-      subroutine take_drive(d, m, k, drive)
-         type(digits_t), intent(in) :: d
-         type(mechanism_t), intent(in) :: m
-         integer, intent(in) :: k
-         type(head_drive_t), intent(out) :: drive
-         real(wp) :: sizes(3, 0:1)
-         integer :: what
-
-         what = merge(1, 2, is_length(m%drives(k)))
-         drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
-         drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
-         drive%law = new_law(m%drives(k))
-         if (abs(pole_value(m%drives(k), m%t0)) > 0.0_wp) drive%infinite = phrase(say_infinite, m%polish)
-         sizes = growing_sizes(drive%law, latest_time(m))
-         drive%size_of = sizes(1, :)
-         if (what == 2) drive%unit = l%angle
-         drive%decimals = d%decimals(what, 0)
-         drive%power = d%power(what, 0)
-      end subroutine take_drive
    end function new_layout
 
    !> The digits of the times of `m`: as many as other numbers have, and as many as show two digits of its shortest

@@ -174,9 +174,21 @@ contains
          integer, intent(in) :: base, link
          real(wp), intent(in) :: sense
          real(wp) :: center(2), start, best(2, 0:arc_pieces), e(2), cover, least
-         integer :: k, point
+         integer :: i, k, ends(2), point
 
-         point = joint_with(base, link)
+         point = 0
+         do i = 1, size(c%m%pairs)
+            ends = [c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]
+            k = findloc(c%m%points(ends)%link, link, dim=1)
+            if (c%m%pairs(i)%kind /= pair_revolute .or. k == 0) cycle
+            associate (other => c%m%points(ends(3 - k))%link)
+               if (other == base .or. (base == 0 .and. c%m%links(other)%ground)) then
+                  point = ends(k)
+                  exit
+               end if
+            end associate
+            if (point == 0) point = ends(k)
+         end do
          center = c%s%place(:2, link)
          if (point > 0) center = point_place(c%m, c%s, point)
          start = c%s%place(3, link)
@@ -211,27 +223,6 @@ contains
             p(:, k) = center + arc_radius*direction(start + angle*real(k, wp)/real(arc_pieces, wp))*[1.0_wp, -1.0_wp]
          end do
       end function arc
-
-      !> The point of `link` in its revolute pair with the link `base`, with any ground link where `base` is 0, or in
-      !> its first revolute pair; 0 if it has none.
-      pure integer function joint_with(base, link) result(point)
-         integer, intent(in) :: base, link
-         integer :: i, k, ends(2)
-
-         point = 0
-         do i = 1, size(c%m%pairs)
-            if (c%m%pairs(i)%kind /= pair_revolute) cycle
-            ends = [c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]
-            k = findloc(c%m%points(ends)%link, link, dim=1)
-            if (k == 0) cycle
-            if (point == 0) point = ends(k)
-            associate (other => c%m%points(ends(3 - k))%link)
-               if (other /= base .and. .not. (base == 0 .and. c%m%links(other)%ground)) cycle
-            end associate
-            point = ends(k)
-            return
-         end do
-      end function joint_with
 
       !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point` or, if it may be `ahead`
       !> of it, there: where it covers least.

@@ -17,11 +17,11 @@ module set_analysis
    use independent, only: request_of
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
+   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
-      prove_set, set_record, set_errors, set_bounds, set_closure_error, set_closing_diagnostics
+      prove_set, set_record, set_errors, set_bounds, set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -246,17 +246,6 @@ contains
             s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
       end do
    end function set_errors
-
-   !> By how much redundant equations have differed at most, in the characteristic length; -1 where none are.
-   pure real(wp) function set_closure_error(s) result(closure_error)
-      type(set_analysis_t), intent(in) :: s
-      integer :: c
-
-      closure_error = -1.0_wp
-      do c = 1, size(s%list)
-         closure_error = max(closure_error, redundancy_error(s%list(c)))
-      end do
-   end function set_closure_error
 
    !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed, in
    !> their order.
