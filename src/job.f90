@@ -9,7 +9,7 @@ module job
    use kinds, only: wp
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: settings_t, mechanism_t, instant_count, instant, with_all_links
-   use independent, only: set_t, request_of, is_printed
+   use independent, only: set_t, request_of
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
    use deck, only: read_deck, job_share_t, variants_before, build_variant
    use deck_variants, only: variation_t
@@ -306,10 +306,10 @@ contains
       type(layout_t) :: layout
       type(summary_t) :: summary
       logical :: full
-      integer :: n
+      integer :: n, k
 
       n = first
-      full = is_printed(m)
+      full = any([(any(m%parts(k)%requests%every > 0), k=lbound(m%parts, 1), m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)

@@ -24,6 +24,7 @@ module circuit_curve
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
+   public :: of_value, of_slope, of_bend, of_size
    public :: curve_point_t, start_point, step_along, step_between, lies_between, beside, offset_from, same_place
 
    integer, parameter :: max_iterations = 12
@@ -43,6 +44,12 @@ module circuit_curve
    real(wp), parameter :: unique = 0.1_wp
    !> Equations that are too many let the mechanism move where they change by less along the curve.
    real(wp), parameter :: moves = sqrt(same)
+
+   !> The numbers of a position on the curve: the drive's value, its first and second derivative, and the largest
+   !> coordinate in lengths.
+   enum, bind(c)
+      enumerator :: of_value = 0, of_slope, of_bend, of_size
+   end enum
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
@@ -64,7 +71,7 @@ module circuit_curve
       real(wp), allocatable :: q(:, :)        !< (3, links) x, y, phi
       real(wp), allocatable :: tangent(:)     !< (coordinates) unit vector
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
-      real(wp) :: value(0:2) = 0.0_wp         !< the drive's value, its first and second derivative
+      real(wp) :: value(of_value:of_size) = 0.0_wp
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
       integer :: sign = 1                     !< of the determinant of B
       logical :: is_dead = .false.            !< the drive turns back here
@@ -347,9 +354,11 @@ contains
 
       row = 0.0_wp
       call drive_row(c%driven, c%pose, 1, row, 1)
-      p%value(0) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
-      p%value(1) = dot_product(row(1, :), p%tangent)
-      p%value(2) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
+      p%value(of_value) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
+      p%value(of_slope) = dot_product(row(1, :), p%tangent)
+      p%value(of_bend) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
+
+      p%value(of_size) = maxval(abs(p%q(:2, :)))
 
       call measure_slots(c%closure, c%free, c%pose)
       call kantorovich(c%closure, c%free, c%factors, c%pose, c%row, k)

@@ -4,12 +4,12 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, offset_from
+   use circuit_curve, only: curve_t, curve_point_t, of_slope, of_bend, of_size, step_along, step_between, &
+      lies_between, offset_from
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, size_of, least_step, find_root, of_value, end_closed, &
-      end_far, end_lost
+   public :: circuit_t, change_point_t, trace, least_step, find_root, end_closed, end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
@@ -24,11 +24,6 @@ module circuit_trace
    !> How a circuit ends: it closes, a slide goes to infinity, or it can be followed no further.
    enum, bind(c)
       enumerator :: end_closed = 1, end_far, end_lost
-   end enum
-   !> What a root is looked for of: the drive's derivative, its second one, its value less a level, or the largest
-   !> coordinate less a level.
-   enum, bind(c)
-      enumerator :: of_value = 0, of_slope, of_bend, of_size
    end enum
 
    !> A position at which circuits meet, between two points of one of them.
@@ -126,7 +121,7 @@ contains
          closes = .false.
          if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
          if (closes) b = again
-         if (size_of(b) > c%far) then
+         if (b%value(of_size) > c%far) then
             circuit%ends(2) = end_far
             call find_root(c, a, b, of_size, c%far, again, ok)
             if (ok) b = again
@@ -218,13 +213,6 @@ contains
       end subroutine append
    end subroutine follow
 
-   !> The largest coordinate of `p`, in lengths.
-   pure real(wp) function size_of(p)
-      type(curve_point_t), intent(in) :: p
-
-      size_of = maxval(abs(p%q(:2, :)))
-   end function size_of
-
    !> Whether the sense in which the drive moves is known at `p`.
    pure elemental logical function is_sure(p)
       type(curve_point_t), intent(in) :: p
@@ -245,9 +233,9 @@ contains
       end do
    end function sense
 
-   !> The point `p` between the neighbours `a` and `b` at which the drive's derivative number `order` (of_value,
-   !> of_slope, of_bend), or the largest coordinate (of_size), is `level`: there they are on both sides of it. The
-   !> method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
+   !> The point `p` between the neighbours `a` and `b` at which number `order` (of_value, ..., of_size) is `level`,
+   !> which is between theirs. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
+   !> 1971). `ok`: it was found.
    subroutine find_root(c, a, b, order, level, p, ok)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: a, b
@@ -260,15 +248,15 @@ contains
 
       h1 = 0.0_wp
       h2 = step_between(c, a, b)
-      g1 = quantity(a) - level
-      g2 = quantity(b) - level
+      g1 = a%value(order) - level
+      g2 = b%value(order) - level
       do i = 1, max_iterations
          h = h1
          if (abs(g2 - g1) > 0.0_wp) h = h2 - g2*((h2 - h1)/(g2 - g1))
          if (.not. (h - h1)*(h2 - h) >= 0.0_wp) h = 0.5_wp*(h1 + h2)
          call step_along(c, a, h, p, ok)
          if (.not. ok) return
-         g = quantity(p) - level
+         g = p%value(order) - level
          if (abs(g) <= 0.0_wp .or. abs(h2 - h1) <= 4.0_wp*epsilon(1.0_wp)) return
          if (abs(h - h2) <= epsilon(1.0_wp)) return
          if (g*g2 < 0.0_wp) then
@@ -280,19 +268,6 @@ contains
          h2 = h
          g2 = g
       end do
-
-   contains
-
-      !> That of which the root is looked for, at `r`.
-      pure real(wp) function quantity(r)
-         type(curve_point_t), intent(in) :: r
-
-         if (order == of_size) then
-            quantity = size_of(r)
-         else
-            quantity = r%value(order)
-         end if
-      end function quantity
    end subroutine find_root
 
    !> Lets a closed circuit begin, and end, at its first dead point.

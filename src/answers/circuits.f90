@@ -16,8 +16,8 @@ module circuits
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit
    use assemblies, only: assemblies_t, assembly_t, find_assemblies, number_of
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      step_between, lies_between, beside, same_place
-   use circuit_trace, only: circuit_t, trace, size_of, least_step, find_root, of_value, end_closed
+      of_value, of_size, step_between, lies_between, beside, same_place
+   use circuit_trace, only: circuit_t, trace, least_step, find_root, end_closed
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
    implicit none
    private
@@ -156,47 +156,41 @@ contains
       type(circuits_t), intent(inout) :: found
       type(assemblies_t), intent(in) :: first
       type(mechanism_t) :: held
+      type(assemblies_t) :: more
       real(wp) :: from, range
-      integer :: k
+      integer :: link, k, n
 
       held = held_at(m, t)
-      from = found%curve%first
-      range = turn
-      if (.not. found%curve%is_angle) then
-         range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
-         from = from - 0.5_wp*(range/found%curve%closure%length)
-      end if
-      from = drive_value(found%curve, from)
-      if (.not. any(first%blocks%is_wide)) call search(held, from, range, most_values, found)
-      do k = 1, size(m%links)
-         if (m%links(k)%ground) cycle
-         held%drives(found%drive) = drive_t(kind=drive_angle, subject=k)
-         from = 0.0_wp
-         if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, k)
-         call search(held, from, turn, link_values, found)
+      do link = 0, size(m%links)
+         range = turn
+         if (link == 0) then
+            ! The drive itself.
+            if (any(first%blocks%is_wide)) cycle
+            n = most_values
+            from = found%curve%first
+            if (.not. found%curve%is_angle) then
+               range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
+               from = from - 0.5_wp*(range/found%curve%closure%length)
+            end if
+            from = drive_value(found%curve, from)
+         else
+            if (m%links(link)%ground) cycle
+            n = link_values
+            held%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
+            from = 0.0_wp
+            if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
+         end if
+
+         k = 0
+         do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
+            held%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
+            call find_assemblies(held, 0.0_wp, more)
+            call add_through(found, more)
+            if (k == 0) n = min(n, max_paths/max(1, sum(more%blocks%paths)))
+            k = k + 1
+         end do
       end do
    end subroutine search_whole_range
-
-   !> Adds the circuits through the assemblies of `m` at up to `most` values of the drive that is free in `found`, over
-   !> a `range` that begins at `from`; fewer where that takes many paths.
-   subroutine search(m, from, range, most, found)
-      type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: from, range
-      integer, intent(in) :: most
-      type(circuits_t), intent(inout) :: found
-      type(assemblies_t) :: more
-      integer :: k, n
-
-      n = most
-      k = 0
-      do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
-         m%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
-         call find_assemblies(m, 0.0_wp, more)
-         call add_through(found, more)
-         if (k == 0) n = min(most, max_paths/max(1, sum(more%blocks%paths)))
-         k = k + 1
-      end do
-   end subroutine search
 
    !> The drives of `m` that are set free, each alone: those that move; if none does, all.
    pure function free_drives(m) result(list)
@@ -222,7 +216,8 @@ contains
       integer :: n
 
       n = size(found%list) + 1
-      if (found%are_more .or. p%reach < least_step .or. size_of(p) > found%curve%far .or. signal_received() > 0) return
+      if (found%are_more .or. signal_received() > 0) return
+      if (p%reach < least_step .or. p%value(of_size) > found%curve%far) return
       if (is_known(found, p)) return
       found%are_more = n > max_circuits .or. found%work > max_work
       if (found%are_more) return
@@ -281,7 +276,7 @@ contains
             k = b%first - 1 + maxloc(abs(points(b%first:b%last)%value(1)), dim=1)
             middle%position = deck_position(found%curve, points(k)%q)
             held%drives(found%drive)%polynomial(1) = drive_value(found%curve, points(k)%value(0))
-            call find_range(held, middle, found%drive, r, limits_only=.true.)
+            call find_range(held, middle, found%drive, .true., r)
             ! Lost slowly, and so would the others be: their links stay without names.
             if (is_lost(r, low) .or. is_lost(r, high)) return
             do side = low, high
@@ -304,6 +299,7 @@ contains
       integer, intent(in) :: i
       type(circuit_branch_t) :: b
       integer, allocatable :: ends(:), numbers(:), signs(:)
+      real(wp), allocatable :: values(:)       ! of the drive at the points, in the deck's unit
       real(wp) :: middle
       integer :: k, n, dead
 
@@ -311,6 +307,7 @@ contains
       found%list(i)%shift = near_first(found%curve, middle) - middle
       associate (points => found%list(i)%points)
          n = size(points)
+         values = [(drive_value(found%curve, points(k)%value(0) + found%list(i)%shift), k=1, n)]
          ends = pack([(k, k=1, n)], points%is_dead)
          dead = size(found%dead)
          numbers = [(dead + k, k=1, size(ends))]
@@ -318,7 +315,7 @@ contains
          if (found%list(i)%ends(1) == end_closed .and. size(ends) > 1) numbers(size(ends)) = dead + 1
          do k = 1, size(ends)
             if (numbers(k) == dead + k) found%dead = [found%dead, diagnostic_t(kind=diagnostic_limit, &
-               drive=found%drive, is_angle=found%curve%is_angle, value=value_at(points(ends(k))))]
+               drive=found%drive, is_angle=found%curve%is_angle, value=values(ends(k)))]
          end do
          if (found%list(i)%ends(1) /= end_closed .or. size(ends) == 0) then
             ends = [1, ends, n]
@@ -326,7 +323,7 @@ contains
          end if
          do k = 2, size(ends)
             b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k))
-            b%range = [value_at(points(b%first)), value_at(points(b%last))]
+            b%range = values([b%first, b%last])
             if (b%range(1) > b%range(2)) then
                b%range = b%range(2:1:-1)
                b%dead = b%dead(2:1:-1)
@@ -342,15 +339,6 @@ contains
             found%branches = [found%branches, b]
          end do
       end associate
-
-   contains
-
-      !> The drive's value at `p`, in the deck's unit.
-      pure real(wp) function value_at(p)
-         type(curve_point_t), intent(in) :: p
-
-         value_at = drive_value(found%curve, p%value(0) + found%list(i)%shift)
-      end function value_at
    end subroutine add_branches
 
    !> Adds the assemblies on circuit number `i` at the drive's value of the first instant.

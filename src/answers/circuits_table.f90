@@ -44,7 +44,7 @@ contains
       do c = 1, s%now%count
          do i = 1, size(s%now%parts(c)%drives)
             if (s%now%motions(c)%known >= 0) then
-               call find_range(s%now%parts(c), s%now%motions(c), i, r)
+               call find_range(s%now%parts(c), s%now%motions(c), i, .false., r)
                r%part = c
                list = [list, r]
             else if (s%now%variants == 0) then
@@ -111,86 +111,79 @@ contains
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: s
       type(circuits_t), intent(in) :: list(:)
-      integer :: i
+      integer :: n
 
       call put(o, '')
-      do i = 1, size(list)
-         if (i > 1) call put(o, '')
-         call put_circuits_of_drive(o, s%parts(list(i)%part), list(i))
+      do n = 1, size(list)
+         if (n > 1) call put(o, '')
+         associate (found => list(n), m => s%parts(list(n)%part))
+            call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
+               //trim(drive_name(m, m%drives(found%drive))))
+            if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
+            if (found%are_more) &
+               call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(size(found%list)))
+            if (found%is_held) then
+               call put(o, '   '//phrase(say_held, m%polish))
+            else if (size(found%list) == 0) then
+               call put(o, '   '//phrase(say_none, m%polish))
+            else
+               call put_branches(o, m, found)
+            end if
+         end associate
       end do
    end subroutine put_circuits
 
-   !> The circuits `found` of one drive of the mechanism `m`.
-   subroutine put_circuits_of_drive(o, m, found)
+   !> A row for each branch of the circuits `found` of one drive of the mechanism `m`, then the dead points and the
+   !> change points.
+   subroutine put_branches(o, m, found)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
+      character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
+      character(column_ends(4)) :: row
+      character(:), allocatable :: text
       type(diagnostic_t) :: limit
-      character(:), allocatable :: line
       integer :: i, k
 
-      call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
-         //trim(drive_name(m, m%drives(found%drive))))
-      if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
-      if (found%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(size(found%list)))
-      if (found%is_held) then
-         call put(o, '   '//phrase(say_held, m%polish))
-      else if (size(found%list) == 0) then
-         call put(o, '   '//phrase(say_none, m%polish))
-      else
-         call put_branches()
+      row = ' '//phrase(say_circuit, m%polish)
+      row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
+      row(column_ends(2) + 1:) = 'DET'
+      row(column_ends(3) + 1:) = phrase(say_assembly_number, m%polish)
+      call put(o, row//phrase(say_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
+         //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
+      do k = 1, size(found%branches)
+         associate (b => found%branches(k))
+            text = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
+            row = ' '//whole(b%circuit)
+            row(column_ends(1) + 1:) = whole(k)
+            row(column_ends(2) + 1:) = ' '//signs(b%sign)
+            ! Where there are more assemblies than the column has room for, the range stands behind them.
+            text = text(2:)
+            text = row(:column_ends(3))//text//repeat(' ', max(1, column_ends(4) - column_ends(3) - len(text)))
+            call put_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
+         end associate
+      end do
 
-         ! For each dead point the drive's value, links, and the branches that end there.
-         if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
-         do i = 1, size(found%dead)
-            limit = found%dead(i)
-            limit%value = known(limit%value, rounding)
-            line = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
-               [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
-               //measure(m, limit, value_digits)
-            if (limit%links(1) > 0) line = line//', '//at_limit(m, limit)
-            call put_folded(o, '   ', line, repeat(' ', 6))
-         end do
+      ! For each dead point the drive's value, links, and the branches that end there.
+      if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
+      do i = 1, size(found%dead)
+         limit = found%dead(i)
+         limit%value = known(limit%value, rounding)
+         text = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
+            [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
+            //measure(m, limit, value_digits)
+         if (limit%links(1) > 0) text = text//', '//at_limit(m, limit)
+         call put_folded(o, '   ', text, repeat(' ', 6))
+      end do
 
-         ! For each change point the circuits that meet there, and the drive's value.
-         if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
-         do i = 1, size(found%meetings)
-            call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
-               pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
-               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
-         end do
-      end if
-
-   contains
-
-      !> A row for each branch.
-      subroutine put_branches()
-         character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
-         character(column_ends(4)) :: row
-         character(:), allocatable :: numbers
-         integer :: k
-
-         row = ' '//phrase(say_circuit, m%polish)
-         row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
-         row(column_ends(2) + 1:) = 'DET'
-         row(column_ends(3) + 1:) = phrase(say_assembly_number, m%polish)
-         call put(o, row//phrase(say_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
-            //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
-         do k = 1, size(found%branches)
-            associate (b => found%branches(k))
-               numbers = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
-               row = ' '//whole(b%circuit)
-               row(column_ends(1) + 1:) = whole(k)
-               row(column_ends(2) + 1:) = ' '//signs(b%sign)
-               ! Where there are more assemblies than the column has room for, the range stands behind them.
-               numbers = numbers(2:)
-               numbers = row(:column_ends(3))//numbers &
-                  //repeat(' ', max(1, column_ends(4) - column_ends(3) - len(numbers)))
-               call put_folded(o, numbers, range_words(m, found, b), repeat(' ', len(numbers)))
-            end associate
-         end do
-      end subroutine put_branches
-   end subroutine put_circuits_of_drive
+      ! For each change point the circuits that meet there, and the drive's value.
+      if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
+      do i = 1, size(found%meetings)
+         call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
+            pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
+            //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
+      end do
+   end subroutine put_branches
 
    !> The range of the drive on branch `b`.
    function range_words(m, found, b) result(text)

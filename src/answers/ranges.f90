@@ -83,19 +83,16 @@ contains
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
    !> `limits_only`: where no limit is told, the end is not looked for closely, nor the other one: both take long.
-   subroutine find_range(m, start, drive, r, limits_only)
+   subroutine find_range(m, start, drive, limits_only, r)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
+      logical, intent(in) :: limits_only
       type(range_t), intent(out) :: r
-      logical, intent(in), optional :: limits_only
       type(mechanism_t) :: d
       real(wp) :: value, unit
       integer :: side, i
-      logical :: only
 
-      only = .false.
-      if (present(limits_only)) only = limits_only
       r%drive = drive
       d = held_at(m, start%t)
       d%method = method_newton
@@ -114,9 +111,9 @@ contains
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
          d%drives(drive)%polynomial(2) = merge(-unit, unit, side == low)
-         call follow(d, value, merge(-unit, unit, side == low), side, only, r)
+         call follow(d, value, merge(-unit, unit, side == low), side, limits_only, r)
          if (r%is_all) return
-         if (only .and. is_lost(r, side)) return
+         if (limits_only .and. is_lost(r, side)) return
       end do
    end subroutine find_range
 

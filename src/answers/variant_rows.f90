@@ -46,7 +46,7 @@ module variant_rows
    type :: summary_column_t
       character(80) :: name = ''
       logical :: printed = .false.                  !< it is in the listing too
-      character(3*label_length) :: heads(2) = ''    !< the lines over it
+      character(3*label_length) :: above = '', below = ''   !< the lines over it
       character(3*label_length) :: unit = ''
       logical :: angular = .false.                  !< `value` is in rad
       integer :: decimals = 0, power = 0            !< as in `digits_t`
@@ -84,15 +84,17 @@ contains
       s%numbers = size(v%numbers)
       drives = drive_columns(set)
       allocate (s%columns(0))
-      call add_headed('variant', phrase(say_variant, set%polish), '')
+      call add_column(summary_column_t('variant', .true., phrase(say_variant, set%polish)))
       do i = 1, size(v%numbers)
-         call add_column(varied_column(v%numbers(:i)))
+         call add_number(v%numbers(:i))
       end do
-      call add_headed('solved', phrase(say_instants, set%polish), phrase(say_are_solved, set%polish))
-      call add_headed('flagged', phrase(say_instants, set%polish), phrase(say_flagged, set%polish))
-      call add_column(summary_column_t('flag.t', .true., heads_of(phrase(say_first_flag, set%polish), &
-         phrase(say_at_time, set%polish)), set%time_unit, decimals=l%time_decimals, power=l%time_power))
-      call add_drive(min(1, size(set%drives)), 'flag', heads_of('', ''))
+      call add_column(summary_column_t('solved', .true., phrase(say_instants, set%polish), &
+         phrase(say_are_solved, set%polish)))
+      call add_column(summary_column_t('flagged', .true., phrase(say_instants, set%polish), &
+         phrase(say_flagged, set%polish)))
+      call add_column(summary_column_t('flag.t', .true., phrase(say_first_flag, set%polish), &
+         phrase(say_at_time, set%polish), set%time_unit, decimals=l%time_decimals, power=l%time_power))
+      call add_drive(min(1, size(set%drives)), 'flag', '', '')
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
@@ -101,31 +103,17 @@ contains
          associate (own => set%parts(set%drives(i)%part))
             name = drive_name(own, own%drives(set%drives(i)%number))
          end associate
-         call add_drive(i, 'range.min', heads_of(name, phrase(say_one_range, set%polish)//' MIN'))
-         call add_drive(i, 'range.max', heads_of(name, phrase(say_one_range, set%polish)//' MAX'))
-         call add_headed('range.turns.'//trim(drives(i)), name, phrase(say_whole_turns, set%polish))
+         call add_drive(i, 'range.min', name, phrase(say_one_range, set%polish)//' MIN')
+         call add_drive(i, 'range.max', name, phrase(say_one_range, set%polish)//' MAX')
+         call add_column(summary_column_t('range.turns.'//trim(drives(i)), .true., name, &
+            phrase(say_whole_turns, set%polish)))
       end do
-      if (set%assemblies) call add_headed('assemblies', phrase(say_assemblies, set%polish), '')
-      if (set%proves) call add_headed('unproved', phrase(say_instants, set%polish), phrase(say_not_proved, set%polish))
+      if (set%assemblies) call add_column(summary_column_t('assemblies', .true., phrase(say_assemblies, set%polish)))
+      if (set%proves) call add_column(summary_column_t('unproved', .true., phrase(say_instants, set%polish), &
+         phrase(say_not_proved, set%polish)))
       call add_extremes()
 
    contains
-
-      !> Adds a column of counts, with two lines over it in the listing.
-      subroutine add_headed(name, first, second)
-         character(*), intent(in) :: name, first, second
-
-         call add_column(summary_column_t(name, .true., heads_of(first, second)))
-      end subroutine add_headed
-
-      !> Two lines over a column. (A constructor of character expressions has wrong bytes by gfortran 12.)
-      pure function heads_of(first, second) result(heads)
-         character(*), intent(in) :: first, second
-         character(3*label_length) :: heads(2)
-
-         heads(1) = first
-         heads(2) = second
-      end function heads_of
 
       !> Adds the column `c`.
       subroutine add_column(c)
@@ -134,32 +122,30 @@ contains
          s%columns = [s%columns, c]
       end subroutine add_column
 
-      !> The column of the last of the `numbers`. If earlier ones have its name, a number behind the name counts them.
-      function varied_column(numbers) result(c)
+      !> Adds the column of the last of the `numbers`. If earlier ones have its name, a number counts them.
+      subroutine add_number(numbers)
          type(varied_t), intent(in) :: numbers(:)
          type(summary_column_t) :: c
          real(wp) :: largest
          integer :: alike
 
          associate (one => numbers(size(numbers)))
-            c%printed = .true.
-            c%name = dotted(trim(one%owner)//' '//one%word)
+            c = summary_column_t(dotted(trim(one%owner)//' '//one%word), .true., one%owner, one%word, one%unit)
             alike = count(numbers%owner == one%owner .and. numbers%word == one%word)
             if (alike > 1) c%name = trim(c%name)//'.'//whole(alike)
-            c%heads = heads_of(one%owner, one%word)
-            c%unit = one%unit
             largest = max(abs(one%first), abs(one%last))
             if (allocated(one%list)) largest = maxval(abs(one%list))
             call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
             if (.not. largest > 0.0_wp) c%power = 0
          end associate
-      end function varied_column
+         call add_column(c)
+      end subroutine add_number
 
       !> Adds the column of the values of drive number `d` (0: none, the column is empty), whose name begins with
-      !> `start`; `heads`: the lines over it, blank where it is in the file alone.
-      subroutine add_drive(d, start, heads)
+      !> `start`; `above`, `below`: the lines over it, blank where it is in the file alone.
+      subroutine add_drive(d, start, above, below)
          integer, intent(in) :: d
-         character(*), intent(in) :: start, heads(2)
+         character(*), intent(in) :: start, above, below
          type(summary_column_t) :: c
 
          c%name = start//'.drive'
@@ -168,8 +154,9 @@ contains
             associate (place => set%drives(d))
                c%angular = driven_kinds(set%parts(place%part)%drives(place%number)%kind) == request_link
             end associate
-            c%printed = any(heads /= '')
-            c%heads = heads
+            c%printed = above /= ''
+            c%above = above
+            c%below = below
             c%unit = merge(angle_unit(set), set%length_unit, c%angular)
             if (d <= size(l%drives)) then
                c%decimals = l%drives(d)%decimals
@@ -182,56 +169,41 @@ contains
       !> Adds the columns of what EXTREMES asks for.
       subroutine add_extremes()
          type(summary_column_t) :: c
-         integer :: i, which
+         type(request_t) :: request
+         integer :: i, which, place, over
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
          character(:), allocatable :: word
 
          s%extremes = new_table(set, rows_asked(set))
          do i = 1, size(s%extremes%columns)
-            associate (column => s%extremes%columns(i))
+            associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
+               request = request_of(set, column%request)
+               place = column_of(request, column%angular, column%coordinate)
+               over = l%column(place, column%order, request%kind)
+               word = column_text(l%names(request%kind), over)
+               c = summary_column_t(printed=.true., angular=column%angular, &
+                  above=subject_name(set%parts(part), request%kind, request%subject), &
+                  unit=column_text(l%units(1, request%kind), over)//column_text(l%units(2, request%kind), over), &
+                  decimals=l%own(part)%decimals(dimension_of(place), column%order), &
+                  power=l%own(part)%power(dimension_of(place), column%order))
                do which = least, greatest
-                  c = extreme_column(column%request, column%coordinate, column%order, column%angular)
-                  word = trim(c%heads(2))
                   c%name = trim(column%name)//'.'//endings(which)
-                  c%heads(2) = word//' '//extreme_words(which)
+                  c%below = word//' '//extreme_words(which)
                   call add_column(c)
                   call add_column(summary_column_t(trim(c%name)//'.t'))
-                  call add_drive(first_drive(set, column%request), trim(c%name), heads_of('', ''))
+                  call add_drive(first_drive(set, column%request), trim(c%name), '', '')
                end do
                if (column%order > 0) cycle
                c%name = trim(column%name)//'.stroke'
-               c%heads(2) = word//' '//phrase(say_stroke, set%polish)
+               c%below = word//' '//phrase(say_stroke, set%polish)
                c%by_size = .true.
                c%power = 0
                call add_column(c)
-               call add_column(summary_column_t(trim(column%name)//'.ratio', .true., heads_of(c%heads(1), &
-                  word//' '//phrase(say_ratio, set%polish)), decimals=ratio_decimals))
+               call add_column(summary_column_t(trim(column%name)//'.ratio', .true., c%above, &
+                  word//' '//phrase(say_ratio, set%polish), decimals=ratio_decimals))
             end associate
          end do
       end subroutine add_extremes
-
-      !> The column of coordinate `coordinate`, derivative `k`, of row number `i` of the set.
-      function extreme_column(i, coordinate, k, angular) result(c)
-         integer, intent(in) :: i, coordinate, k
-         logical, intent(in) :: angular
-         type(summary_column_t) :: c
-         type(request_t) :: request
-         integer :: place
-
-         request = request_of(set, i)
-         place = column_of(request, angular, coordinate)
-         associate (kind => request%kind, column => l%column(place, k, request%kind))
-            c%printed = .true.
-            c%heads = heads_of(subject_name(set%parts(set%rows(i)%part), kind, request%subject), &
-               column_text(l%names(kind), column))
-            c%unit = column_text(l%units(1, kind), column)//column_text(l%units(2, kind), column)
-         end associate
-         c%angular = angular
-         associate (d => l%own(set%rows(i)%part))
-            c%decimals = d%decimals(dimension_of(place), k)
-            c%power = d%power(dimension_of(place), k)
-         end associate
-      end function extreme_column
    end function new_summary
 
    !> The row of variant `n` of `v`, with its values alone.

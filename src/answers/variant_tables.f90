@@ -86,7 +86,7 @@ contains
       line = ' '//phrase(say_variant, m%polish)//' '//whole(r%number)
       do i = 2, s%numbers + 1
          associate (c => s%columns(i))
-            item = '   '//trim(c%heads(1))//' '//trim(c%heads(2))//' = ' &
+            item = '   '//trim(c%above)//' '//trim(c%below)//' = ' &
                //trim(cell_text(l, m, c, r%cells(i))//' '//unit_of(c%power, trim(c%unit)))
          end associate
          if (len(line) + len(item) > line_length) then
@@ -125,10 +125,17 @@ contains
       integer, intent(in) :: k
       character(:), allocatable :: text
 
-      text = trim(c%unit)
-      if (k < 3) text = trim(c%heads(min(k, 2)))
-      if (k == 3) text = ''
-      if (k == 3 .and. c%power /= 0) text = power_text(c%power)
+      select case (k)
+      case (1)
+         text = trim(c%above)
+      case (2)
+         text = trim(c%below)
+      case (3)
+         text = ''
+         if (c%power /= 0) text = power_text(c%power)
+      case default
+         text = trim(c%unit)
+      end select
    end function head_text
 
    !> The lines of the row `r`, and below them why there is not all of it.
@@ -202,7 +209,7 @@ contains
    pure integer function width(c)
       type(summary_column_t), intent(in) :: c
 
-      width = max(least_width, maxval(len_trim(c%heads)) + 2, len_trim(c%unit) + 2)
+      width = max(least_width, len_trim(c%above) + 2, len_trim(c%below) + 2, len_trim(c%unit) + 2)
       if (c%by_size) width = max(width, least_width + exponent_length)
    end function width
 

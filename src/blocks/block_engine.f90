@@ -7,7 +7,7 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
-   use drives, only: law_t, new_law, find_drive_motion
+   use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use planar, only: without_turns
@@ -304,7 +304,7 @@ contains
       integer :: i
 
       do i = 1, size(e%laws)
-         call find_drive_motion(e%laws(i), t, f)
+         f = drive_motion(e%laws(i), t)
          s%drive_value(0:2, i) = f*e%unit_of(i)
       end do
    end subroutine find_drive_values

@@ -53,7 +53,11 @@ contains
       end do
       do i = 1, size(m%points)
          if (.not. m%points(i)%drawn) call add(number_point, i, 0, 2)
-         if (is_joint(i)) call add(number_joint, i, 0, 2)
+         ! The first of the two points of a JOINT card.
+         associate (p => m%points(i), next => m%points(min(i + 1, size(m%points))))
+            if (i < size(m%points) .and. p%drawn .and. next%drawn .and. p%name == next%name) &
+               call add(number_joint, i, 0, 2)
+         end associate
       end do
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind == pair_prismatic) call add(number_pair, i, 0, 3)
@@ -87,15 +91,6 @@ contains
             list(n) = one
          end do
       end subroutine add
-
-      !> Whether point number `i` is the first of the two of a JOINT card.
-      pure logical function is_joint(i)
-         integer, intent(in) :: i
-
-         is_joint = .false.
-         if (m%points(i)%drawn .and. i < size(m%points)) is_joint = m%points(i + 1)%drawn &
-            .and. m%points(i)%name == m%points(i + 1)%name
-      end function is_joint
    end function numbers_of
 
    !> Whether number `n` of `m` is blank on its card: it is the one of the drawing.

@@ -17,12 +17,12 @@ module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use splines, only: spline_t, new_spline, spline_value, piece_at, piece_value
+   use splines, only: spline_t, new_spline, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, find_drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
+   public :: law_t, new_law, drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
    !> A drive made ready for evaluation.
@@ -71,17 +71,7 @@ contains
    pure function drive_motion(law, t) result(f)
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t
-      real(wp) :: f(3)
-
-      call find_drive_motion(law, t, f)
-   end function drive_motion
-
-   !> The same, without a result that is copied.
-   pure subroutine find_drive_motion(law, t, f)
-      type(law_t), intent(in) :: law
-      real(wp), intent(in) :: t
-      real(wp), intent(out) :: f(3)
-      real(wp) :: u
+      real(wp) :: f(3), u
       integer :: i
 
       associate (c => law%drive%polynomial)
@@ -100,14 +90,14 @@ contains
                f = f + [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
                   monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
             case (term_table)
-               f = f + spline_value(law%splines(i), t)
+               f = f + piece_value(law%splines(i), piece_at(law%splines(i), t), t)
             case (term_cycloid:term_parabola)
                u = (t - r(1))/r(2)
                f = f + r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, r(2), r(2)**2]
             end select
          end associate
       end do
-   end subroutine find_drive_motion
+   end function drive_motion
 
    !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
    !> last pieces; a power that is not defined somewhere in the interval has no bounds. `one_instant`: the interval is
@@ -117,19 +107,21 @@ contains
       real(wp), intent(in) :: t1, t2
       logical, intent(in), optional :: one_instant
       type(bounds_t) :: b, of_term
-      real(wp) :: from, to, t
+      real(wp) :: from, to, times(3)
       integer :: i, k, first, last
 
       from = min(t1, t2)
       to = max(t1, t2)
       ! Of the polynomial: from its values at both ends, and where its rate is zero.
+      times = [from, to, from]
       associate (c => law%drive%polynomial)
-         call widen_by_polynomial(b, c, from)
-         call widen_by_polynomial(b, c, to)
-         if (abs(c(3)) > 0.0_wp) then
-            t = -c(2)/c(3)
-            if (t > from .and. t < to) call widen_by_polynomial(b, c, t)
-         end if
+         if (abs(c(3)) > 0.0_wp) times(3) = within(-c(2)/c(3), from, to)
+         do k = 1, 3
+            associate (t => times(k))
+               call widen(b, [c(1) + t*(c(2) + t*c(3)/2.0_wp), c(2) + t*c(3), c(3)], &
+                  [abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))), abs(c(2)) + abs(t*c(3)), 0.0_wp])
+            end associate
+         end do
       end associate
       do i = 1, size(law%splines)
          associate (term => law%drive%terms(i))
@@ -139,9 +131,10 @@ contains
             case (term_power)
                ! On either side of t = 0 each derivative is monotonic.
                of_term = bounds_t()
-               call widen_by_power(of_term, term%r, from)
-               call widen_by_power(of_term, term%r, to)
-               if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power(of_term, term%r, 0.0_wp)
+               times = [from, to, within(0.0_wp, from, to)]
+               do k = 1, 3
+                  call widen_by_power(of_term, term%r, times(k))
+               end do
             case (term_table)
                ! Each piece in the interval is a cubic.
                of_term = bounds_t()
@@ -171,6 +164,13 @@ contains
       b%low = min(b%low, below(f, margin*magnitudes))
       b%high = max(b%high, -below(-f, margin*magnitudes))
    end subroutine widen
+
+   !> Of the times from `from` to `to` the nearest to `t`.
+   elemental real(wp) function within(t, from, to)
+      real(wp), intent(in) :: t, from, to
+
+      within = min(max(t, from), to)
+   end function within
 
    !> x - d, but not below -huge.
    elemental real(wp) function below(x, d)
@@ -258,15 +258,6 @@ contains
       end do
    end function joints_of
 
-   !> Widens `b` by the polynomial `c` at the time `t`.
-   pure subroutine widen_by_polynomial(b, c, t)
-      type(bounds_t), intent(inout) :: b
-      real(wp), intent(in) :: c(3), t
-
-      call widen(b, [c(1) + t*(c(2) + t*c(3)/2.0_wp), c(2) + t*c(3), c(3)], &
-         [abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))), abs(c(2)) + abs(t*c(3)), 0.0_wp])
-   end subroutine widen_by_polynomial
-
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
    pure function harmonic_bounds(r, from, to) result(b)
@@ -353,43 +344,33 @@ contains
       type(spline_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp), intent(in) :: t1, t2
-      real(wp) :: f(3), u(3), reach, slope, q, root
+      real(wp) :: f(3), u(5), h, reach, slope, q, root, magnitude, curve, away
       integer :: k
 
       ! f' = f'(x_i) + m_i u + slope u^2/2, u from the knot.
       f = piece_value(s, i, s%x(i))
-      slope = (s%m(i + 1) - s%m(i))/(s%x(i + 1) - s%x(i))
+      h = s%x(i + 1) - s%x(i)
+      slope = (s%m(i + 1) - s%m(i))/h
       reach = max(abs(t1 - s%x(i)), abs(t2 - s%x(i)))
       u = 0.0_wp
-      if (abs(s%m(i)) < abs(slope)*reach) u(1) = -s%m(i)/slope
+      if (abs(s%m(i)) < abs(slope)*reach) u(3) = -s%m(i)/slope
       root = s%m(i)**2 - 2.0_wp*slope*f(2)
       if (root >= 0.0_wp) then
          q = -(s%m(i) + sign(sqrt(root), s%m(i)))
-         if (abs(q) < abs(slope)*reach) u(2) = q/slope
-         if (2.0_wp*abs(f(2)) < abs(q)*reach) u(3) = 2.0_wp*f(2)/q
+         if (abs(q) < abs(slope)*reach) u(4) = q/slope
+         if (2.0_wp*abs(f(2)) < abs(q)*reach) u(5) = 2.0_wp*f(2)/q
       end if
-      call widen_by_piece_at(b, s, i, t1)
-      call widen_by_piece_at(b, s, i, t2)
-      do k = 1, 3
-         if (s%x(i) + u(k) > t1 .and. s%x(i) + u(k) < t2) call widen_by_piece_at(b, s, i, s%x(i) + u(k))
-      end do
-   end subroutine widen_by_piece
+      u = within(s%x(i) + u, t1, t2)
+      u(:2) = [t1, t2]
 
-   !> Widens `b` by piece `i` at the time `t`.
-   pure subroutine widen_by_piece_at(b, s, i, t)
-      type(bounds_t), intent(inout) :: b
-      type(spline_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      real(wp) :: f(3), h, magnitude, curve, away
-
-      f = piece_value(s, i, t)
-      h = s%x(i + 1) - s%x(i)
-      away = max(1.0_wp, abs(t - s%x(i))/h, abs(t - s%x(i + 1))/h)
       magnitude = abs(s%y(i)) + abs(s%y(i + 1))
       curve = abs(s%m(i)) + abs(s%m(i + 1))
-      call widen(b, f, [(magnitude + curve*h**2)*away**3, (magnitude/h + curve*h)*away**2, curve*away])
-   end subroutine widen_by_piece_at
+      do k = 1, size(u)
+         away = max(1.0_wp, abs(u(k) - s%x(i))/h, abs(u(k) - s%x(i + 1))/h)
+         call widen(b, piece_value(s, i, u(k)), &
+            [(magnitude + curve*h**2)*away**3, (magnitude/h + curve*h)*away**2, curve*away])
+      end do
+   end subroutine widen_by_piece
 
    !> How far before a joint `term` has the acceleration from the right already, as a part of the rise's duration; 0
    !> where its law has a continuous acceleration.
@@ -490,8 +471,9 @@ contains
    pure function sizes_at(law, t, last) result(sizes)
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t, last
-      real(wp) :: sizes(3)
-      integer :: i
+      real(wp) :: sizes(3), c, power, time, bend, slope
+      real(wp), allocatable :: h(:)
+      integer :: i, k
 
       associate (c => abs(law%drive%polynomial))
          sizes = [c(1) + t*(c(2) + t*c(3)), c(2) + t*c(3), c(3)]
@@ -502,11 +484,23 @@ contains
             case (term_harmonic)
                sizes = sizes + (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
             case (term_power)
-               sizes = sizes + (1.0_wp + r(2))*[power_size(r(1), term%r(2), t, last), &
-                  power_size(r(1)*r(2), term%r(2) - 1.0_wp, t, last), &
-                  power_size(r(1)*r(2)*abs(term%r(2) - 1.0_wp), term%r(2) - 2.0_wp, t, last)]
+               ! Where it grows more slowly than the time, that at the time `last`.
+               c = r(1)
+               do k = 1, 3
+                  power = term%r(2) - (k - 1)
+                  time = merge(t, last, power >= 1.0_wp)
+                  if (time > 0.0_wp) sizes(k) = sizes(k) + (1.0_wp + r(2))*monomial(c, power, time)
+                  c = c*abs(power)
+               end do
             case (term_table)
-               sizes = sizes + table_sizes(law%splines(i), t)
+               ! From the differences of its rows.
+               associate (s => law%splines(i), n => size(term%knots))
+                  h = s%x(2:) - s%x(:n - 1)
+                  bend = maxval(abs(s%m))
+                  slope = maxval(abs(s%y(2:) - s%y(:n - 1))/h) + bend*maxval(h)
+                  sizes = sizes + [maxval(abs(s%y)) + t*slope, slope + t*bend, &
+                     bend + t*maxval(abs(s%m(2:) - s%m(:n - 1))/h)]
+               end associate
             case default
                ! Beyond its end the time changes nothing.
                sizes = sizes + r(3)*(rise_most(:2) + (2.0_wp*r(1)/r(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, r(2), r(2)**2]
@@ -549,26 +543,4 @@ contains
 
       middle = low + 0.5_wp*(high - low)
    end function middle_of
-
-   !> Of c t**p, c >= 0: its value, or that at the time `last` where it grows more slowly than the time.
-   pure real(wp) function power_size(c, p, t, last) result(size_of)
-      real(wp), intent(in) :: c, p, t, last
-      real(wp) :: time
-
-      time = merge(t, last, p >= 1.0_wp)
-      size_of = 0.0_wp
-      if (time > 0.0_wp) size_of = monomial(c, p, time)
-   end function power_size
-
-   !> The sizes of the spline `s`, from the differences of its rows.
-   pure function table_sizes(s, t) result(sizes)
-      type(spline_t), intent(in) :: s
-      real(wp), intent(in) :: t
-      real(wp) :: sizes(3), h(size(s%x) - 1), bend, slope
-
-      h = s%x(2:) - s%x(:size(h))
-      bend = maxval(abs(s%m))
-      slope = maxval(abs(s%y(2:) - s%y(:size(h)))/h) + bend*maxval(h)
-      sizes = [maxval(abs(s%y)) + t*slope, slope + t*bend, bend + t*maxval(abs(s%m(2:) - s%m(:size(h)))/h)]
-   end function table_sizes
 end module drives

@@ -11,7 +11,7 @@ module independent
    implicit none
    private
    public :: set_t, member_t, part_t, divide, part_of_links, &
-      request_of, is_printed, first_drive
+      request_of, first_drive
 
    !> A row or drive of a set: the number of its part, and its number there.
    type :: member_t
@@ -42,9 +42,9 @@ contains
       type(set_t), intent(out) :: s
       logical, intent(in), optional :: whole
       type(sorted_t) :: links, points, pairs, drives, rows
-      type(part_t) :: place
+      type(part_t) :: place, part
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
-      integer :: link_part(size(m%links)), ground, i, c
+      integer :: link_part(size(m%links)), ground, i, c, k
 
       s%settings_t = m%settings_t
       if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
@@ -79,7 +79,20 @@ contains
       allocate (place%links(size(m%links)), place%points(size(m%points)), place%pairs(size(m%pairs)), &
          place%drives(size(m%drives)), source=0)
       do c = 1, size(s%parts)
-         call take_part(modulo(c, ground))
+         k = modulo(c, ground)
+         part%links = once(members(links, c))
+         part%points = once(members(points, c))
+         part%pairs = members(pairs, c)
+         part%drives = members(drives, c)
+         part%requests = members(rows, c)
+         part%branch_requests = [integer ::]
+         if (allocated(m%branch_requests)) part%branch_requests = pack([(i, i=1, size(m%branch_requests))], &
+            [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == c, &
+            i=1, size(m%branch_requests))])
+         s%rows(part%requests) = [(member_t(k, i), i=1, size(part%requests))]
+         s%drives(part%drives) = [(member_t(k, i), i=1, size(part%drives))]
+         call take_mechanism(m, part, place, s%parts(k))
+         call move_alloc(part%links, s%cards(k)%links)
       end do
 
    contains
@@ -91,27 +104,6 @@ contains
          part_of = maxval(link_part(links))
          if (part_of == 0) part_of = ground
       end function part_of
-
-      !> Makes part number `k`, group `c`.
-      subroutine take_part(k)
-         integer, intent(in) :: k
-         type(part_t) :: part
-         integer :: i
-
-         part%links = once(members(links, c))
-         part%points = once(members(points, c))
-         part%pairs = members(pairs, c)
-         part%drives = members(drives, c)
-         part%requests = members(rows, c)
-         allocate (part%branch_requests(0))
-         if (allocated(m%branch_requests)) part%branch_requests = pack([(i, i=1, size(m%branch_requests))], &
-            [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == c, &
-            i=1, size(m%branch_requests))])
-         s%rows(part%requests) = [(member_t(k, i), i=1, size(part%requests))]
-         s%drives(part%drives) = [(member_t(k, i), i=1, size(part%drives))]
-         call take_mechanism(m, part, place, s%parts(k))
-         call move_alloc(part%links, s%cards(k)%links)
-      end subroutine take_part
    end subroutine divide
 
    !> (links) The number of the part of each link, in the order of the deck; 0 of a ground link.
@@ -217,14 +209,6 @@ contains
 
       request_of = s%parts(s%rows(i)%part)%requests(s%rows(i)%number)
    end function request_of
-
-   !> Whether any row of `s` is printed at instants.
-   pure logical function is_printed(s)
-      class(set_t), intent(in) :: s
-      integer :: c
-
-      is_printed = any([(any(s%parts(c)%requests%every > 0), c=lbound(s%parts, 1), s%count)])
-   end function is_printed
 
    !> The number among all drives of `s` of the first one of the mechanism that row number `i` is about; 0: it has none.
    pure integer function first_drive(s, i)

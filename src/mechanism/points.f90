@@ -6,7 +6,7 @@ module points
       request_pair, request_pole, request_curve, instant_count, request_links
    use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
-   use planar, only: pi, direction, rotated, quarter_turn, point_of
+   use planar, only: pi, direction, rotated, quarter_turn, point_of, add_rotating
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
@@ -114,6 +114,7 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
+      type(centre_t) :: centre
       real(wp) :: p(2, 0:2)
 
       associate (i => request%subject)
@@ -134,32 +135,28 @@ contains
             row%angular = m%pairs(i)%kind /= pair_prismatic
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
-         case (request_pole)
-            if (row%known < 1) return
-            call take_centre(pole_of(link_motion(q, request%second), link_motion(q, i), &
-               request%length, request%rate), row)
-         case (request_curve)
-            ! In the axes of the link from which it is seen, or in the fixed plane.
-            p = point_motion(m, q, i)
-            if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
-            if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
-            call take_centre(curve_of(p, request%length, request%rate), row)
-            if (request%second > 0) return
-            row%value(:2, 1) = row%value(:2, 1) + q%origin
+         case (request_pole, request_curve)
+            if (request%kind == request_pole) then
+               if (row%known < 1) return
+               centre = pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate)
+            else
+               ! In the axes of the link from which it is seen, or in the fixed plane.
+               p = point_motion(m, q, i)
+               if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
+               if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
+               centre = curve_of(p, request%length, request%rate)
+            end if
+            row%state = centre%state
+            row%weight = centre%weight
+            row%value = centre%value
+            if (request%kind == request_curve) then
+               if (request%second > 0) return
+               row%value(:2, 1) = row%value(:2, 1) + q%origin
+            end if
          end select
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end subroutine set_values
-
-   !> Puts the centre `c` into `row`.
-   pure subroutine take_centre(c, row)
-      type(centre_t), intent(in) :: c
-      type(row_t), intent(inout) :: row
-
-      row%state = c%state
-      row%weight = c%weight
-      row%value = c%value
-   end subroutine take_centre
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
@@ -246,14 +243,12 @@ contains
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp) :: p(2, 0:2), x(3, 0:2), u(2), u_t(2)
+      real(wp) :: p(2, 0:2), x(3, 0:2), u(2)
 
       x = link_motion(q, m%points(i)%link)
       u = rotated(m%points(i)%offset, direction(x(3, 0)))
-      u_t = quarter_turn(u)
-      p(:, 0) = x(:2, 0) + u
-      p(:, 1) = x(:2, 1) + x(3, 1)*u_t
-      p(:, 2) = x(:2, 2) + x(3, 2)*u_t - x(3, 1)**2*u
+      p = x(:2, :)
+      call add_rotating(u(1), u(2), x(3, 1), x(3, 2), p(:, 0), p(:, 1), p(:, 2))
    end function point_motion
 
    !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the

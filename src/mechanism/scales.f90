@@ -103,25 +103,13 @@ contains
    !> there is none.
    pure real(wp) function shortest_step(m) result(step)
       class(settings_t), intent(in) :: m
-      real(wp) :: before
-      integer :: i
+      real(wp), allocatable :: times(:), steps(:)
 
-      step = huge(step)
-      if (m%steps > 0) call take(abs(m%t1 - m%t0)/real(m%steps, wp))
-      before = m%t1
-      do i = 1, size(m%at)
-         if (i > 1 .or. m%steps >= 0) call take(abs(m%at(i) - before))
-         before = m%at(i)
-      end do
-
-   contains
-
-      !> One step.
-      pure subroutine take(length)
-         real(wp), intent(in) :: length
-
-         if (length > 0.0_wp) step = min(step, length)
-      end subroutine take
+      times = m%at
+      if (m%steps >= 0) times = [m%t1, m%at]
+      steps = abs(times(2:) - times(:size(times) - 1))
+      if (m%steps > 0) steps = [steps, abs(m%t1 - m%t0)/real(m%steps, wp)]
+      step = minval(steps, mask=steps > 0.0_wp)
    end function shortest_step
 
    !> The largest tolerance of `m`, as a part of the characteristic length and rate; `m` has one.

@@ -7,7 +7,7 @@ module splines
    use linear_solver, only: solve_tridiagonal
    implicit none
    private
-   public :: spline_t, new_spline, spline_value, piece_at, piece_value
+   public :: spline_t, new_spline, piece_at, piece_value
 
    !> A natural cubic spline.
    type :: spline_t
@@ -36,16 +36,8 @@ contains
       call solve_tridiagonal(diagonal, off, s%m(2:n - 1), info)
    end function new_spline
 
-   !> Value, first and second derivative (3) of `s` at the time `t`.
-   pure function spline_value(s, t) result(f)
-      type(spline_t), intent(in) :: s
-      real(wp), intent(in) :: t
-      real(wp) :: f(3)
-
-      f = piece_value(s, piece_at(s, t), t)
-   end function spline_value
-
-   !> The same of the cubic between the knots `i` and `i` + 1, which may be continued beyond them.
+   !> Value, first and second derivative (3) at the time `t` of the cubic between the knots `i` and `i` + 1 of `s`. It
+   !> may be continued beyond them.
    pure function piece_value(s, i, t) result(f)
       type(spline_t), intent(in) :: s
       integer, intent(in) :: i
