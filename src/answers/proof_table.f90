@@ -76,7 +76,25 @@ contains
                if (holds(proof)) cycle
                line%is_proved = .false.
                if (size(p%reasons) == max_reasons) cycle
-               reason = reason_of(s, c, k)
+               associate (q => s%now%motions(c), m => s%now%parts(c))
+                  reason = reason_t(k, '')
+                  if (q%mark /= mark_none) then
+                     reason%words = words_of_mark(q%mark, q%singularity, m%polish)
+                  else if (s%list(c)%branch%kind == branch_crossed) then
+                     reason%words = phrase(say_change_inside, m%polish)
+                  else
+                     reason%words = phrase(say_near_singular, m%polish)
+                     if (proof%too_many > 0) &
+                        reason%words = phrase(say_too_wide, m%polish)//' '//whole(proof%too_many)
+                     reason%at_time = proof%is_proved
+                     reason%t = proof%step%t
+                     if (proof%is_proved) reason%words = reason%words//', T ='
+                     if (allocated(proof%failed)) then
+                        if (size(proof%failed) > 0) reason%words = phrase(say_links, m%polish)//' ' &
+                           //listed(m%links(proof%failed)%name, m%polish)//': '//reason%words
+                     end if
+                  end if
+               end associate
                p%reasons = [p%reasons, reason]
             end associate
          end do
@@ -87,34 +105,6 @@ contains
          p%count = p%count + 1
       end associate
    end subroutine note_proof
-
-   !> Why instant number `k` is not proved of independent mechanism number `c`.
-   function reason_of(s, c, k) result(r)
-      type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: c, k
-      type(reason_t) :: r
-
-      r%step = k
-      associate (proof => s%now%proofs(c), q => s%now%motions(c), m => s%now%parts(c))
-         if (q%mark /= mark_none) then
-            r%words = words_of_mark(q%mark, q%singularity, m%polish)
-         else if (s%list(c)%branch%kind == branch_crossed) then
-            r%words = phrase(say_change_inside, m%polish)
-         else
-            r%words = phrase(say_near_singular, m%polish)
-            if (proof%too_many > 0) r%words = phrase(say_too_wide, m%polish)//' '//whole(proof%too_many)
-            if (proof%is_proved) then
-               r%words = r%words//', T ='
-               r%at_time = .true.
-               r%t = proof%step%t
-            end if
-            if (allocated(proof%failed)) then
-               if (size(proof%failed) > 0) r%words = phrase(say_links, m%polish)//' ' &
-                  //listed(m%links(proof%failed)%name, m%polish)//': '//r%words
-            end if
-         end if
-      end associate
-   end function reason_of
 
    !> Writes all of it after the last instant of `m`; `l`: the layout of its tables.
    subroutine put_proofs(o, l, p, m)

@@ -109,43 +109,36 @@ contains
       type(coordinates_t), intent(in) :: c
       type(pose_t), intent(in) :: p
       real(wp) :: bound(max(s%n, 2*size(s%pairs) + size(s%laws)))
+      real(wp) :: body(size(s%link_of)), slot(size(s%pairs))
       integer :: k, row
+
+      ! The length of the body vector of each point, and the bound of the row of each prismatic pair; 0 where the angle
+      ! of the link, or of the guide, is given.
+      body = norm2(s%offset, dim=1)
+      where (c%class(s%link_of) == 0) body = 0.0_wp
+      slot = 0.0_wp
+      do k = 1, size(c%slots)
+         associate (pair => s%pairs(c%slots(k)))
+            slot(c%slots(k)) = 2.0_wp*c%unit(c%slots(k)) &
+               + norm2(p%q(:2, s%link_of(pair%point_i)) - p%q(:2, s%link_of(pair%point_j)))
+         end associate
+      end do
 
       bound = 0.0_wp
       do k = 1, size(s%pairs)
          if (s%pairs(k)%kind == pair_revolute) then
-            bound(2*k - 1:2*k) = body_vector_bound(s%pairs(k)%point_i) + body_vector_bound(s%pairs(k)%point_j)
+            bound(2*k - 1:2*k) = body(s%pairs(k)%point_i) + body(s%pairs(k)%point_j)
          else
-            bound(2*k - 1) = slot_bound(k)
+            bound(2*k - 1) = slot(k)
          end if
       end do
       do k = 1, size(s%laws)
          row = 2*size(s%pairs) + k
          associate (subject => s%laws(k)%drive%subject)
-            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = body_vector_bound(subject)
-            if (s%laws(k)%drive%kind == drive_slide) bound(row) = slot_bound(subject)
+            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = body(subject)
+            if (s%laws(k)%drive%kind == drive_slide) bound(row) = slot(subject)
          end associate
       end do
-
-   contains
-
-      !> Length of the body vector of `point`; 0 where the angle of its link is given.
-      pure real(wp) function body_vector_bound(point)
-         integer, intent(in) :: point
-
-         body_vector_bound = 0.0_wp
-         if (c%class(s%link_of(point)) > 0) body_vector_bound = norm2(s%offset(:, point))
-      end function body_vector_bound
-
-      !> Bound for the second derivatives of the row of prismatic pair `pair`; 0 where the angle of its guide is given.
-      pure real(wp) function slot_bound(pair)
-         integer, intent(in) :: pair
-
-         slot_bound = 0.0_wp
-         associate (i => s%link_of(s%pairs(pair)%point_i), j => s%link_of(s%pairs(pair)%point_j))
-            if (c%class(i) > 0) slot_bound = 2.0_wp*c%unit(pair) + norm2(p%q(:2, i) - p%q(:2, j))
-         end associate
-      end function slot_bound
    end function jacobian_lipschitz
 
    !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `rows`:

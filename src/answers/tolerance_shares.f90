@@ -129,8 +129,12 @@ contains
       integer, intent(in) :: c, k
       type(share_t), intent(in) :: share
       character(:), allocatable :: unit
-      integer :: column, coordinate, what, decimals
+      integer :: column, coordinate, what, decimals, i, j
+      integer, allocatable :: order(:)
+      real(wp), allocatable :: part(:)
       real(wp) :: size_of
+      character(12) :: sensitivity
+      character(max(number_name, len(m%tolerances%name))) :: name
 
       if (.not. allocated(share%s)) return
       coordinate = column_of(request, is_angle(m, request, c), c)
@@ -146,34 +150,12 @@ contains
          //column_text(l%names(request%kind), column)//'   T = '//time_text(l, share%t)//l%behind_time &
          //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
          //value_text(share%worst)//' '//unit)
-      call put_numbers(o, m, share, size_of)
 
-   contains
-
-      !> A value of the quantity.
-      function value_text(x) result(text)
-         real(wp), intent(in) :: x
-         character(:), allocatable :: text
-
-         text = trim(adjustl(fixed(x/size_of, decimals, d%power(what, k))))
-      end function value_text
-   end subroutine put_quantity
-
-   !> A line for each number of `m` with a share of note, the largest first: share, name, sensitivity (the quantity is
-   !> divided by `size_of`), tolerance.
-   subroutine put_numbers(o, m, share, size_of)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(share_t), intent(in) :: share
-      real(wp), intent(in) :: size_of
-      real(wp) :: part(size(share%s))
-      integer :: order(size(share%s)), i, j
-      character(12) :: sensitivity
-      character(max(number_name, len(m%tolerances%name))) :: name
-
+      ! A line for each number with a share of note, the largest first: share, name, sensitivity, tolerance.
       part = (share%s*m%tolerances%size_of/share%root)**2
-      ! The largest first; of those that are alike the first one.
+      allocate (order(size(part)))
       do i = 1, size(part)
+         ! Of those that are alike the first one comes first.
          do j = i - 1, 1, -1
             if (part(order(j)) >= part(i)*(1.0_wp - alike)) exit
             order(j + 1) = order(j)
@@ -192,5 +174,15 @@ contains
          end associate
       end do
       if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(size(order) - j + 1))
-   end subroutine put_numbers
+
+   contains
+
+      !> A value of the quantity.
+      function value_text(x) result(text)
+         real(wp), intent(in) :: x
+         character(:), allocatable :: text
+
+         text = trim(adjustl(fixed(x/size_of, decimals, d%power(what, k))))
+      end function value_text
+   end subroutine put_quantity
 end module tolerance_shares
