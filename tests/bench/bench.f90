@@ -1,8 +1,6 @@
 !> Tests. The program of `make bench`, one table a call; tests/bench/bench.sh makes the decks and calls it.
 !>
 !>    bench steps                        time a step of four mechanisms, also in coarse steps
-!>    bench elimination                  time of DGESV for two unknowns, and of the same operations written out
-!>    bench bits COUNT                   both compared, no clock; exit status 1 if any bits differ
 !>    bench sines COUNT                  errors of the lanes' sines, no clock; exit status 1 if any is large
 !>    bench lanes DECKS                  time a step of a variant in lanes
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS
@@ -14,7 +12,6 @@
 program bench
    use bench_results, only: judge_all
    use bench_tables, only: steps_table, coarse_table, chains_table, scene_line
-   use bench_elimination, only: elimination_table, judge_elimination
    use bench_lanes, only: lanes_table, judge_sines
    use bench_whole, only: reading_head, reading_row, process_table
    implicit none
@@ -29,12 +26,6 @@ program bench
    case ('steps')
       call steps_table()
       call coarse_table()
-   case ('elimination')
-      call elimination_table()
-   case ('bits')
-      read (arguments(2), *) count
-      call judge_elimination(count, failed)
-      if (failed > 0) stop 1, quiet=.true.
    case ('sines')
       read (arguments(2), *) count
       call judge_sines(count, failed)

@@ -25,15 +25,7 @@ for n in 3 5 7 15; do chain lattice $n; done
 libraries=$(ldd "$bench" 2> /dev/null | awk '/lapack|blas/ { print $3 }' | while read -r file; do
    readlink -f "$file" | sed 's/.*-linux-gnu[/]//'
 done)
-# bits COUNT: others than the reference LAPACK round in their own order.
-bits() {
-   case $libraries in
-   *openblas*|*blis*|*atlas*|*mkl*) ;;
-   *) "$bench" bits "$1" || exit 1 ;;
-   esac
-}
 if [ "$1" = short ]; then
-   bits 100000
    "$bench" sines 100000 || exit 1
    exec "$bench" results "$decks" 24 input/*.deck
 fi
@@ -45,8 +37,6 @@ sed -e '/^END/q' -e '/^AT /d' -e 's/^TIME    36  /TIME    3600/' input/four_bar.
 sed -e '/^PRINT /d' -e 's/^END/PRINT   ALL             3600\n&/' "$decks/s1.deck" > "$decks/s2.deck"
 echo " LIBRARIES:" $libraries
 "$bench" steps || exit 3
-"$bench" elimination || exit 3
-bits 10000000
 "$bench" sines 10000000 || exit 1
 "$bench" lanes "$decks" || exit 3
 "$bench" chains "$decks" || exit 3
