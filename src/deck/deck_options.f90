@@ -71,14 +71,6 @@ contains
                if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &
                    (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
                   call add_card_error(set, tolerance_range, k, real_1)
-            case (form_range)
-               m%ranges = .true.
-            case (form_assembly)
-               m%assemblies = .true.
-            case (form_circuits)
-               m%circuits = .true.
-            case (form_prove)
-               m%proves = .true.
             case (form_time)
                if (.not. card%valid) cycle
                if (card%whole < 1 .or. card%whole > max_steps) then
@@ -100,6 +92,10 @@ contains
          end associate
       end do
       set%mechanism%at = instants(:n)
+      set%mechanism%ranges = set%number_of(form_range) > 0
+      set%mechanism%assemblies = set%number_of(form_assembly) > 0
+      set%mechanism%circuits = set%number_of(form_circuits) > 0
+      set%mechanism%proves = set%number_of(form_prove) > 0
       do k = 1, set%count
          if (set%cards(k)%form == form_prove .and. set%mechanism%method /= method_newton) &
             call add_card_error(set, newton_needed, k, card_name)

@@ -28,9 +28,11 @@ module deck_variants
    integer, parameter :: max_variants = 10000000
    character(*), parameter :: list_word = 'LIST'
    character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
-   !> The cards whose numbers can vary.
+   !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_joint, form_drive, &
       form_add, form_rise, form_time]
+   integer, parameter :: number_kinds(*) = [number_link, number_link, number_point, number_pair, number_joint, &
+      number_drive, number_drive, number_drive, number_time]
 
    !> A number that varies.
    type :: varied_t
@@ -92,13 +94,9 @@ contains
                   else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
                      n = n + 1
                      unit = number_unit(set%mechanism, number)
-                     list(n)%card_number_t = number
-                     list(n)%size_of = card%real(i)
-                     list(n)%text = real_text(card, i)
-                     list(n)%name = number_name(set%mechanism, number)
-                     list(n)%unit = unit%factor
-                     list(n)%powers = unit%powers
-                     list(n)%unit_name = unit%name
+                     list(n) = tolerance_t(card_number_t=number, size_of=card%real(i), text=real_text(card, i), &
+                        name=number_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, &
+                        unit_name=unit%name)
                   end if
                end do
             end if
@@ -112,29 +110,18 @@ contains
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k, i
       type(card_number_t) :: number
+      integer :: n
 
       associate (card => set%cards(k))
          number = card_number_t(0, card%subject, card%term, i)
-         if (i > reals_of(card%form, card%label(label_a))) return
-         select case (card%form)
-         case (form_ground, form_link)
-            number%kind = number_link
-         case (form_point)
-            number%kind = number_point
-         case (form_joint)
-            number%kind = number_joint
-         case (form_prism)
-            number%kind = number_pair
-         case (form_time)
-            number%kind = number_time
-         case (form_drive, form_add, form_rise)
-            if (card%subject == 0) return
-            number%kind = number_drive
-            if (card%term == 0) return
-            if (set%mechanism%drives(card%subject)%terms(card%term)%kind /= term_table) return
-            number%place = card%row
-            if (i == 1) number%kind = number_knot
-         end select
+         n = findloc(varied_forms, card%form, dim=1)
+         if (n == 0 .or. i > reals_of(card%form, card%label(label_a))) return
+         if (number_kinds(n) == number_drive .and. card%subject == 0) return
+         number%kind = number_kinds(n)
+         if (card%term == 0) return
+         if (set%mechanism%drives(card%subject)%terms(card%term)%kind /= term_table) return
+         number%place = card%row
+         if (i == 1) number%kind = number_knot
       end associate
    end function number_on_card
 
