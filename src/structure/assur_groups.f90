@@ -43,17 +43,13 @@ contains
       type(mechanism_t), intent(in) :: m
       type(closure_t) :: c
       integer :: moving(size(m%links)), n, i, k          ! (links) number among the moving links, 0 for ground links
+      integer, allocatable :: links(:)
 
-      n = 0
+      links = pack([(i, i=1, size(m%links))], .not. m%links%ground)
       moving = 0
-      allocate (c%link_of(3*count(.not. m%links%ground)))
-      do i = 1, size(m%links)
-         if (m%links(i)%ground) cycle
-         n = n + 1
-         moving(i) = n
-         c%link_of(3*n - 2:3*n) = i
-      end do
-      c%incidence%unknowns = 3*n
+      moving(links) = [(i, i=1, size(links))]
+      c%link_of = [((links(i), k=1, 3), i=1, size(links))]
+      c%incidence%unknowns = size(c%link_of)
       associate (equations => 2*size(m%pairs) + size(m%drives))
          allocate (c%incidence%first(equations + 1), c%incidence%unknown(6*equations))
          allocate (c%pair(equations), c%drive(equations), source=0)
@@ -236,9 +232,7 @@ contains
       integer :: u, i, k, link, before, n
 
       tied = .false.
-      do u = 1, size(equation_of)
-         if (over(equation_of(u))) tied(c%link_of(u)) = .true.
-      end do
+      tied(pack(c%link_of, over(equation_of))) = .true.
       w%equations = size(m%links)
       w%unknowns = size(m%links)
       allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(c%incidence%unknown)))

@@ -51,7 +51,7 @@ contains
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(tree_t) :: t
-      integer :: k
+      integer :: last, k       ! last: the links that a walk has come to so far
 
       t%near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
       t%near%member = (t%near%member + 1)/2
@@ -63,7 +63,7 @@ contains
       !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from every link not yet
       !> seen.
       subroutine find_orientations()
-         integer :: first, last, next, link, far, i, k
+         integer :: first, next, link, far, i, k
          logical :: used(size(m%pairs))
 
          t%orientation = merge(0, -1, m%links%ground)
@@ -104,7 +104,7 @@ contains
 
       !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
       subroutine grow()
-         integer :: last, revolute_next, prismatic_next, link
+         integer :: revolute_next, prismatic_next, link
          logical :: attached
 
          allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
@@ -112,17 +112,17 @@ contains
          allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
          last = 0
          do link = 1, size(m%links)
-            if (m%links(link)%ground) call attach(last, link, 0, 0)
+            if (m%links(link)%ground) call attach(link, 0, 0)
          end do
          revolute_next = 1
          prismatic_next = 1
          link = 1
          do
             if (revolute_next <= last) then
-               call attach_neighbours(pair_revolute, t%order(revolute_next), last, attached)
+               call attach_neighbours(pair_revolute, t%order(revolute_next), attached)
                revolute_next = revolute_next + 1
             else if (prismatic_next <= last) then
-               call attach_neighbours(pair_prismatic, t%order(prismatic_next), last, attached)
+               call attach_neighbours(pair_prismatic, t%order(prismatic_next), attached)
                if (.not. attached) prismatic_next = prismatic_next + 1
             else
                do while (link <= size(m%links))
@@ -132,15 +132,14 @@ contains
                if (link > size(m%links)) exit
                t%roots = t%roots + 1
                t%root(link) = t%roots
-               call attach(last, link, 0, 0)
+               call attach(link, 0, 0)
             end if
          end do
       end subroutine grow
 
       !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
-      subroutine attach_neighbours(kind, link, last, attached)
+      subroutine attach_neighbours(kind, link, attached)
          integer, intent(in) :: kind, link
-         integer, intent(inout) :: last
          logical, intent(out) :: attached
          integer :: i, k
 
@@ -149,7 +148,7 @@ contains
             k = t%near%member(i)
             if (m%pairs(k)%kind /= kind) cycle
             if (t%depth(other_link(m, k, link)) >= 0) cycle
-            call attach(last, other_link(m, k, link), link, k)
+            call attach(other_link(m, k, link), link, k)
             attached = .true.
             if (kind == pair_revolute) cycle
             t%slides = t%slides + 1
@@ -159,8 +158,7 @@ contains
       end subroutine attach_neighbours
 
       !> `link` is next in the tree, joined to its `parent` by `pair`; 0 for the ground and for roots.
-      subroutine attach(last, link, parent, pair)
-         integer, intent(inout) :: last
+      subroutine attach(link, parent, pair)
          integer, intent(in) :: link, parent, pair
 
          last = last + 1

@@ -186,7 +186,6 @@ contains
          type(tree_t), intent(in) :: t
          integer, intent(in) :: free(:)
          type(underdetermined_t), allocatable :: parts(:)
-         type(underdetermined_t) :: one
          integer :: i, k
          logical :: is_free(size(m%links))
 
@@ -195,16 +194,11 @@ contains
             if (free(k) <= t%orientations) then
                is_free = t%orientation == free(k)
             else if (free(k) <= t%orientations + t%slides) then
-               do i = 1, size(m%links)
-                  is_free(i) = .false.
-                  if (t%parent_joint(i) > 0) is_free(i) = t%slide(t%parent_joint(i)) == free(k) - t%orientations
-               end do
+               is_free = t%parent_joint == findloc(t%slide, free(k) - t%orientations, dim=1)
             else
                is_free = t%root == (free(k) - t%orientations - t%slides + 1)/2
             end if
-            one%links = pack([(i, i=1, size(m%links))], is_free)
-            one%degrees_of_freedom = 1
-            parts = [parts, one]
+            parts = [parts, underdetermined_t(pack([(i, i=1, size(m%links))], is_free), 1)]
          end do
       end function parts_on_tree
    end function find_structure

@@ -211,12 +211,9 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(search_t) :: s
-      integer :: i
 
       allocate (s%open(size(m%pairs)), source=.false.)
-      do i = 1, size(m%links)
-         if (t%parent_joint(i) > 0) s%open(t%parent_joint(i)) = .true.
-      end do
+      s%open(pack(t%parent_joint, t%parent_joint > 0)) = .true.
       allocate (s%via(0:2*size(m%links) + 1), s%seen(0:2*size(m%links) + 1), source=0)
       allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
    end function new_search
