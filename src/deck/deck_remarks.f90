@@ -281,11 +281,8 @@ contains
       integer :: i, j, k, link, found
 
       cards = pack([(k, k=1, set%count)], set%cards(:set%count)%form == form_joint)
-      allocate (place(2, size(cards)), is_remarked(size(cards)))
-      do i = 1, size(cards)
-         place(:, i) = set%cards(cards(i))%real(1:2)
-      end do
-      is_remarked = .false.
+      place = reshape([(set%cards(cards(i))%real(1:2), i=1, size(cards))], [2, size(cards)])
+      allocate (is_remarked(size(cards)), source=.false.)
       found = 0
       limit = 0.0_wp
       do i = 1, directions

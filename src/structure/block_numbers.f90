@@ -70,16 +70,10 @@ contains
       x%rows%unit = 1.0_wp
       x%rows%constant = x%equations%constant(b%equation)
       associate (sums => x%equations%sums, p => b%equations%vector_loops)
-         do k = 1, size(x%d)
-            associate (d => sums%body_vector(:, b%body_vectors(k)%source))
-               x%d(k) = vector_t(d(1), d(2))
-            end associate
-         end do
-         do k = 1, size(x%e)
-            associate (e => sums%slide_body_vector(:, b%slides(k)%source))
-               x%e(k) = vector_t(e(1), e(2))
-            end associate
-         end do
+         x%d%x = sums%body_vector(1, b%body_vectors%source)
+         x%d%y = sums%body_vector(2, b%body_vectors%source)
+         x%e%x = sums%slide_body_vector(1, b%slides%source)
+         x%e%y = sums%slide_body_vector(2, b%slides%source)
          do i = 1, size(b%list)
             associate (first => b%list(i)%first_row, last => b%list(i)%last_row)
                x%blocks(i)%has_right_sides = any(b%rows(first:last)%drive > 0 &
