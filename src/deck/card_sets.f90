@@ -108,13 +108,15 @@ contains
       type(card_set_t), intent(inout) :: set
       type(parsed_card_t), allocatable :: ordered(:)
       logical :: is_apart(set%count)
-      integer :: k
+      integer :: k, n
 
       set%apart = sum(set%number_of([form_toler, form_vary]))
       if (set%apart == 0) return
       is_apart = [(any(set%cards(k)%form == [form_toler, form_vary]), k=1, set%count)]
+      n = 0
       do k = 1, set%count
-         set%cards(k)%below = count(.not. is_apart(:k))
+         if (.not. is_apart(k)) n = n + 1
+         set%cards(k)%below = n
       end do
       ordered = set%cards([pack([(k, k=1, set%count)], .not. is_apart), pack([(k, k=1, set%count)], is_apart)])
       call move_alloc(ordered, set%cards)
