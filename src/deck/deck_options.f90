@@ -150,14 +150,24 @@ contains
       do form = form_pole, form_curve
          do k = 1, set%count
             if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
-            call read_centre(k, requests(n + 1))
-            associate (one => requests(n + 1))
-               i = findloc(one%subject > 0 .and. requests(:n)%kind == one%kind .and. requests(:n)%second == one%second &
-                  .and. requests(:n)%subject == one%subject, .true., dim=1)
+            n = n + 1
+            associate (one => requests(n))
+               one = request_t(request_pole, every=every(k))
+               if (form == form_pole) then
+                  call look_up(set, request_link, k, label_a, one%second)
+                  call look_up(set, request_link, k, label_b, one%subject)
+               else
+                  one%kind = request_curve
+                  call look_up(set, request_point, k, label_a, one%subject)
+                  call look_up(set, request_link, k, label_b, one%second)
+               end if
+               associate (earlier => requests(:n - 1))
+                  i = findloc(one%subject > 0 .and. earlier%kind == one%kind .and. earlier%subject == one%subject &
+                     .and. earlier%second == one%second, .true., dim=1)
+               end associate
             end associate
             if (i > 0) i = findloc(set%cards(:k)%form == form .and. set%cards(:k)%subject == i, .true., dim=1)
             if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(i)%card%number))
-            n = n + 1
             set%cards(k)%subject = n
          end do
       end do
@@ -172,23 +182,6 @@ contains
          every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
          if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
       end function every
-
-      !> What the POLE or CURVE card `k` asks for. A name that is unknown is number 0.
-      subroutine read_centre(k, one)
-         integer, intent(in) :: k
-         type(request_t), intent(out) :: one
-
-         one%every = every(k)
-         if (set%cards(k)%form == form_pole) then
-            one%kind = request_pole
-            call look_up(set, request_link, k, label_a, one%second)
-            call look_up(set, request_link, k, label_b, one%subject)
-         else
-            one%kind = request_curve
-            call look_up(set, request_point, k, label_a, one%subject)
-            call look_up(set, request_link, k, label_b, one%second)
-         end if
-      end subroutine read_centre
 
       !> Asks what `request` does about the subjects of card `k`.
       subroutine read_subjects(k, request)

@@ -18,8 +18,8 @@ module structure
    use block_structure, only: structure_t, make_structure
    implicit none
    private
-   public :: structure_t, findings_t, group_t, underdetermined_t, make_structure, count_degrees_of_freedom, &
-      find_structure, find_groups, check_structure, faults_text, spare_drives_text
+   public :: structure_t, findings_t, group_t, underdetermined_t, make_structure, find_structure, &
+      find_groups, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
    type :: underdetermined_t
@@ -60,22 +60,7 @@ module structure
 
 contains
 
-   !> Counts (12) and (13) of mechanism `m`.
-   pure function count_degrees_of_freedom(m) result(f)
-      type(mechanism_t), intent(in) :: m
-      type(findings_t) :: f
-
-      f%links = size(m%links)
-      f%ground = count(m%links%ground)
-      f%revolute = count(m%pairs%kind == pair_revolute)
-      f%prismatic = count(m%pairs%kind == pair_prismatic)
-      f%coordinates = 3*f%links
-      f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
-      f%degrees_of_freedom = f%coordinates - f%equations
-      f%drives = size(m%drives)
-   end function count_degrees_of_freedom
-
-   !> The counts of `m`, and what its structure lacks or has too much of.
+   !> The counts (12) and (13) of `m`, and what its structure lacks or has too much of.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
@@ -85,7 +70,15 @@ contains
       logical, allocatable :: over(:)
       integer :: k, parts
 
-      f = count_degrees_of_freedom(m)
+      f%links = size(m%links)
+      f%ground = count(m%links%ground)
+      f%revolute = count(m%pairs%kind == pair_revolute)
+      f%prismatic = count(m%pairs%kind == pair_prismatic)
+      f%coordinates = 3*f%links
+      f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
+      f%degrees_of_freedom = f%coordinates - f%equations
+      f%drives = size(m%drives)
+
       c = new_closure(m)
       call match(c%incidence, unknown_of, equation_of)
       over = overdetermined(c%incidence, unknown_of, equation_of)

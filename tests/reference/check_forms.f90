@@ -8,7 +8,7 @@ program check_forms
    use mechanism, only: mechanism_t, pair_t, drive_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
       drive_relangle, drive_slide
    use scales, only: characteristic_length, characteristic_rate
-   use structure, only: findings_t, count_degrees_of_freedom
+   use structure, only: findings_t, find_structure
    use deck, only: read_deck
    use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
    use quad_decks, only: length, angle, law
@@ -57,7 +57,7 @@ contains
       integer :: k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
-      call count_one(tally, agree(hand_count(name), count_degrees_of_freedom(m)), &
+      call count_one(tally, agree(hand_count(name), find_structure(m)), &
          trim(what)//' links and pairs as counted by hand')
       pairs = 0.0_qp
       grounds = 0.0_qp
