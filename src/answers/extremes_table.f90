@@ -12,7 +12,7 @@ module extremes_table
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, extreme_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
+   use extremes, only: extremes_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
       is_cyclic, is_covered, ratio_decimals, closes_to, column_of
    use dwells, only: dwell_t
    use phrases
@@ -37,7 +37,7 @@ contains
       type(listing_state_t) :: table
       type(digits_t) :: d
       type(request_t) :: request
-      integer :: q, k, drive
+      integer :: q, c, k, drive
       logical :: moves, goes_on(size(x%tracks))
       character(:), allocatable :: driven
 
@@ -45,7 +45,7 @@ contains
       moves = .false.
       goes_on = .false.
       do q = 1, size(x%asked)
-         if (.not. any_varies()) cycle
+         if (.not. any([((varies(c, k), c=1, x%columns(q)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
          d = l%own(x%part(q))
@@ -84,13 +84,6 @@ contains
          end associate
       end function varies
 
-      !> The same of any of its numbers.
-      pure logical function any_varies()
-         integer :: c, k
-
-         any_varies = any([((varies(c, k), c=1, x%columns(q)), k=0, 2)])
-      end function any_varies
-
       !> The rows of asked row `q`, that of a link, point or pair of this `name`.
       subroutine put_subject(name)
          character(*), intent(in) :: name
@@ -110,8 +103,12 @@ contains
                do c = 1, x%columns(q)
                   if (.not. varies(c, k)) cycle
                   associate (e => x%found(which, c, k, q))
-                     value(c, k) = value_text(e, x%is_angle(c, q), k)
-                     if (.not. e%exists) cycle
+                     if (.not. e%exists) then
+                        value(c, k) = trim(adjustl(l%none))
+                        cycle
+                     end if
+                     value(c, k) = phrase(say_unbounded, s%polish)
+                     if (e%has_bound) value(c, k) = number_text(e%value, e%error, x%is_angle(c, q), k)
                      time(c, k) = time_text(l, e%t, e%t_error)
                      if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
                   end associate
@@ -123,23 +120,6 @@ contains
          end do
          call put_strokes()
       end subroutine put_subject
-
-      !> The value of the extreme `e` of a length or an angle, or of derivative number `k` of one: or that there is
-      !> none.
-      function value_text(e, angular, k) result(text)
-         type(extreme_t), intent(in) :: e
-         logical, intent(in) :: angular
-         integer, intent(in) :: k
-         character(:), allocatable :: text
-
-         if (.not. e%exists) then
-            text = trim(adjustl(l%none))
-         else if (.not. e%has_bound) then
-            text = phrase(say_unbounded, s%polish)
-         else
-            text = number_text(e%value, e%error, angular, k)
-         end if
-      end function value_text
 
       !> The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times of
       !> both strokes and their ratio, or a line for each dead centre if there are more than two.

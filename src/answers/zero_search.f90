@@ -22,7 +22,7 @@ module zero_search
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
    !> A time that is known to this part of it, by a bound of what rounding leaves open, needs no estimate of errors.
-   real(wp), parameter :: well_known = 4096.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: well_known = 65536.0_wp*epsilon(1.0_wp)
 
    !> A number of a row at one time, in the deck's units and rad.
    type :: sample_t
@@ -84,7 +84,7 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
       real(wp), intent(in), optional :: ends(2)
-      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope, open
+      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope, open, nearest
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
       logical :: is_found, estimated
@@ -111,7 +111,15 @@ contains
       if (order == 3) step = step/shorter
       noise = c%noise(min(order, 2))
       if (order == 3) noise = noise_of_stencil()
-      slope = slope_at(t)
+      ! The slope from the zero to the nearest value that is more than noise.
+      slope = 0.0_wp
+      nearest = huge(1.0_wp)
+      do i = 1, n
+         if (abs(values(i)) <= above_noise*noise .or. abs(times(i) - t) >= nearest) cycle
+         if (abs(times(i) - t) <= 0.0_wp) cycle
+         nearest = abs(times(i) - t)
+         slope = abs(values(i))/nearest
+      end do
       do i = 1, 2
          ! An estimate takes nine solutions. A level that a coordinate passes has its error.
          estimated = order == 0 .or. i == 2
@@ -199,22 +207,6 @@ contains
          times(n) = time
          values(n) = g
       end subroutine note
-
-      !> The slope from `time`, the zero, to the nearest value that is more than noise.
-      real(wp) function slope_at(time) result(slope)
-         real(wp), intent(in) :: time
-         real(wp) :: nearest
-         integer :: k
-
-         slope = 0.0_wp
-         nearest = huge(1.0_wp)
-         do k = 1, n
-            if (abs(values(k)) <= above_noise*noise .or. abs(times(k) - time) >= nearest) cycle
-            if (abs(times(k) - time) <= 0.0_wp) cycle
-            nearest = abs(times(k) - time)
-            slope = abs(values(k))/nearest
-         end do
-      end function slope_at
 
       !> The function `g` at a `time`.
       subroutine evaluate(time, g, known)

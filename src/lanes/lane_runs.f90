@@ -13,7 +13,7 @@ module lane_runs
    use drive_excursion, only: judge_step
    use analysis, only: come_back
    use block_engine, only: get_motion
-   use digits_in_doubt, only: is_in_doubt
+   use digits_in_doubt, only: find_growth
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
    use extreme_search, only: note_start
    use nodes, only: times_between
@@ -52,13 +52,6 @@ module lane_runs
       logical :: is_laned = .false.         !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
-
-   !> When the next steps of all lanes end: step k at t0 + span (at + k)/all_steps, as `instant` has it.
-   type :: timetable_t
-      real(wp), dimension(width) :: t0 = 0.0_wp, span = 0.0_wp, at = 0.0_wp, all_steps = 1.0_wp
-      real(wp) :: goes_on(width) = 0.0_wp   !< 1 where a variant is
-      integer :: steps = huge(1)            !< after so many a lane must be looked at
-   end type timetable_t
 
 contains
 
@@ -101,20 +94,46 @@ contains
       type(lane_run_t), intent(inout) :: runs(:)
       type(lanes_t), intent(inout) :: l
       type(judgement_t) :: j
-      type(timetable_t) :: plan
-      real(wp) :: t(width)
-      integer :: i, k
+      real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
+      integer :: i, k, steps
+      logical :: is_laned
 
       do i = 1, size(runs)
          call take_over(runs(i), l, i)
       end do
-      if (any(runs%is_laned)) call fill_lanes(runs, l)
+      ! Lanes that no variant has do what one of them does: their numbers must be numbers.
+      if (any(runs%is_laned)) then
+         k = findloc(runs%is_laned, .true., dim=1)
+         do i = 1, width
+            is_laned = .false.
+            if (i <= size(runs)) is_laned = runs(i)%is_laned
+            if (.not. is_laned) call load_run(runs(k), l, i, is_laned)
+         end do
+      end if
       do while (any(runs%is_laned) .and. signal_received() == 0)
-         plan = new_timetable(runs, l)
-         do k = 1, plan%steps
-            t = plan%t0 + plan%span*(plan%at + k)/plan%all_steps
+         ! Step k ends at t0 + span (at + k)/all_steps, as `instant` has it. Lanes without a variant stay where they
+         ! are.
+         steps = huge(steps)
+         t0 = l%t(:, l%slot(0))
+         span = 0.0_wp
+         at = 0.0_wp
+         all_steps = 1.0_wp
+         goes_on = 0.0_wp
+         do i = 1, size(runs)
+            if (.not. runs(i)%is_laned) cycle
+            associate (m => runs(i)%m)
+               t0(i) = m%t0
+               span(i) = m%t1 - m%t0
+               at(i) = real(runs(i)%at, wp)
+               all_steps(i) = real(m%steps, wp)
+               goes_on(i) = 1.0_wp
+               steps = min(steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%extremes_asked))
+            end associate
+         end do
+         do k = 1, steps
+            t = t0 + span*(at + k)/all_steps
             call solve_lanes(l, t, j)
-            if (k == plan%steps .or. dot_product(j%refused, plan%goes_on) > 0.5_wp .or. signal_received() > 0) exit
+            if (k == steps .or. dot_product(j%refused, goes_on) > 0.5_wp .or. signal_received() > 0) exit
             call accept_lanes(l, t)
          end do
          do i = 1, size(runs)
@@ -129,27 +148,6 @@ contains
       end do
    end subroutine run_lanes
 
-   !> The steps that all lanes can make until one must be looked at. Lanes without a variant stay where they are.
-   pure function new_timetable(runs, l) result(plan)
-      type(lane_run_t), intent(in) :: runs(:)
-      type(lanes_t), intent(in) :: l
-      type(timetable_t) :: plan
-      integer :: i
-
-      plan%t0 = l%t(:, l%slot(0))
-      do i = 1, size(runs)
-         if (.not. runs(i)%is_laned) cycle
-         associate (m => runs(i)%m)
-            plan%t0(i) = m%t0
-            plan%span(i) = m%t1 - m%t0
-            plan%at(i) = real(runs(i)%at, wp)
-            plan%all_steps(i) = real(m%steps, wp)
-            plan%goes_on(i) = 1.0_wp
-            plan%steps = min(plan%steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%extremes_asked))
-         end associate
-      end do
-   end function new_timetable
-
    !> Lane `i` has made a step of `r`, to the time `t`: it counts, unless the engine must look.
    subroutine look_at_step(r, l, i, j, t)
       type(lane_run_t), intent(inout) :: r
@@ -163,7 +161,8 @@ contains
       if (j%refused(i) > 0.5_wp) then
          steps = max_searched
          r%patience = 2*r%patience
-      else if (is_last_step(r)) then
+      else if (r%at + 1 == r%m%steps .and. (r%asked%extremes_asked .or. instant_count(r%m) - 1 > r%m%steps)) then
+         ! EXTREMES take more than instants beside the end of TIME, and beyond it there may be instants of AT.
          steps = max_searched
       else if (r%asked%extremes_asked) then
          call watch_lane(r, l, i, j%correction(i), steps)
@@ -176,14 +175,6 @@ contains
          t = l%t(i, l%slot(0))
       end if
    end subroutine look_at_step
-
-   !> Beside the end of the TIME card EXTREMES take more than instants, and beyond it there may be instants of their
-   !> own.
-   pure logical function is_last_step(r)
-      type(lane_run_t), intent(in) :: r
-
-      is_last_step = r%at + 1 == r%m%steps .and. (r%asked%extremes_asked .or. instant_count(r%m) - 1 > r%m%steps)
-   end function is_last_step
 
    !> The next `n` instants of `r` are solved and regular.
    pure subroutine count_instants(r, n)
@@ -249,22 +240,6 @@ contains
          == request_link .or. r%m%requests(r%asked%extremes%asked)%kind == request_point &
          .or. r%m%requests(r%asked%extremes%asked)%kind == request_pair)
    end function may_be_laned
-
-   !> Lanes that no variant has do what one of them does: their numbers must be numbers.
-   subroutine fill_lanes(runs, l)
-      type(lane_run_t), intent(inout) :: runs(:)
-      type(lanes_t), intent(inout) :: l
-      integer :: i, k
-      logical :: is_done
-
-      k = findloc(runs%is_laned, .true., dim=1)
-      do i = 1, width
-         if (i <= size(runs)) then
-            if (runs(i)%is_laned) cycle
-         end if
-         call load_run(runs(k), l, i, is_done)
-      end do
-   end subroutine fill_lanes
 
    !> Instants `first` to `last` of `r`, as far as there are such, by the engine; one more, if EXTREMES search the last
    !> step with the next one. `starts`: EXTREMES begin anew there.
@@ -347,6 +322,7 @@ contains
       real(wp), intent(in) :: correction
       integer, intent(out) :: steps
       logical :: finite, turned
+      real(wp) :: growth
       integer :: u, k
 
       steps = max_searched
@@ -372,8 +348,8 @@ contains
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
          call get_motion(e, r%s%now%motions(1), finite)
-         turned = .not. finite &
-            .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%parts(1), r%s%now%motions(1), e)
+         call find_growth(r%s%estimators(1)%sizes, r%s%now%parts(1), 1.0_wp, r%s%now%motions(1), growth, turned, e)
+         turned = turned .or. .not. finite
       end associate
       if (turned) return
       call show_rows(r, steps)

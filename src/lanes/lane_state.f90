@@ -118,7 +118,31 @@ contains
             if (allocated(l%laws(i, k)%splines)) l%is_polynomial = l%is_polynomial .and. size(l%laws(i, k)%splines) == 0
          end do
       end do
-      call load_numbers(l, lane, e%blocks)
+      associate (b => e%blocks, x => e%blocks%numbers)
+         do i = 1, size(b%list)
+            l%block(i)%lipschitz(lane) = x%blocks(i)%lipschitz
+            l%block(i)%coarse(lane) = max(1.0_wp, x%blocks(i)%coarse)
+            l%block(i)%has_right_sides = l%block(i)%has_right_sides .or. x%blocks(i)%has_right_sides
+         end do
+         do i = 1, size(b%rows)
+            l%rows(i)%constant(lane) = x%rows(i)%constant
+         end do
+         do i = 1, size(b%body_vectors)
+            l%d(i)%x(lane) = x%d(i)%x
+            l%d(i)%y(lane) = x%d(i)%y
+         end do
+         do i = 1, size(b%loops)
+            l%numbers(i)%ground%x(lane) = x%loops(i)%ground%x
+            l%numbers(i)%ground%y(lane) = x%loops(i)%ground%y
+            l%numbers(i)%direction%x(lane) = x%loops(i)%direction%x
+            l%numbers(i)%direction%y(lane) = x%loops(i)%direction%y
+         end do
+         do i = 1, size(b%slides)
+            l%e(i)%x(lane) = x%e(i)%x
+            l%e(i)%y(lane) = x%e(i)%y
+         end do
+      end associate
+
       do i = 0, e%blocks%unknowns
          associate (u => e%state%u(i))
             l%u(i)%value(lane) = u%value
@@ -128,64 +152,24 @@ contains
             l%u(i)%s(lane) = u%s
          end associate
       end do
-      call load_history(l, lane, e)
-   end subroutine load_lane
 
-   !> Fills `lane` with the numbers of the blocks `b`.
-   subroutine load_numbers(l, lane, b)
-      type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: lane
-      type(blocks_t), intent(in) :: b
-      integer :: i
-
-      do i = 1, size(b%list)
-         associate (numbers => b%numbers%blocks(i))
-            l%block(i)%lipschitz(lane) = numbers%lipschitz
-            l%block(i)%coarse(lane) = max(1.0_wp, numbers%coarse)
-            l%block(i)%has_right_sides = l%block(i)%has_right_sides .or. numbers%has_right_sides
-         end associate
-      end do
-      do i = 1, size(b%rows)
-         l%rows(i)%constant(lane) = b%numbers%rows(i)%constant
-      end do
-      do i = 1, size(b%body_vectors)
-         l%d(i)%x(lane) = b%numbers%d(i)%x
-         l%d(i)%y(lane) = b%numbers%d(i)%y
-      end do
-      do i = 1, size(b%loops)
-         l%numbers(i)%ground%x(lane) = b%numbers%loops(i)%ground%x
-         l%numbers(i)%ground%y(lane) = b%numbers%loops(i)%ground%y
-         l%numbers(i)%direction%x(lane) = b%numbers%loops(i)%direction%x
-         l%numbers(i)%direction%y(lane) = b%numbers%loops(i)%direction%y
-      end do
-      do i = 1, size(b%slides)
-         l%e(i)%x(lane) = b%numbers%e(i)%x
-         l%e(i)%y(lane) = b%numbers%e(i)%y
-      end do
-   end subroutine load_numbers
-
-   !> Fills `lane` with the motions that `e` remembers; of those before the latest it has no values.
-   subroutine load_history(l, lane, e)
-      type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: lane
-      type(block_engine_t), intent(in) :: e
-      integer :: k, i, slot
-
+      ! Of motions before the latest the engine has no values.
       do k = 0, 2
-         slot = l%slot(k)
-         l%t(lane, slot) = e%history%t(k)
-         do i = 1, size(l%predicted)
-            associate (past => e%history%past(l%predicted(i)))
-               l%past(l%predicted(i))%motion(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
-            end associate
-         end do
+         associate (slot => l%slot(k))
+            l%t(lane, slot) = e%history%t(k)
+            do i = 1, size(l%predicted)
+               associate (past => e%history%past(l%predicted(i)))
+                  l%past(l%predicted(i))%motion(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
+               end associate
+            end do
+         end associate
       end do
       do i = 1, size(l%block)
          l%block(i)%sign_of(lane) = e%followed(i)%sign_of
          l%block(i)%pivot(lane, l%slot(0)) = e%followed(i)%pivot
          l%block(i)%inverse(lane, l%slot(0)) = e%followed(i)%inverse
       end do
-   end subroutine load_history
+   end subroutine load_lane
 
    !> Gives `e` the motion of `lane`, `back` instants before the latest: as the one that it follows.
    subroutine unload_lane(l, lane, back, e)

@@ -119,30 +119,23 @@ contains
       end do
    end subroutine predict_one
 
-   !> A drive's own unknown.
+   !> A drive's own unknown: u = other + sign_of (constant + drive), and its derivatives.
    subroutine solve_direct(l, i)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i
+      real(wp) :: sign_of
       integer :: u
 
       u = l%blocks%unknown(l%blocks%list(i)%first)
       associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
-         call take_drive(real(row%sign_of, wp), l%rows(l%blocks%list(i)%first_row)%constant, l%drive(1, 0, row%drive), &
-            l%u(row%other), l%u(u))
+         sign_of = real(row%sign_of, wp)
+         l%u(u)%value = l%u(row%other)%value + sign_of*(l%rows(l%blocks%list(i)%first_row)%constant &
+            + l%drive(:, 0, row%drive))
+         l%u(u)%rate = l%u(row%other)%rate + sign_of*l%drive(:, 1, row%drive)
+         l%u(u)%acceleration = l%u(row%other)%acceleration + sign_of*l%drive(:, 2, row%drive)
       end associate
       call set_lane_direction(l, u)
    end subroutine solve_direct
-
-   !> u = other + sign_of (constant + drive), and its derivatives.
-   pure subroutine take_drive(sign_of, constant, drive, other, u)
-      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2)
-      type(unknown_t), intent(in) :: other
-      type(unknown_t), intent(inout) :: u
-
-      u%value = other%value + sign_of*(constant + drive(:, 0))
-      u%rate = other%rate + sign_of*drive(:, 1)
-      u%acceleration = other%acceleration + sign_of*drive(:, 2)
-   end subroutine take_drive
 
    !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
    subroutine solve_block(l, i, n, j)
@@ -150,7 +143,7 @@ contains
       integer, intent(in) :: i, n
       type(judgement_t), intent(inout) :: j
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
-      real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width, 3), &
+      real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width), &
          start(width, max_order), change(width)
       integer :: k
 
@@ -181,7 +174,7 @@ contains
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
       real(wp), intent(inout) :: a(width, n*n), d(width, n), v(width, n)
-      real(wp), intent(inout) :: exchanged(width, 3)
+      real(wp), intent(inout) :: exchanged(width)
       type(judgement_t), intent(inout) :: j
       real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
@@ -228,40 +221,28 @@ contains
       end do
    end subroutine turn
 
-   !> See `judge` in `block_solver`, and what the engine and the continuation make of it. `change`: of the values of
+   !> See `judge` in `block_solver`, and what the engine and the continuation make of it: refuses what has too small a
+   !> pivot, compared with the largest, or a determinant of another sign than before. `change`: of the values of
    !> `block`, from the motion in the slot `before` to that in the slot `next`.
    pure subroutine judge(n, a, exchanged, change, before, next, block, j)
       integer, intent(in) :: n, before, next
-      real(wp), intent(in) :: a(width, n*n), exchanged(width, 3), change(width)
+      real(wp), intent(in) :: a(width, n*n), exchanged(width), change(width)
       type(lane_block_t), intent(inout) :: block
       type(judgement_t), intent(inout) :: j
       real(wp) :: largest(width), sign_of(width)
-
-      call judge_factors(n, a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
-      if (n == 1) then
-         call certify(block%pivot(1, next), block%lipschitz, sign_of, block%sign_of, change, block%lipschitz, &
-            block%inverse(1, next), block%inverse(1, before), j%refused, j%correction, j%ratio, j%growth)
-      else
-         call certify(block%pivot(1, next), largest, sign_of, block%sign_of, change, block%lipschitz, &
-            block%inverse(1, next), block%inverse(1, before), j%refused, j%correction, j%ratio, j%growth)
-      end if
-   end subroutine judge
-
-   !> Refuses what has too small a pivot, compared with the `largest`, or a determinant of another sign than before.
-   pure subroutine certify(least, largest, sign_of, side, change, lipschitz, inverse, before, &
-      refused, correction, ratio, growth)
-      real(wp), dimension(width), intent(in) :: least, largest, sign_of, side, change, lipschitz, inverse, before
-      real(wp), dimension(width), intent(inout) :: refused, correction, ratio, growth
       integer :: l
 
+      call judge_factors(n, a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
+      ! One equation has no other pivot to compare with.
+      if (n == 1) largest = block%lipschitz
       do l = 1, width
-         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*side(l) > 0.0_wp) &
-            + merge(0.0_wp, 1.0_wp, least(l) >= suspicious_pivot*max(largest(l), 1.0_wp))
-         correction(l) = max(correction(l), change(l))
-         ratio(l) = max(ratio(l), change(l)*lipschitz(l)*inverse(l))
-         growth(l) = max(growth(l), lipschitz(l)*max(inverse(l), before(l))**2)
+         j%refused(l) = j%refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*block%sign_of(l) > 0.0_wp) &
+            + merge(0.0_wp, 1.0_wp, block%pivot(l, next) >= suspicious_pivot*max(largest(l), 1.0_wp))
+         j%correction(l) = max(j%correction(l), change(l))
+         j%ratio(l) = max(j%ratio(l), change(l)*block%lipschitz(l)*block%inverse(l, next))
+         j%growth(l) = max(j%growth(l), block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, before))**2)
       end do
-   end subroutine certify
+   end subroutine judge
 
    !> The motions found last, at `t`, are now the latest of their lanes.
    subroutine accept_lanes(l, t)
@@ -272,19 +253,13 @@ contains
       l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
       l%t(:, l%slot(0)) = t
       do k = 1, size(l%predicted)
-         call remember(l%u(l%predicted(k)), l%past(l%predicted(k))%motion(1, 1, l%slot(0)))
+         associate (u => l%u(l%predicted(k)), past => l%past(l%predicted(k)))
+            past%motion(:, 1, l%slot(0)) = u%value
+            past%motion(:, 2, l%slot(0)) = u%rate
+            past%motion(:, 3, l%slot(0)) = u%acceleration
+         end associate
       end do
    end subroutine accept_lanes
-
-   !> Copies value, rate and acceleration.
-   pure subroutine remember(u, past)
-      type(unknown_t), intent(in) :: u
-      real(wp), intent(inout) :: past(width, 3)
-
-      past(:, 1) = u%value
-      past(:, 2) = u%rate
-      past(:, 3) = u%acceleration
-   end subroutine remember
 
    !> Puts `lane` back to its latest motion, as if that had been found last.
    subroutine keep_lane(l, lane)

@@ -11,7 +11,7 @@ module digits_in_doubt
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, growth_of_roundings, growth_of_angles, is_in_doubt, safe_growth
+   public :: sizes_t, sizes_of, find_growth, growth_of_roundings, growth_of_angles, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
@@ -59,22 +59,10 @@ contains
       end do
    end function sizes_of
 
-   !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
-   pure logical function is_in_doubt(s, m, q, e)
-      type(sizes_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(block_engine_t), intent(in) :: e
-      real(wp) :: growth
-
-      call find_growth(s, m, 1.0_wp, q, growth, is_in_doubt, e)
-   end function is_in_doubt
-
    !> By how much roundings grow at most in the motion `q`, where a pivot is small; without limit where a number is
    !> large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the position to the last digits
-   !> all the same; all equations at once (no `e`) have lost up to half of them. `numbers` (length or angle,
-   !> derivative): the largest of `q`, where its accelerations exist.
-   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e, numbers)
+   !> all the same; all equations at once (no `e`) have lost up to half of them.
+   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e)
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: rcond
@@ -82,7 +70,6 @@ contains
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
       type(block_engine_t), intent(in), optional :: e
-      real(wp), intent(out), optional :: numbers(2, 0:2)
       real(wp) :: law, angle, size_of, usual, x(2, 0:2)
 
       law = s%law(0) + s%law(1)*abs(q%t)
@@ -94,7 +81,6 @@ contains
       call find_largest(size(q%position, 2), q%position, x(:, 0))
       call find_largest(size(q%position, 2), q%velocity, x(:, 1))
       call find_largest(size(q%position, 2), q%acceleration, x(:, 2))
-      if (present(numbers)) numbers = x
       angle = max(x(2, 0), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(1.0_wp, x(1, 0)/s%length, maxval(abs(q%origin))/s%length, max(x(1, 1)/s%length, x(2, 1))/s%rate, &

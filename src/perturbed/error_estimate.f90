@@ -10,7 +10,7 @@ module error_estimate
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
    use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
-   use rounded_numbers, only: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, part_off
+   use rounded_numbers, only: directions, caution, put_off, put_loops_off, part_off
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
@@ -41,9 +41,8 @@ module error_estimate
    type :: estimator_t
       type(sizes_t) :: sizes
       type(at_hand_t) :: place
-      ! Once an estimate has been asked for:
-      type(rounded_t), allocatable :: numbers(:)
-      !> (0:2*directions, or 0:0) As they stand; off in each direction by their roundings; by those of the calculation.
+      !> (0:2*directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in each direction
+      !> by their roundings; by those of the calculation.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
@@ -56,7 +55,6 @@ contains
       type(mechanism_t), intent(in) :: m
 
       s%sizes = sizes_of(m)
-      if (allocated(s%numbers)) deallocate (s%numbers)
       if (allocated(s%perturbed)) s%perturbed%is_ready = .false.
    end subroutine make_estimator
 
@@ -107,10 +105,9 @@ contains
          integer :: i
 
          call make_ready(s%perturbed, k, m, engine, i)
-         if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
-               call put_off(s%numbers, merge(k, 0, k <= directions), roundings, p%m)
+               call put_off(m, merge(k, 0, k <= directions), roundings, p%m)
                call put_changes(p, by_roundings=.true.)
                if (k > directions) call put_loops_off(k - directions, p%engine%blocks%numbers)
                p%time_off = merge(roundings*part_off(k), 0.0_wp, k >= 1 .and. k <= directions)

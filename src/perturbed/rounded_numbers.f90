@@ -23,7 +23,7 @@ module rounded_numbers
    use blocks, only: numbers_t
    implicit none
    private
-   public :: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, part_off
+   public :: directions, caution, put_off, put_loops_off, part_off
 
    integer, parameter :: directions = 8
    real(wp), parameter :: caution = 2.35_wp
@@ -35,162 +35,132 @@ module rounded_numbers
    !> In the addresses of vectors of loops, where those of numbers have their kind.
    integer, parameter :: of_loop = 0
 
-   !> A number of the deck.
-   type :: rounded_t
-      type(card_number_t) :: number
-      real(wp) :: value = 0.0_wp                 !< on its card, in the units of `mechanism_t`
-      real(wp) :: by(0:directions) = 0.0_wp      !< it is off by so much, over eps; in direction 0 by nothing
-   end type rounded_t
-
 contains
 
-   !> The numbers of the cards of `m`, and by how much each is off. The time of a table, the exponent of a power, and
-   !> what an estimate says of moving links are as they stand.
-   function roundings_of(m) result(list)
+   !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
+   !> by so many `roundings`; 0: by none. The time of a table, the exponent of a power, and what an estimate says of
+   !> moving links are as they stand.
+   subroutine put_off(m, k, roundings, off)
       type(mechanism_t), intent(in) :: m
-      type(rounded_t), allocatable :: list(:)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: roundings
+      type(mechanism_t), intent(inout) :: off
       real(wp) :: origin(2), size_of
-      integer :: n
+      integer :: i, j
 
-      ! They are counted first: of a large mechanism many have no size.
-      call add_all()
-      allocate (list(n))
-      call add_all()
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) cycle
+         do j = 1, 3
+            call put(card_number_t(number_link, i, 0, j), abs(m%links(i)%position(j)))
+         end do
+      end do
+      origin = plane_origin(m)
+      do i = 1, size(m%points)
+         associate (link => m%links(m%points(i)%link))
+            ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from the
+            ! origin of the plane.
+            size_of = norm2(m%points(i)%offset)
+            if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
+         end associate
+         call put(card_number_t(number_point, i, 0, 1), size_of)
+         call put(card_number_t(number_point, i, 0, 2), size_of)
+      end do
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind /= pair_prismatic) cycle
+         call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
+         call put(card_number_t(number_pair, i, 0, 3), abs(m%pairs(i)%beta))
+      end do
+      if (any(m%pairs%kind == pair_prismatic)) call put_guides()
+      do i = 1, size(m%drives)
+         do j = 1, 3
+            size_of = abs(m%drives(i)%polynomial(j))
+            ! An angle counted from another link is added to that link's, and rounded with it.
+            if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
+            call put(card_number_t(number_drive, i, 0, j), size_of)
+         end do
+         if (.not. allocated(m%drives(i)%terms)) cycle
+         do j = 1, size(m%drives(i)%terms)
+            call put_term(m%drives(i)%terms(j), i, j)
+         end do
+      end do
 
    contains
 
-      !> Adds all numbers to the list, or counts them where there is none yet.
-      subroutine add_all()
-         integer :: i, j
-
-         n = 0
-         do i = 1, size(m%links)
-            if (.not. m%links(i)%ground) cycle
-            do j = 1, 3
-               call add(number_link, i, 0, j, abs(m%links(i)%position(j)))
-            end do
-         end do
-         origin = plane_origin(m)
-         do i = 1, size(m%points)
-            associate (link => m%links(m%points(i)%link))
-               ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from
-               ! the origin of the plane.
-               size_of = norm2(m%points(i)%offset)
-               if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
-            end associate
-            call add(number_point, i, 0, 1, size_of)
-            call add(number_point, i, 0, 2, size_of)
-         end do
-         do i = 1, size(m%pairs)
-            if (m%pairs(i)%kind /= pair_prismatic) cycle
-            call add(number_pair, i, 0, 2, abs(m%pairs(i)%offset))
-            call add(number_pair, i, 0, 3, abs(m%pairs(i)%beta))
-         end do
-         if (any(m%pairs%kind == pair_prismatic)) call add_guides()
-         do i = 1, size(m%drives)
-            do j = 1, 3
-               size_of = abs(m%drives(i)%polynomial(j))
-               ! An angle counted from another link is added to that link's, and rounded with it.
-               if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
-               call add(number_drive, i, 0, j, size_of)
-            end do
-            if (.not. allocated(m%drives(i)%terms)) cycle
-            do j = 1, size(m%drives(i)%terms)
-               call add_term(m%drives(i)%terms(j), i, j)
-            end do
-         end do
-      end subroutine add_all
-
-      !> Adds a number that is rounded by its size.
-      subroutine add(kind, subject, term, place, size_of)
-         integer, intent(in) :: kind, subject, term, place
+      !> By how much a number that is rounded by its size is off, over eps.
+      pure real(wp) function by(number, size_of)
+         type(card_number_t), intent(in) :: number
          real(wp), intent(in) :: size_of
 
-         if (.not. size_of > 0.0_wp) return
-         n = n + 1
-         if (.not. allocated(list)) return
-         list(n)%number = card_number_t(kind, subject, term, place)
-         list(n)%value = number_value(m, list(n)%number)
-         list(n)%by(1:) = size_of*deviates(list(n)%number)
-      end subroutine add
+         by = 0.0_wp
+         if (k > 0 .and. size_of > 0.0_wp) by = size_of*deviate(number, k)
+      end function by
 
-      !> Adds the numbers of a term. A row of a table is off by the rounding of its time as well.
-      subroutine add_term(term, drive, j)
+      !> Puts a number off that is rounded by its size.
+      subroutine put(number, size_of)
+         type(card_number_t), intent(in) :: number
+         real(wp), intent(in) :: size_of
+
+         if (size_of > 0.0_wp) call put_number(off, number, number_value(m, number) &
+            + roundings*epsilon(1.0_wp)*by(number, size_of))
+      end subroutine put
+
+      !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
+      subroutine put_term(term, drive, j)
          type(term_t), intent(in) :: term
          integer, intent(in) :: drive, j
          real(wp) :: slope
-         integer :: k
+         integer :: i
 
          if (term%kind == term_table) then
             associate (x => term%knots, y => term%values)
-               do k = 1, size(y)
+               do i = 1, size(y)
                   slope = 0.0_wp
-                  if (k > 1) slope = abs((y(k) - y(k - 1))/(x(k) - x(k - 1)))
-                  if (k < size(y)) slope = max(slope, abs((y(k + 1) - y(k))/(x(k + 1) - x(k))))
-                  call add(number_drive, drive, j, k, abs(y(k)) + abs(x(k))*slope)
+                  if (i > 1) slope = abs((y(i) - y(i - 1))/(x(i) - x(i - 1)))
+                  if (i < size(y)) slope = max(slope, abs((y(i + 1) - y(i))/(x(i + 1) - x(i))))
+                  call put(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
                end do
             end associate
          else
-            do k = 1, merge(1, 3, term%kind == term_power)
-               call add(number_drive, drive, j, k, abs(term%r(k)))
+            do i = 1, merge(1, 3, term%kind == term_power)
+               call put(card_number_t(number_drive, drive, j, i), abs(term%r(i)))
             end do
          end if
-      end subroutine add_term
+      end subroutine put_term
 
-      !> Adds the directions of guides. Those that are parallel or at right angles by the cards of links that turn as
-      !> one stay so: they are off by the same part of a radian, whatever the angles are of which their directions are
-      !> sums.
-      subroutine add_guides()
-         type(mechanism_t) :: off
+      !> Puts the directions of guides off. Those that are parallel or at right angles by the cards of links that turn
+      !> as one stay so: they are off by the same part of a radian, whatever the angles are of which their directions
+      !> are sums.
+      subroutine put_guides()
+         type(mechanism_t) :: turns
          type(tree_t) :: t
          type(axes_t) :: axes, turned
-         real(wp) :: by(0:directions, size(m%links)), largest
-         integer :: i, k
+         real(wp) :: largest
+         integer :: i, quarters
 
-         if (.not. allocated(list)) then
-            n = n + count(m%pairs%kind == pair_prismatic)
-            return
-         end if
          t = new_tree(m)
          axes = axes_of(m, t)
-         off = m
-         do k = 0, directions
-            ! The angles of the axes are sums of angles of cards, and so are their changes.
-            off%links%position(3) = 0.0_wp
-            off%pairs%beta = 0.0_wp
-            do i = 1, n
-               if (list(i)%number%place == 3 .and. any(list(i)%number%kind == [number_link, number_pair])) &
-                  call put_number(off, list(i)%number, list(i)%by(k))
-            end do
-            turned = axes_of(off, t)
-            by(k, :) = turned%angle_offset
+         ! The angles of the axes are sums of angles of cards, and so are their changes.
+         turns = m
+         do i = 1, size(m%links)
+            turns%links(i)%position(3) = by(card_number_t(number_link, i, 0, 3), &
+               merge(abs(m%links(i)%position(3)), 0.0_wp, m%links(i)%ground))
          end do
+         do i = 1, size(m%pairs)
+            turns%pairs(i)%beta = by(card_number_t(number_pair, i, 0, 3), &
+               merge(abs(m%pairs(i)%beta), 0.0_wp, m%pairs(i)%kind == pair_prismatic))
+         end do
+         turned = axes_of(turns, t)
          largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
          do i = 1, size(m%pairs)
             if (m%pairs(i)%kind /= pair_prismatic) cycle
-            n = n + 1
             associate (link => m%points(m%pairs(i)%point_i)%link)
-               k = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
+               quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
                   int(quarter, int64)))
-               list(n)%number = card_number_t(number_pair, i, 0, 1)
-               list(n)%value = m%pairs(i)%alpha
-               list(n)%by(1:) = largest*deviates(card_number_t(number_pair, t%orientation(link), k, 1)) - by(1:, link)
+               off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*(by(card_number_t(number_pair, &
+                  t%orientation(link), quarters, 1), largest) - turned%angle_offset(link))
             end associate
          end do
-      end subroutine add_guides
-   end function roundings_of
-
-   !> Gives `m` the numbers of `list`, each off in direction `k` by so many `roundings`; 0: as they are.
-   subroutine put_off(list, k, roundings, m)
-      type(rounded_t), intent(in) :: list(:)
-      integer, intent(in) :: k
-      real(wp), intent(in) :: roundings
-      type(mechanism_t), intent(inout) :: m
-      integer :: i
-
-      do i = 1, size(list)
-         call put_number(m, list(i)%number, list(i)%value + roundings*epsilon(1.0_wp)*list(i)%by(k))
-      end do
+      end subroutine put_guides
    end subroutine put_off
 
    !> Puts the vectors and guides of each vector loop in `x` off in direction `k` by a rounding. So much the products
@@ -231,16 +201,7 @@ contains
       part_off = epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
    end function part_off
 
-   !> The normal deviates (directions) of the number with this address.
-   pure function deviates(number) result(z)
-      type(card_number_t), intent(in) :: number
-      real(wp) :: z(directions)
-      integer :: k
-
-      z = [(deviate(number, k), k=1, directions)]
-   end function deviates
-
-   !> That in direction `k` (Box and Muller).
+   !> The normal deviate of the number with this address in direction `k` (Box and Muller).
    pure real(wp) function deviate(number, k) result(z)
       type(card_number_t), intent(in) :: number
       integer, intent(in) :: k

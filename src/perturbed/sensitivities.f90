@@ -65,7 +65,7 @@ contains
       type(row_t), dimension(size(m%requests)) :: middle, up, down
       type(row_t) :: row
       real(wp) :: step, h
-      integer :: i, d, k, side
+      integer :: i, d, k, side, order
 
       found%taken = .true.
       associate (numbers => size(m%tolerances), requests => size(m%requests))
@@ -84,7 +84,7 @@ contains
       end do
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
-            side = side_of_joint(m, one, q%t, usual_step*natural_unit(one, s%sizes))
+            call look_at_joint(m, one, q%t, usual_step*natural_unit(one, s%sizes), side, order)
             call find_step(one, side, step)
             down = middle
             do k = 1, halvings
@@ -94,7 +94,7 @@ contains
                call note_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == 0))
             end do
             do i = 1, size(m%requests)
-               found%known(i) = min(found%known(i), smooth_order(m, one, q%t))
+               found%known(i) = min(found%known(i), order)
                if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
@@ -177,57 +177,31 @@ contains
       has_tolerances = allocated(m%tolerances) .and. request%kind <= request_pair
    end function has_tolerances
 
-   !> The joint of the rise that has the number of tolerance `one` next to the time `t`: `ahead`, its place less that of
-   !> the instant, as a part of the duration. Huge where the number is of no rise, or moves no joint.
-   pure real(wp) function joint_ahead(m, one, t) result(ahead)
+   !> Finds what the next joint of the rise that has the number of tolerance `one` says of derivatives at the time `t`.
+   !> `side`: to which the number may change by a few times `step`: -1, 1, or 0: to both; a start or a duration that
+   !> grows moves joints to later times. `order`: the highest derivative with respect to time, 0 to 2, that has a
+   !> derivative with respect to the number: at a joint that moves the acceleration, or the velocity, has other ones to
+   !> either side.
+   pure subroutine look_at_joint(m, one, t, step, side, order)
       type(mechanism_t), intent(in) :: m
       type(tolerance_t), intent(in) :: one
-      real(wp), intent(in) :: t
-      real(wp) :: joints(3)
+      real(wp), intent(in) :: t, step
+      integer, intent(out) :: side, order
+      real(wp) :: joints(3), ahead
 
-      ahead = huge(ahead)
+      side = 0
+      order = 2
       if (one%kind /= number_drive .or. one%term == 0) return
       associate (term => m%drives(one%subject)%terms(one%term))
          if (term%kind < term_cycloid .or. one%place == 3) return
          joints = [0.0_wp, 1.0_wp, merge(0.5_wp, 1.0_wp, term%kind == term_parabola)] - (t - term%r(1))/term%r(2)
          ahead = joints(minloc(abs(joints), dim=1))
-      end associate
-   end function joint_ahead
-
-   !> To which side the number of tolerance `one` may change by a few times `step`: -1, 1, or 0: to both. A start or a
-   !> duration that grows moves the joints of a rise to later times.
-   pure integer function side_of_joint(m, one, t, step) result(side)
-      type(mechanism_t), intent(in) :: m
-      type(tolerance_t), intent(in) :: one
-      real(wp), intent(in) :: t, step
-      real(wp) :: ahead
-
-      side = 0
-      ahead = joint_ahead(m, one, t)
-      if (.not. ahead < huge(ahead)) return
-      associate (r => m%drives(one%subject)%terms(one%term)%r)
-         if (abs(ahead) > 2.0_wp*step/r(2)*max(1.0_wp, abs(t - r(1))/r(2))) return
-      end associate
-      ! At the joint itself the derivative is that from the right.
-      side = merge(1, -1, ahead > joint_distance(m%drives(one%subject)%terms(one%term)))
-   end function side_of_joint
-
-   !> The highest derivative with respect to time, 0 to 2, whose own derivative with respect to the number of tolerance
-   !> `one` exists at the time `t`. At a joint of a rise the third derivative jumps, or the second: if the joint moves,
-   !> the acceleration, or the velocity, of this instant has different derivatives to either side.
-   pure integer function smooth_order(m, one, t) result(order)
-      type(mechanism_t), intent(in) :: m
-      type(tolerance_t), intent(in) :: one
-      real(wp), intent(in) :: t
-      real(wp) :: ahead
-
-      order = 2
-      ahead = joint_ahead(m, one, t)
-      if (.not. ahead < huge(ahead)) return
-      associate (term => m%drives(one%subject)%terms(one%term))
          if (abs(ahead) <= joint_distance(term)) order = merge(1, 0, term%kind < term_cosine)
+         if (abs(ahead) > 2.0_wp*step/term%r(2)*max(1.0_wp, abs(t - term%r(1))/term%r(2))) return
+         ! At the joint itself the derivative is that from the right.
+         side = merge(1, -1, ahead > joint_distance(term))
       end associate
-   end function smooth_order
+   end subroutine look_at_joint
 
    !> The sensitivities (3, 0:2, numbers) of the row of the ground that `request` asks for.
    function ground_sensitivities(m, request) result(s)

@@ -8,7 +8,7 @@ module sum_errors
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
-   public :: errors_of_sums, round_sums, error_of_sums, fixed_error, lost_numbers, growth_in_centres
+   public :: errors_of_sums, error_of_sums, fixed_error, lost_numbers, growth_in_centres
 
    !> A sum is off by so many roundings of its largest number.
    real(wp), parameter :: sum_roundings = 1.5_wp
@@ -16,100 +16,65 @@ module sum_errors
 contains
 
    !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the links
-   !> of the motion `q` and of the rows asked for; `length`: the characteristic one.
+   !> of the motion `q` and of the rows asked for; `length`: the characteristic one. What is summed up to a velocity is
+   !> no smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
+   !> slide is a difference of places, which are counted from a ground link, and so are the arms of its derivatives.
    pure function errors_of_sums(m, q, length) result(size_of)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: length
-      real(wp) :: size_of(3, 0:2)
+      real(wp) :: size_of(3, 0:2), reach
+      type(row_t) :: row
       integer :: i
 
       size_of = 0.0_wp
+      size_of(1, 0) = max(abs(q%origin(1)), abs(q%origin(2)))
       do i = 1, size(m%links)
-         if (known_of(q, i) >= 0) call widen_by_link(q%origin, q%position(:, i), q%velocity(:, i), &
-            q%acceleration(:, i), size_of)
+         if (known_of(q, i) < 0) cycle
+         associate (p => q%position(:, i), v => q%velocity(:, i), a => q%acceleration(:, i))
+            size_of(1, 0) = max(size_of(1, 0), abs(p(1) + q%origin(1)), abs(p(2) + q%origin(2)))
+            size_of(1, 1) = max(size_of(1, 1), abs(v(1)), abs(v(2)))
+            size_of(1, 2) = max(size_of(1, 2), abs(a(1)), abs(a(2)))
+            size_of(2, :) = max(size_of(2, :), abs([p(3), v(3), a(3)]))
+            size_of(3, 0) = max(size_of(3, 0), abs(p(1)), abs(p(2)))
+         end associate
       end do
       do i = 1, size(m%requests)
-         select case (m%requests(i)%kind)
-         case (request_point, request_curve)
-            call widen_by_point(m, q, m%requests(i)%subject, size_of(1, :))
-         case (request_pair)
-            call widen_by_pair(m, q, m%requests(i), size_of)
-         end select
+         associate (request => m%requests(i))
+            select case (request%kind)
+            case (request_point, request_curve)
+               ! A bound of what a point adds up, which needs no direction.
+               associate (k => m%points(request%subject)%link)
+                  reach = norm2(m%points(request%subject)%offset)
+                  if (m%links(k)%ground) then
+                     size_of(1, 0) = max(size_of(1, 0), maxval(abs(m%links(k)%position(:2))) + reach)
+                  else if (known_of(q, k) >= 0) then
+                     size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, k) + q%origin)) + reach, &
+                        maxval(abs(q%velocity(:2, k))) + abs(q%velocity(3, k))*reach, &
+                        maxval(abs(q%acceleration(:2, k))) + (abs(q%acceleration(3, k)) + q%velocity(3, k)**2)*reach])
+                  end if
+               end associate
+            case (request_pair)
+               ! The row without its name.
+               row%kind = request%kind
+               call note_known(m, q, request, row)
+               if (row%known < 0) cycle
+               call set_values(m, q, request, row)
+               associate (unit => merge(2, 1, row%angular))
+                  size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)))
+               end associate
+            end select
+         end associate
       end do
-      size_of(1, 0) = max(size_of(1, 0), abs(q%origin(1)), abs(q%origin(2)))
-      call round_sums(length, size_of)
-   end function errors_of_sums
-
-   !> The same of sums of numbers as large as `x` (length, angle or place as it is counted, derivative), in their place.
-   !> What is summed up to a velocity is no smaller than an angular velocity times a length, what is summed up to an
-   !> acceleration has the square of one. A slide is a difference of places, which are counted from a ground link, and
-   !> so are the arms of its derivatives.
-   pure subroutine round_sums(length, x)
-      real(wp), intent(in) :: length
-      real(wp), intent(inout) :: x(3, 0:2)
-
-      x(2, 0) = max(x(2, 0), 1.0_wp)
-      x(1, :1) = max(x(1, :1), x(2, :1)*length)
-      x(:2, 2) = max(x(:2, 2), x(:2, 1)*x(2, 1))
-      x(3, 0) = max(x(3, 0), x(1, 0))
-      x(3, 1:) = max(x(1, 1:), x(3, 0)*x(2, 1:))
-      x = sum_roundings*epsilon(1.0_wp)*x
-   end subroutine round_sums
-
-   !> Widens the largest lengths, angles and places as they are counted, `size_of` (3, 0:2), by a link with the position
-   !> `p`, counted from `origin`, the velocity `v` and the acceleration `a`. On plain arrays, which cost no descriptors.
-   pure subroutine widen_by_link(origin, p, v, a, size_of)
-      real(wp), intent(in) :: origin(2), p(3), v(3), a(3)
-      real(wp), intent(inout) :: size_of(3, 0:2)
-
-      size_of(1, 0) = max(size_of(1, 0), abs(p(1) + origin(1)), abs(p(2) + origin(2)))
-      size_of(1, 1) = max(size_of(1, 1), abs(v(1)), abs(v(2)))
-      size_of(1, 2) = max(size_of(1, 2), abs(a(1)), abs(a(2)))
-      size_of(2, 0) = max(size_of(2, 0), abs(p(3)))
-      size_of(2, 1) = max(size_of(2, 1), abs(v(3)))
-      size_of(2, 2) = max(size_of(2, 2), abs(a(3)))
-      size_of(3, 0) = max(size_of(3, 0), abs(p(1)), abs(p(2)))
-   end subroutine widen_by_link
-
-   !> The same of lengths and angles by the slide or the angle of the pair that `request` asks for in the motion `q`.
-   pure subroutine widen_by_pair(m, q, request, size_of)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      real(wp), intent(inout) :: size_of(3, 0:2)
-      type(row_t) :: row
-      integer :: unit
-
-      ! The row without its name.
-      row%kind = request%kind
-      call note_known(m, q, request, row)
-      if (row%known < 0) return
-      call set_values(m, q, request, row)
-      unit = merge(2, 1, row%angular)
-      size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)))
-   end subroutine widen_by_pair
-
-   !> The same of the lengths `size_of` (0:2) by a bound of what point number `i` adds up, which needs no direction.
-   pure subroutine widen_by_point(m, q, i, size_of)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
-      real(wp), intent(inout) :: size_of(0:2)
-      real(wp) :: reach
-
-      associate (k => m%points(i)%link)
-         reach = norm2(m%points(i)%offset)
-         if (m%links(k)%ground) then
-            size_of(0) = max(size_of(0), maxval(abs(m%links(k)%position(:2))) + reach)
-         else if (known_of(q, k) >= 0) then
-            size_of(0) = max(size_of(0), maxval(abs(q%position(:2, k) + q%origin)) + reach)
-            size_of(1) = max(size_of(1), maxval(abs(q%velocity(:2, k))) + abs(q%velocity(3, k))*reach)
-            size_of(2) = max(size_of(2), maxval(abs(q%acceleration(:2, k))) &
-               + (abs(q%acceleration(3, k)) + q%velocity(3, k)**2)*reach)
-         end if
+      associate (x => size_of)
+         x(2, 0) = max(x(2, 0), 1.0_wp)
+         x(1, :1) = max(x(1, :1), x(2, :1)*length)
+         x(:2, 2) = max(x(:2, 2), x(:2, 1)*x(2, 1))
+         x(3, 0) = max(x(3, 0), x(1, 0))
+         x(3, 1:) = max(x(1, 1:), x(3, 0)*x(2, 1:))
+         x = sum_roundings*epsilon(1.0_wp)*x
       end associate
-   end subroutine widen_by_point
+   end function errors_of_sums
 
    !> The rounding errors (3, 0:2) of the sums of `row`, which `request` asks for. `of_sums`: as above.
    pure function error_of_sums(of_sums, request, row) result(estimate)
