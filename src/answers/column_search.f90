@@ -200,12 +200,16 @@ contains
       type(sample_t), allocatable :: path(:), found(:)
       type(column_t) :: column
       integer :: i, j, k
+      logical :: turns
 
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             do j = 1, x%columns(q)
                points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
-               if (.not. has_turned(points, jerk(j, q, :))) then
+               ! A velocity, an acceleration or its derivative at both ends has different signs.
+               turns = differ_in_sign(jerk(j, q, 1), jerk(j, q, 2)) .or. any([(differ_in_sign(minval(points%f(k)), &
+                  maxval(points%f(k))), k=1, 2)])
+               if (.not. turns) then
                   do k = 1, size(points)
                      call note_velocity(x, q, j, points(k))
                   end do
@@ -228,18 +232,6 @@ contains
          end associate
       end do
    end subroutine search_columns
-
-   !> A velocity, an acceleration or its derivative `jerk` at both ends has different signs at some of three `points`.
-   pure logical function has_turned(points, jerk)
-      type(sample_t), intent(in) :: points(3)
-      real(wp), intent(in) :: jerk(2)
-      integer :: order
-
-      has_turned = differ_in_sign(jerk(1), jerk(2))
-      do order = 1, 2
-         has_turned = has_turned .or. differ_in_sign(minval(points%f(order)), maxval(points%f(order)))
-      end do
-   end function has_turned
 
    !> Column `j` of row `q` of `node`.
    pure type(sample_t) function sample_of(node, q, j) result(sample)

@@ -41,7 +41,11 @@ contains
             one = dwell_t(q, c, distance=x%dwell(c, q))
             stroke = x%found(greatest, c, 0, q)%value - x%found(least, c, 0, q)%value
             if (one%distance <= 0.0_wp .or. stroke <= one%distance) cycle
-            path = path_of(one, x)
+            associate (places => x%places%list(:x%places%n))
+               path = pack(places, places%asked == q .and. places%column == c)
+            end associate
+            ! They are in order but for extremes beside the middle of a part.
+            path = path(order_along(path%t, x%way))
             ! A crank that has made whole turns is not where it was.
             is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, q)
 
@@ -62,19 +66,6 @@ contains
          end do
       end do
    end subroutine find_dwells
-
-   !> The places (any number) of the coordinate `w`, along the run.
-   pure function path_of(w, x) result(path)
-      type(dwell_t), intent(in) :: w
-      type(extremes_t), intent(in) :: x
-      type(value_at_t), allocatable :: path(:)
-
-      associate (list => x%places%list(:x%places%n))
-         path = pack(list, list%asked == w%asked .and. list%column == w%column)
-      end associate
-      ! They are in order but for extremes beside the middle of a part.
-      path = path(order_along(path%t, x%way))
-   end function path_of
 
    !> The time `t` at which the coordinate `w`, followed on its `path` from place number `start` along the run (`way` 1)
    !> or against it (-1), passes the `level`, and its `error`; the end of the run where it does not, unless the motion

@@ -15,7 +15,7 @@ module extreme_search
    use column_search, only: add_node, search_waiting
    implicit none
    private
-   public :: note_instant, note_start
+   public :: note_instant
 
    !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
    !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
@@ -32,11 +32,14 @@ module extreme_search
 
 contains
 
-   !> Takes instant number `k`, to which `s` has advanced. Only the instants of TIME count.
-   subroutine note_instant(x, s, k)
+   !> Takes instant number `k`, to which `s` has advanced. Only the instants of TIME count. `starts`: `k` is even, and
+   !> nothing is searched for before: up to there all numbers and their derivatives have gone on as they went at the
+   !> last instant that was taken.
+   subroutine note_instant(x, s, k, starts)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
+      logical, intent(in) :: starts
       type(node_t) :: now
       logical :: known, is_lost
       integer :: c
@@ -51,6 +54,8 @@ contains
             is_lost = any(now%known(track%rows) < 0)
             if (k == 0) then
                track%start = s%now%motions(c)
+            else if (starts) then
+               track%filled = 0
             else
                call search_step()
             end if
@@ -169,6 +174,7 @@ contains
          type(end_t), intent(in) :: at
          real(wp), intent(in) :: other
          real(wp), intent(out) :: beside(places)
+         type(node_t) :: near(places)
          type(one_sided_t) :: limits, best
          real(wp) :: times(places), least_error
          integer :: i, try
@@ -176,7 +182,12 @@ contains
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
-            call find_limits(times, at, limits)
+            do i = 1, places
+               call find_node(x%asked, s, c, times(i), .true., near(i))
+               if (.not. is_known(near(i), x%tracks(c)%rows)) exit
+            end do
+            if (i <= places) cycle
+            limits = limits_of(near, at%is_change, at%is_pole, x%size_of)
             if (largest_error(limits) < least_error) then
                least_error = largest_error(limits)
                best = limits
@@ -193,30 +204,12 @@ contains
          end do
       end subroutine take_limits
 
-      !> The one-sided `limits` at the end `at` by the motion of mechanism `c` at the `times` beside it; not allocated,
-      !> if that does not exist at some.
-      subroutine find_limits(times, at, limits)
-         real(wp), intent(in) :: times(places)
-         type(end_t), intent(in) :: at
-         type(one_sided_t), intent(out) :: limits
-         type(node_t) :: near(places)
-         integer :: i
-
-         do i = 1, places
-            call find_node(x%asked, s, c, times(i), .true., near(i))
-            if (.not. is_known(near(i), x%tracks(c)%rows)) return
-         end do
-         limits = limits_of(near, at%is_change, at%is_pole, x%size_of)
-      end subroutine find_limits
-
       !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or
-      !> as a part of larger ones; without limits the largest number.
+      !> as a part of larger ones.
       pure real(wp) function largest_error(limits) result(largest)
          type(one_sided_t), intent(in) :: limits
          integer :: i
 
-         largest = huge(1.0_wp)
-         if (.not. allocated(limits%value)) return
          largest = 0.0_wp
          do i = 1, size(x%tracks(c)%rows)
             associate (q => x%tracks(c)%rows(i))
@@ -241,26 +234,4 @@ contains
       end subroutine look_at
    end subroutine note_instant
 
-   !> Takes the instant to which `s` has advanced, one with an even number, as one before which nothing is searched for:
-   !> up to there all numbers and their derivatives have gone on as they went at the last instant that was taken.
-   subroutine note_start(x, s)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      type(node_t) :: now
-      integer :: c
-
-      do c = 1, size(x%tracks)
-         associate (track => x%tracks(c))
-            if (size(track%rows) == 0) cycle
-            track%filled = 0
-            call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
-            now%begins_pair = .true.
-            track%t = now%t
-            track%is_known = is_known(now, track%rows)
-            track%is_lost = any(now%known(track%rows) < 0)
-            track%at_change = .false.
-            call add_node(x, s, c, now)
-         end associate
-      end do
-   end subroutine note_start
 end module extreme_search

@@ -39,7 +39,7 @@ contains
       type(request_t) :: request
       integer :: q, c, k, drive
       logical :: moves, goes_on(size(x%tracks))
-      character(:), allocatable :: driven
+      character(:), allocatable :: driven, line
 
       call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
@@ -70,7 +70,19 @@ contains
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
       do k = 1, size(x%tracks)
-         if (goes_on(k) .and. all(x%tracks(k)%closure < huge(1.0_wp))) call put_closure(x%tracks(k)%closure)
+         ! Why there are no time ratios.
+         associate (closure => x%tracks(k)%closure)
+            if (.not. (goes_on(k) .and. all(closure < huge(1.0_wp)))) cycle
+            line = ' --- '//phrase(say_no_period, s%polish)
+            if (all(closure(:2) <= closes_to)) then
+               line = line//' '//phrase(say_in_velocity, s%polish)
+            else
+               line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
+                  //phrase(say_lengths_apart, s%polish)//', ' &
+                  //rounded(closure(2)/l%angle, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' '//trim(angle_unit(s))
+            end if
+            call put(o, line)
+         end associate
       end do
 
    contains
@@ -88,7 +100,10 @@ contains
       subroutine put_subject(name)
          character(*), intent(in) :: name
          character(numeral_length), dimension(3, 0:2) :: value, time, place
-         integer :: which, c, k
+         type(strokes_t) :: strokes(x%columns(q))
+         character(:), allocatable :: line
+         real(wp) :: error
+         integer :: which, c, k, i
 
          if (drive > 0) then
             call put(o, ' '//name//'   '//phrase(say_drive, s%polish)//' '//driven//','//l%drives(drive)%behind)
@@ -118,27 +133,29 @@ contains
             call put_fields(phrase(say_at_time, s%polish), time)
             if (drive > 0) call put_fields(phrase(say_at_drive, s%polish), place)
          end do
-         call put_strokes()
-      end subroutine put_subject
 
-      !> The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times of
-      !> both strokes and their ratio, or a line for each dead centre if there are more than two.
-      subroutine put_strokes()
-         character(numeral_length) :: text(3, 0:2)
-         type(strokes_t) :: strokes(x%columns(q))
-         integer :: c, i
-
-         text = ''
+         ! The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times
+         ! of both strokes and their ratio, or a line for each dead centre if there are more than two.
+         value = ''
          do c = 1, x%columns(q)
             strokes(c) = strokes_of(x, q, c)
             associate (length => strokes(c)%length)
-               if (length%exists) text(c, 0) = number_text(length%value, length%error, x%is_angle(c, q), 0)
+               if (length%exists) value(c, 0) = number_text(length%value, length%error, x%is_angle(c, q), 0)
             end associate
          end do
-         if (any(text /= '')) call put_fields(phrase(say_stroke, s%polish), text)
+         if (any(value /= '')) call put_fields(phrase(say_stroke, s%polish), value)
          do c = 1, x%columns(q)
-            if (text(c, 0) == '') cycle
-            if (strokes(c)%ratio > 0.0_wp) call put_stroke_times(c, strokes(c))
+            if (value(c, 0) == '') cycle
+            if (strokes(c)%ratio > 0.0_wp) then
+               ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
+               error = sum(x%found(:, c, 0, q)%t_error)
+               line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
+                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
+                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
+                  //known_text(strokes(c)%ratio, ratio_decimals, 0, strokes(c)%error)
+               table%masked = table%masked .or. index(line, unknown_digit) > 0
+               call put(o, line)
+            end if
             if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, q)) goes_on(x%part(q)) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
@@ -147,23 +164,7 @@ contains
                end do
             end associate
          end do
-      end subroutine put_strokes
-
-      !> PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
-      subroutine put_stroke_times(c, strokes)
-         integer, intent(in) :: c
-         type(strokes_t), intent(in) :: strokes
-         character(:), allocatable :: line
-
-         associate (error => sum(x%found(:, c, 0, q)%t_error))
-            line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
-               //time_text(l, strokes%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
-               //time_text(l, strokes%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
-               //known_text(strokes%ratio, ratio_decimals, 0, strokes%error)
-         end associate
-         table%masked = table%masked .or. index(line, unknown_digit) > 0
-         call put(o, line)
-      end subroutine put_stroke_times
+      end subroutine put_subject
 
       !> A line that begins with `head`: at the times `t`, one or two, of which `error` is unknown, and at these values
       !> of the drive.
@@ -207,22 +208,6 @@ contains
          end do
          if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
-
-      !> Why there are no time ratios: a `closure` that is not 0, as in `track_t`.
-      subroutine put_closure(closure)
-         real(wp), intent(in) :: closure(3)
-         character(:), allocatable :: line
-
-         line = ' --- '//phrase(say_no_period, s%polish)
-         if (all(closure(:2) <= closes_to)) then
-            line = line//' '//phrase(say_in_velocity, s%polish)
-         else
-            line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
-               //phrase(say_lengths_apart, s%polish)//', ' &
-               //rounded(closure(2)/l%angle, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' '//trim(angle_unit(s))
-         end if
-         call put(o, line)
-      end subroutine put_closure
 
       !> The name of column `c`.
       pure function column_name(c) result(name)

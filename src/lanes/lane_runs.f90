@@ -15,7 +15,7 @@ module lane_runs
    use block_engine, only: get_motion
    use digits_in_doubt, only: find_growth
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
-   use extreme_search, only: note_start
+   use extreme_search, only: note_instant
    use nodes, only: times_between
    use answers, only: answers_t, new_answers, take_instant
    use variant_rows, only: variant_row_t, note_flag
@@ -256,7 +256,7 @@ contains
          if (k > r%counted) call note_flag(r%row, r%s)
          r%counted = max(k, r%counted)
          if (starts .and. k == first) then
-            call note_start(r%asked%extremes, r%s)
+            call note_instant(r%asked%extremes, r%s, k, .true.)
          else
             call take_instant(r%asked, r%s, k, .true.)
          end if

@@ -64,7 +64,11 @@ contains
 
       do i = 1, size(l%laws, 1)
          if (l%is_polynomial) then
-            call set_polynomial(l%polynomial(1, 1, i), l%unit_of(1, i), t, l%drive(1, 0, i))
+            associate (c => l%polynomial(:, :, i), unit => l%unit_of(:, i))
+               l%drive(:, 0, i) = (c(:, 1) + t*(c(:, 2) + t*c(:, 3)/2.0_wp))*unit
+               l%drive(:, 1, i) = (c(:, 2) + t*c(:, 3))*unit
+               l%drive(:, 2, i) = c(:, 3)*unit
+            end associate
          else
             do lane = 1, width
                l%drive(lane, :, i) = drive_motion(l%laws(i, lane), t(lane))*l%unit_of(lane, i)
@@ -72,19 +76,6 @@ contains
          end if
       end do
    end subroutine set_drives
-
-   !> The same of a polynomial `c`.
-   pure subroutine set_polynomial(c, unit, t, drive)
-      real(wp), intent(in) :: c(width, 3), unit(width), t(width)
-      real(wp), intent(inout) :: drive(width, 0:2)
-      integer :: l
-
-      do l = 1, width
-         drive(l, 0) = (c(l, 1) + t(l)*(c(l, 2) + t(l)*c(l, 3)/2.0_wp))*unit(l)
-         drive(l, 1) = (c(l, 2) + t(l)*c(l, 3))*unit(l)
-         drive(l, 2) = c(l, 3)*unit(l)
-      end do
-   end subroutine set_polynomial
 
    !> The values expected at `t` of all unknowns that are iterated: see `predictor`.
    subroutine predict_lanes(l, t, j)
