@@ -13,8 +13,8 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, solve_dense, solve_first, substitute, solve_again, pivot_range, inverse_norm, &
-      spread_by_inverse, entries_of, work_length
+   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
+      entries_of, work_length
    use nearby_matrix, only: nearby_t, solve_nearby, stay_near
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
@@ -128,7 +128,7 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of
-      integer :: info, iteration, second, k
+      integer :: info, iteration, second, side, k
       logical :: is_closed, is_right
 
       second = block%shape%rows + 1
@@ -151,7 +151,13 @@ contains
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
          is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
-         call solve_first_side(block%shape, w, w%r(merge(second, 1, is_closed)), info)
+         side = merge(second, 1, is_closed)
+         info = 0
+         if (w%near%distance > 0.0_wp) then
+            call solve_nearby(w%near, w%r(side))
+         else
+            call solve_first(block%shape, w%a, w%pivots, w%work, w%r(side), info, w%sparse(block%shape%pattern))
+         end if
          if (is_closed) then
             c%step = 0.0_wp
             c%ended = ended_converged
@@ -190,36 +196,14 @@ contains
       call finish(b, i, block, numbers, w, s, c)
    end subroutine solve_equations
 
-   !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
-   !> `info` > 0: it has no inverse. A dense block is solved without the questions that other shapes need.
-   subroutine solve_first_side(shape, w, v, info)
-      type(shape_t), intent(in) :: shape
-      type(workspace_t), intent(inout) :: w
-      real(wp), intent(inout) :: v(*)
-      integer, intent(out) :: info
-
-      info = 0
-      if (w%near%distance > 0.0_wp) then
-         call solve_nearby(w%near, v)
-      else if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 0) then
-         call solve_dense(shape%n, w%a, w%pivots, v, info)
-      else
-         call solve_first(shape, w%a, w%pivots, w%work, v, info, w%sparse(shape%pattern))
-      end if
-   end subroutine solve_first_side
-
-   !> The same for another right-hand side, from the factors.
+   !> Solves for another right-hand side `v` (rows), from the factors.
    subroutine solve_next_side(shape, w, v)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
       real(wp), intent(inout) :: v(*)
 
-      if (shape%n == 1 .and. shape%rows == 1) then
-         v(1) = v(1)/w%a(1)
-      else if (w%near%distance > 0.0_wp) then
+      if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
-      else if (shape%n == 2 .and. shape%rows == 2) then
-         call substitute(w%a, w%pivots(1) == 2, v)
       else
          call solve_again(shape, w%a, w%pivots, w%work, v, w%sparse(shape%pattern))
       end if

@@ -157,8 +157,6 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
-      type(diagnostic_t), allocatable :: list(:)
-      type(branch_requests_t) :: before
 
       if (f%follows) f%engine%state%excursion = likely_excursion(f%drives, f%t, t)
       call solve_instant(f%engine, t, f%follows, f%convergence)
@@ -171,23 +169,8 @@ contains
       if (accepted .and. f%engine%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
          call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
-
-      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) then
-         ! A determinant has changed its sign: beyond a change point the motion goes on.
-         before = f%branch_requests
-         call pass(f%engine, t, f%branch_requests, f%convergence, list)
-         accepted = f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
-         if (accepted) then
-            if (.not. allocated(step%passed)) allocate (step%passed(0))
-            step%passed = [step%passed, list]
-         else
-            if (size(list) > 0 .and. .not. f%convergence%keeps_signs) &
-               step%dead_end = pack(list, list%kind == diagnostic_dead_end)
-            f%convergence%keeps_signs = .false.
-            ! Close to a dead point it may only look like a change point: no card is used up there.
-            f%branch_requests = before
-         end if
-      end if
+      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
+         call pass_change_points(f, t, step)
       accepted = accepted .and. f%convergence%keeps_signs
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
@@ -219,6 +202,29 @@ contains
          c%kantorovich_ratio = ratio
       end associate
    end subroutine add_excursion
+
+   !> A determinant has changed its sign before `t`. At change points beyond which the motion goes on that is none.
+   !> Apart, since a plain substep has no room to make for the list.
+   subroutine pass_change_points(f, t, step)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable :: list(:)
+      type(branch_requests_t) :: before
+
+      before = f%branch_requests
+      call pass(f%engine, t, f%branch_requests, f%convergence, list)
+      if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio) then
+         if (.not. allocated(step%passed)) allocate (step%passed(0))
+         step%passed = [step%passed, list]
+      else
+         if (size(list) > 0 .and. .not. f%convergence%keeps_signs) &
+            step%dead_end = pack(list, list%kind == diagnostic_dead_end)
+         f%convergence%keeps_signs = .false.
+         ! Close to a dead point it may only look like a change point: no card is used up there.
+         f%branch_requests = before
+      end if
+   end subroutine pass_change_points
 
    !> How many change points were passed in the `step`.
    pure integer function passed_of(step) result(passed)

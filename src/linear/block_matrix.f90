@@ -9,7 +9,7 @@ module block_matrix
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
-   public :: solve_dense, substitute, inverse_norm_of_two, spread_by_inverse
+   public :: inverse_norm_of_two, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -69,25 +69,15 @@ contains
             if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
          end do
          if (info == 0) call solve_again(s, a, pivots, work, b)
+      else if (s%n > 1) then
+         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       else
-         call solve_dense(s%n, a, pivots, b, info)
-      end if
-   end subroutine solve_first
-
-   !> The same of a dense matrix of `n` rows and columns, 1 at least. One equation needs no DGESV, which takes long.
-   subroutine solve_dense(n, a, pivots, b, info)
-      integer, intent(in) :: n
-      real(wp), intent(inout) :: a(*), b(*)
-      integer, intent(inout) :: pivots(*), info
-
-      if (n > 1) then
-         call gesv(n, 1, a, n, pivots, b, n, info)
-      else
-         info = merge(1, 0, abs(a(1)) <= 0.0_wp)
+         ! One equation needs no DGESV, which takes long.
+         if (abs(a(1)) <= 0.0_wp) info = 1
          if (info == 0) b(1) = b(1)/a(1)
          pivots(1) = 1
       end if
-   end subroutine solve_dense
+   end subroutine solve_first
 
    !> The same for another right-hand side, from the factors.
    subroutine solve_again(s, a, pivots, work, b, k)
@@ -107,26 +97,17 @@ contains
       else if (s%n == 1) then
          b(1) = b(1)/a(1)
       else if (s%n == 2) then
-         call substitute(a, pivots(1) == 2, b)
+         ! DGETRS in the order of its operations: the call itself takes many times as long.
+         if (pivots(1) == 2) b(:2) = [b(2), b(1)]
+         b(2) = b(2) - b(1)*a(2)
+         ! DTRSM leaves a zero as it is, with its sign.
+         if (abs(b(2)) > 0.0_wp) b(2) = b(2)/a(4)
+         b(1) = b(1) - b(2)*a(3)
+         if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
       else
          call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
-
-   !> DGETRS for two unknowns and one right-hand side, in the order of its operations: the call itself takes many times
-   !> as long. `exchanged`: the rows of the matrix were.
-   pure subroutine substitute(a, exchanged, b)
-      real(wp), intent(in) :: a(4)
-      logical, intent(in) :: exchanged
-      real(wp), intent(inout) :: b(2)
-
-      if (exchanged) b = [b(2), b(1)]
-      b(2) = b(2) - b(1)*a(2)
-      ! DTRSM leaves a zero as it is, with its sign.
-      if (abs(b(2)) > 0.0_wp) b(2) = b(2)/a(4)
-      b(1) = b(1) - b(2)*a(3)
-      if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
-   end subroutine substitute
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
    !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
