@@ -1,6 +1,7 @@
 !> All real positions of one block, for given positions of the earlier ones: in closed form where its equations leave
 !> one unknown in each group, otherwise as the ends of paths. Each is corrected by the block's own Newton method.
 module block_assemblies
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: without_turns
    use convergence, only: convergence_t, is_solved, ended_inconsistent
@@ -8,7 +9,7 @@ module block_assemblies
    use block_state, only: state_t, set_values, values_of
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
-   use bilinear, only: path_end_t, ends_t, solve_quadratic
+   use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
    use homotopy, only: follow_paths
    use block_bilinear, only: block_form_t, make_form, solves_all, real_values
    implicit none
@@ -18,12 +19,14 @@ module block_assemblies
    !> Unknowns of a group at most: C(12, 6) = 924 paths.
    integer, parameter :: max_group = 6
    !> Real solutions have conjugate groups to this part; Newton's method moves them by no more (rad, block's lengths).
-   real(wp), parameter :: real_level = 8.0_wp*sqrt(epsilon(1.0_wp)), near = sqrt(real_level)
+   real(dp), parameter :: real_level = 8.0_dp*sqrt(rounding), near = sqrt(real_level)
    !> The same of singular solutions, of which rounding leaves fewer digits.
-   real(wp), parameter :: singular_level = sqrt(real_level), singular_near = 10.0_wp*singular_level
+   real(dp), parameter :: singular_level = sqrt(real_level), singular_near = 10.0_dp*singular_level
    !> Positions that differ by less are one.
-   real(wp), parameter :: alike = real_level, singular_alike = singular_near
+   real(dp), parameter :: alike = real_level, singular_alike = singular_near
    integer, parameter :: singular_steps = 6
+   !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
+   real(wp), parameter :: grid = 2.0_wp**26
 
    !> What was found of one block. Of the paths: paths = finite + infinite + failed + partial.
    type :: block_positions_t
@@ -40,14 +43,15 @@ contains
 
    !> All positions `found` of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
    !> change. `tolerance`, `w`: as of `solve_block`; `largest_group`: more unknowns of a group are not solved, see
-   !> `max_group`.
-   subroutine find_positions(b, i, tolerance, w, s, largest_group, found)
+   !> `max_group`; `start`: of the paths, see `follow_paths`.
+   subroutine find_positions(b, i, tolerance, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: tolerance
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       integer, intent(in) :: largest_group
+      type(path_start_t), intent(inout) :: start
       type(block_positions_t), intent(out) :: found
       type(convergence_t) :: c
       type(block_form_t) :: f
@@ -94,7 +98,7 @@ contains
          else if (f%system%p == 1) then
             call solve_quadratic(f%system, ends, moves)
          else
-            call follow_paths(f%system, ends, moves)
+            call follow_paths(f%system, start, ends, moves)
          end if
       end subroutine find_ends
 
@@ -108,6 +112,8 @@ contains
 
          call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
          if (.not. is_real) return
+         ! The digits of a position do not show from which start its path came.
+         x = anint(grid*x)/grid
          call set_values(b, i, x, s)
          ! At a singular solution Newton's method would lose the way.
          do k = 1, merge(singular_steps, 0, e%is_singular)

@@ -4,20 +4,21 @@
 !> eliminated. What is left is linear in each of the two groups: the products above, projections (a loop times a
 !> direction), and single components (a loop and its conjugate).
 module block_bilinear
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t
    use block_equations, only: find_known_parts
    use isotropic, only: equal_unknowns_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
-   use bilinear, only: bilinear_t, path_end_t
+   use bilinear, only: bilinear_t, path_end_t, rounding
    implicit none
    private
    public :: block_form_t, make_form, solves_all, real_values
 
    !> The system of a block, from whose solutions its unknowns follow.
    type, extends(equal_unknowns_t) :: block_form_t
-      complex(wp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
+      complex(dp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
       logical :: is_impossible = .false.              !< its linear equations contradict one another
       type(bilinear_t) :: system
@@ -30,7 +31,7 @@ module block_bilinear
    !> the elimination may lose two. Newton's method then decides with the exact equations.
    real(wp), parameter :: surplus_level = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
-   real(wp), parameter :: solved_level = max(1.0e-6_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
+   real(dp), parameter :: solved_level = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
 
    !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
    type :: projection_t
@@ -216,7 +217,7 @@ contains
       call find_null_space(transpose(d%a(:, :d%linear)), level, basis)
       p = size(basis, 2) - 1
       allocate (f%basis(0:f%q, 0:p))
-      f%basis(:, :) = basis
+      f%basis(:, :) = cmplx(basis, kind=dp)
       allocate (c(0:p, 0:p, d%bilinear), independent((p + 1)**2, 0))
       count_of = 0
       do j = 1, d%bilinear
@@ -236,16 +237,14 @@ contains
       f%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
       f%is_lacking = count_of < 2*p
       if (f%is_impossible .or. f%is_lacking) return
-      allocate (f%system%c(0:p, 0:p, 2*p), source=(0.0_wp, 0.0_wp))
-      allocate (f%system%plane(0:p))
+      allocate (f%system%c(0:p, 0:p, 2*p), f%system%plane(0:p))
       f%system%plane(:) = f%basis(0, :)
       f%more = c(:, :, 2*p + 1:count_of)
       do j = 1, 2*p
-         f%system%c(:, :, j) = c(:, :, j)
          do k = 2*p + 1, count_of
-            f%system%c(:, :, j) = f%system%c(:, :, j) + cos(real(j*k, wp))*c(:, :, k)
+            c(:, :, j) = c(:, :, j) + cos(real(j*k, wp))*c(:, :, k)
          end do
-         f%system%c(:, :, j) = f%system%c(:, :, j)/maxval(abs(f%system%c(:, :, j)))
+         f%system%c(:, :, j) = cmplx(c(:, :, j)/maxval(abs(c(:, :, j))), kind=dp)
       end do
    end subroutine reduce
 
@@ -282,10 +281,10 @@ contains
    subroutine real_values(f, e, level, x, is_real)
       type(block_form_t), intent(in) :: f
       type(path_end_t), intent(in) :: e
-      real(wp), intent(in) :: level
+      real(dp), intent(in) :: level
       real(wp), intent(out) :: x(:)
       logical, intent(out) :: is_real
-      complex(wp) :: w(0:f%q), v(0:f%q)
+      complex(dp) :: w(0:f%q), v(0:f%q)
       integer :: k
 
       w = matmul(f%basis, e%x)
@@ -293,15 +292,15 @@ contains
       w = w/w(0)
       v = conjg(v/v(0))
       is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
-      w = 0.5_wp*(w + v)
+      w = 0.5_dp*(w + v)
       do k = 1, f%n
          x(k) = f%offset(k)
          if (f%base(k) == 0) cycle
          associate (at => f%place(f%base(k)))
             if (f%turns(at) < 0) then
-               x(k) = x(k) + atan2(aimag(w(at)), real(w(at)))
+               x(k) = x(k) + real(atan2(aimag(w(at)), real(w(at))), wp)
             else
-               x(k) = x(k) + real(w(at)*conjg(w(f%turns(at))))
+               x(k) = x(k) + real(w(at)*conjg(w(f%turns(at))), wp)
             end if
          end associate
       end do

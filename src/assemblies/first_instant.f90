@@ -183,7 +183,7 @@ contains
       if (is_solved(c)) call note_position(values_of(e%blocks, i, e%state), c%singular)
       if (e%blocks%list(i)%direct .or. is_certain(c)) return
 
-      call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, every)
+      call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i), every)
       is_isolated = .not. (every%moves .or. every%group > max_group)
       found%are_all = is_isolated .and. every%failed == 0
       k = size(found%distance)

@@ -8,66 +8,74 @@
 !> Sommese and Wampler, The Numerical Solution of Systems of Polynomials, 2005). The chance is always the same.
 !> Coordinates are homogeneous, x . u = 1 and y . v = 1 with u and v by chance: paths to infinity have ends as others.
 module homotopy
-   use kinds, only: wp
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use planar, only: pi
    use complex_lu, only: factor_complex, solve_complex
-   use bilinear, only: bilinear_t, path_end_t, ends_t, derivatives_at, path_count, finiteness, infinity_level
+   use bilinear, only: bilinear_t, path_start_t, path_end_t, ends_t, path_count, finiteness, infinity_level
    implicit none
    private
    public :: follow_paths
 
-   !> The system with its start, and the room of a step. z = (x, y).
+   !> The paths of h = f + t more from the solutions of g = f + more. z: x and y without their first coordinates, which
+   !> are those of the start's chart.
    type :: paths_t
-      type(bilinear_t) :: f
-      complex(wp), allocatable :: a(:, :), b(:, :)    !< (0:p, 2p) of the start's linear forms
-      complex(wp), allocatable :: patch(:, :)         !< (0:p, 2) u and v
-      real(wp) :: careful = 1.0_wp                    !< predictions are corrected by less than this part of the usual
+      integer :: p = 0
+      complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p)
+      real(dp) :: careful = 1.0_dp                    !< predictions are corrected by less than this part of the usual
    end type paths_t
 
    !> The correction of a prediction that is aimed at, and the largest, in parts of z: paths that are further apart are
    !> not mistaken for one another.
-   real(wp), parameter :: aim = 1.0e-5_wp, largest = 1.0e-3_wp
+   real(dp), parameter :: aim = 1.0e-5_dp, largest = 1.0e-3_dp
    !> Corrections below this part of z are rounding.
-   real(wp), parameter :: converged = max(1.0e-11_wp, 4096.0_wp*epsilon(1.0_wp))
+   real(dp), parameter :: converged = 1.0e-11_dp
    integer, parameter :: max_corrections = 4
-   real(wp), parameter :: first_step = 0.05_wp, least_step = 1.0e-5_wp
+   real(dp), parameter :: first_step = 0.05_dp, least_step = 1.0e-5_dp
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps: a path that does not reach
    !> it so has a singular end, unless its neighbour is nearer to it than about the root of the last of them.
-   real(wp), parameter :: near_end = 0.1_wp, tenth = 0.1_wp, least_to_end = 0.1_wp
-   integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_wp))) - 3
+   real(dp), parameter :: near_end = 0.1_dp, tenth = 0.1_dp, least_to_end = 0.1_dp
+   integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
-   real(wp), parameter :: least_power = 0.04_wp
-   !> Tenths of t before a path that fails tells where it goes.
+   real(dp), parameter :: least_power = 0.04_dp
+   !> Tenths of t before a path that fails tells where it goes; fewer if it is so near to infinity and falls so fast.
    integer, parameter :: least_tenths = 4
+   real(dp), parameter :: far = 1.0e-3_dp, sure_power = 0.5_dp
    !> Ends that differ by less, in parts of z, are one; all paths are followed anew, with steps so much shorter.
-   real(wp), parameter :: alike = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
-   real(wp), parameter :: shorter = 1.0e-2_wp
+   real(dp), parameter :: alike = sqrt(epsilon(1.0_dp))
+   real(dp), parameter :: shorter = 1.0e-2_dp
    !> Singular ends that differ by less may be one: four that meet are known to the fourth root of the last t.
-   real(wp), parameter :: blurred = 1.0e-2_wp
+   real(dp), parameter :: blurred = 1.0e-2_dp
    integer, parameter :: max_rounds = 3
 
 contains
 
-   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions.
-   subroutine follow_paths(f, ends, moves)
+   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions. `start`: where the paths
+   !> begin, if it is for that p; otherwise afterwards points of all these paths, from which those of a similar system are
+   !> short.
+   subroutine follow_paths(f, start, ends, moves)
       type(bilinear_t), intent(in) :: f
+      type(path_start_t), intent(inout) :: start
       type(ends_t), intent(out) :: ends
       logical, intent(out) :: moves
-      type(paths_t) :: h
+      type(path_start_t) :: own
       type(ends_t) :: found
       integer :: round
 
       do round = 1, max_rounds
-         call make_start(f, round, h)
-         call follow_all(h, found)
+         if (round == 1 .and. start%p == f%p) then
+            call follow_all(f, 1.0_dp, start, found)
+         else
+            call make_start(f%p, round, own)
+            call follow_all(f, shorter**(round - 1), own, found, start)
+         end if
          if (round == 1 .or. worth(found) > worth(ends)) ends = found
          if (found%failed == 0) exit
       end do
       moves = .false.
       if (.not. any(ends%list%is_singular)) return
       ! Paths from another start come to the same solutions, but to other points of a curve.
-      call make_start(f, max_rounds + 1, h)
-      call follow_all(h, found)
+      call make_start(f%p, max_rounds + 1, own)
+      call follow_all(f, 1.0_dp, own, found)
       do round = 1, size(ends%list)
          if (ends%list(round)%is_singular) moves = moves .or. .not. is_among(f, ends%list(round), found%list)
       end do
@@ -86,7 +94,7 @@ contains
    logical function is_among(f, e, list)
       type(bilinear_t), intent(in) :: f
       type(path_end_t), intent(in) :: e, list(:)
-      complex(wp) :: x(f%p + 1), y(f%p + 1)
+      complex(dp) :: x(f%p + 1), y(f%p + 1)
       integer :: k
 
       is_among = .false.
@@ -99,60 +107,116 @@ contains
       end do
    end function is_among
 
-   !> The start of round number `round`: each has a chance of its own.
-   subroutine make_start(f, round, h)
-      type(bilinear_t), intent(in) :: f
-      integer, intent(in) :: round
-      type(paths_t), intent(out) :: h
-      integer :: seed, j, k
+   !> The start of round number `round`: each has a chance of its own. Its solution number k is where the forms in x of
+   !> p equations are zero, the k-th choice of them, and those in y of the others.
+   subroutine make_start(p, round, start)
+      integer, intent(in) :: p, round
+      type(path_start_t), intent(out) :: start
+      complex(dp) :: a(0:p, 2*p), b(0:p, 2*p)
+      integer :: seed, chosen(p), j, k
 
-      h%f = f
-      h%careful = shorter**mod(round - 1, max_rounds)
-      allocate (h%a(0:f%p, 2*f%p), h%b(0:f%p, 2*f%p), h%patch(0:f%p, 2))
+      start%p = p
+      allocate (start%chart(p, 2), start%c(0:p, 0:p, 2*p), start%z(2*p, path_count(p)))
       seed = 1987*round
-      do j = 1, 2*f%p
-         do k = 0, f%p
-            h%a(k, j) = on_circle(seed)
-            h%b(k, j) = on_circle(seed)
+      do j = 1, 2*p
+         do k = 0, p
+            a(k, j) = on_circle(seed)
+            b(k, j) = on_circle(seed)
+         end do
+         do k = 0, p
+            start%c(:, k, j) = a(:, j)*b(k, j)
          end do
       end do
-      do k = 0, f%p
-         h%patch(k, 1) = on_circle(seed)
-         h%patch(k, 2) = on_circle(seed)
+      do k = 1, p
+         start%chart(k, 1) = on_circle(seed)
+         start%chart(k, 2) = on_circle(seed)
+      end do
+      chosen = [(k, k=1, p)]
+      do k = 1, size(start%z, 2)
+         start%z(:p, k) = common_zero(a(:, chosen))
+         start%z(p + 1:, k) = common_zero(b(:, pack([(j, j=1, 2*p)], [(all(chosen /= j), j=1, 2*p)])))
+         call choose_next(chosen, 2*p)
       end do
    end subroutine make_start
 
    !> A complex number of size 1, by chance (Park and Miller, Comm. ACM 31 (1988) 1192-1201).
-   complex(wp) function on_circle(seed) result(z)
+   complex(dp) function on_circle(seed) result(z)
       integer, intent(inout) :: seed
 
       ! Schrage's way: 16807 seed modulo 2^31 - 1 in the range of integers.
       seed = 16807*mod(seed, 127773) - 2836*(seed/127773)
       if (seed < 0) seed = seed + huge(seed)
-      z = exp(cmplx(0.0_wp, 2.0_wp*pi*(real(seed, wp)/real(huge(seed), wp)), wp))
+      z = exp(cmplx(0.0_dp, 2.0_dp*real(pi, dp)*(real(seed, dp)/real(huge(seed), dp)), dp))
    end function on_circle
 
-   !> Follows every path. Two that come to one regular end have jumped on the way: they have failed.
-   subroutine follow_all(h, ends)
-      type(paths_t), intent(in) :: h
-      type(ends_t), intent(out) :: ends
-      type(path_end_t), allocatable :: list(:)
-      integer :: chosen(h%f%p), count_of, k, j
-      complex(wp) :: z(2*h%f%p + 2)
-      logical :: is_done, is_infinite, is_twin(path_count(h%f%p))
+   !> (p) Where all the `forms` (0:p, p), each a constant and p coefficients, are zero.
+   function common_zero(forms) result(z)
+      complex(dp), intent(in) :: forms(0:, :)
+      complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2))
+      integer :: pivots(size(forms, 2))
+      logical :: is_singular
 
-      ends%paths = path_count(h%f%p)
-      allocate (list(ends%paths))
+      a = transpose(forms(1:, :))
+      z = -forms(0, :)
+      call factor_complex(size(z), a, pivots, is_singular)
+      call solve_complex(size(z), a, pivots, z)
+   end function common_zero
+
+   !> The next of all choices of size(chosen) numbers up to `n`, in increasing order.
+   subroutine choose_next(chosen, n)
+      integer, intent(inout) :: chosen(:)
+      integer, intent(in) :: n
+      integer :: k, j
+
+      do k = size(chosen), 1, -1
+         if (chosen(k) == n - size(chosen) + k) cycle
+         chosen(k:) = [(chosen(k) + j, j=1, size(chosen) - k + 1)]
+         return
+      end do
+   end subroutine choose_next
+
+   !> Follows every path of `f` from the `start`; `near`: their points at t = near_end, if all come so far. Two paths that
+   !> come to one regular end have jumped on the way: they have failed.
+   subroutine follow_all(f, careful, start, ends, near)
+      type(bilinear_t), intent(in) :: f
+      real(dp), intent(in) :: careful
+      type(path_start_t), intent(in) :: start
+      type(ends_t), intent(out) :: ends
+      type(path_start_t), intent(inout), optional :: near
+      type(paths_t) :: h
+      complex(dp) :: z(2*f%p, size(start%z, 2))
+      type(path_end_t) :: list(size(start%z, 2))
+      logical :: is_done, is_infinite, is_twin(size(start%z, 2)), is_whole
+      integer :: count_of, k, j
+
+      h%p = f%p
+      h%careful = careful
+      allocate (h%f(0:f%p, 0:f%p, 2*f%p), h%more(0:f%p, 0:f%p, 2*f%p))
+      h%f(:, :, :) = f%c
+      do k = 1, f%p
+         h%f(k, :, :) = h%f(k, :, :) + start%chart(k, 1)*h%f(0, :, :)
+      end do
+      do k = 1, f%p
+         h%f(:, k, :) = h%f(:, k, :) + start%chart(k, 2)*h%f(:, 0, :)
+      end do
+      h%more(:, :, :) = start%c - h%f
+
+      ends%paths = size(list)
+      z = start%z
+      is_whole = .true.
       count_of = 0
-      chosen = [(k, k=1, h%f%p)]
-      do
-         call start_path(h, chosen, z)
-         call follow_path(h, z, list(count_of + 1), is_infinite, is_done)
+      do k = 1, size(list)
+         associate (e => list(count_of + 1))
+            call follow(h, 1.0_dp, near_end, least_step, z(:, k), is_done)
+            is_whole = is_whole .and. is_done
+            if (is_done) call follow_to_end(f, h, start%chart, z(:, k), e, is_infinite, is_done)
+         end associate
          if (.not. is_done) ends%failed = ends%failed + 1
          if (is_done .and. is_infinite) ends%infinite = ends%infinite + 1
          if (is_done .and. .not. is_infinite) count_of = count_of + 1
-         if (.not. next_choice(chosen, 2*h%f%p)) exit
       end do
+      if (present(near) .and. is_whole) near = path_start_t(f%p, start%chart, h%f + near_end*h%more, z)
+
       is_twin = .false.
       do k = 2, count_of
          do j = 1, k - 1
@@ -165,100 +229,66 @@ contains
       ends%list = pack(list(:count_of), .not. is_twin(:count_of))
    end subroutine follow_all
 
-   !> The next of all choices of size(chosen) numbers up to `n`, in increasing order; false after the last.
-   logical function next_choice(chosen, n) result(is_there)
-      integer, intent(inout) :: chosen(:)
-      integer, intent(in) :: n
-      integer :: k, j
-
-      is_there = .false.
-      do k = size(chosen), 1, -1
-         if (chosen(k) == n - size(chosen) + k) cycle
-         is_there = .true.
-         chosen(k:) = [(chosen(k) + j, j=1, size(chosen) - k + 1)]
-         return
-      end do
-   end function next_choice
-
-   !> The solution `z` of the start in which the forms in x of the equations `chosen` are zero, in y of the others.
-   subroutine start_path(h, chosen, z)
+   !> Follows a path of `f` from `start` at t = near_end. `e`: its end; `is_done`: it was found.
+   subroutine follow_to_end(f, h, chart, start, e, is_infinite, is_done)
+      type(bilinear_t), intent(in) :: f
       type(paths_t), intent(in) :: h
-      integer, intent(in) :: chosen(:)
-      complex(wp), intent(out) :: z(:)
-      complex(wp), dimension(0:h%f%p, 0:h%f%p) :: left, right
-      integer :: pivots(0:h%f%p), j, rows(2)
-      logical :: is_singular
-
-      rows = 0
-      do j = 1, 2*h%f%p
-         if (any(chosen == j)) then
-            left(rows(1), :) = h%a(:, j)
-            rows(1) = rows(1) + 1
-         else
-            right(rows(2), :) = h%b(:, j)
-            rows(2) = rows(2) + 1
-         end if
-      end do
-      associate (p => h%f%p)
-         left(p, :) = h%patch(:, 1)
-         right(p, :) = h%patch(:, 2)
-         z = 0.0_wp
-         z(p + 1) = 1.0_wp
-         z(2*p + 2) = 1.0_wp
-         call factor_complex(p + 1, left, pivots, is_singular)
-         call solve_complex(p + 1, left, pivots, z(:p + 1))
-         call factor_complex(p + 1, right, pivots, is_singular)
-         call solve_complex(p + 1, right, pivots, z(p + 2:))
-      end associate
-   end subroutine start_path
-
-   !> Follows the path from `z` at t = 1. `e`: its end; `is_done`: it was found.
-   subroutine follow_path(h, z, e, is_infinite, is_done)
-      type(paths_t), intent(in) :: h
-      complex(wp), intent(inout) :: z(:)
+      complex(dp), intent(in) :: chart(:, :), start(:)
       type(path_end_t), intent(inout) :: e
       logical, intent(out) :: is_infinite, is_done
-      complex(wp) :: last(size(z))
-      real(wp) :: t, finite(0:max_tenths)
+      complex(dp), dimension(size(start)) :: z, last
+      real(dp) :: t, finite(0:max_tenths)
       integer :: k
 
       is_infinite = .false.
       t = near_end
-      call follow(h, 1.0_wp, t, least_step, z, is_done)
-      if (.not. is_done) return
+      z = start
       do k = 0, max_tenths
-         finite(k) = finiteness(h%f, z(:h%f%p + 1), z(h%f%p + 2:))
+         call put_end(z)
+         finite(k) = finiteness(f, e%x, e%y)
          last = z
-         call follow(h, t, 0.0_wp, least_to_end, last, is_done)
-         if (is_done) then
-            z = last
-            is_infinite = finiteness(h%f, z(:h%f%p + 1), z(h%f%p + 2:)) <= infinity_level
-            exit
-         end if
+         call follow(h, t, 0.0_dp, least_to_end, last, is_done)
+         if (is_done) exit
          if (k == max_tenths) exit
          last = z
-         call follow(h, t, tenth*t, least_step, z, is_done)
-         if (.not. is_done) then
-            z = last
-            exit
-         end if
+         call follow(h, t, tenth*t, least_step, last, is_done)
+         if (.not. is_done) exit
+         z = last
          t = tenth*t
       end do
       e%is_singular = .not. is_done .or. k >= max_tenths
-      e%x = z(:h%f%p + 1)
-      e%y = z(h%f%p + 2:)
-      if (is_done) return
-      k = min(k, max_tenths)
-      is_done = k >= least_tenths
-      if (is_done) is_infinite = falls(finite(:k))
-   end subroutine follow_path
+      if (is_done) then
+         call put_end(last)
+         is_infinite = finiteness(f, e%x, e%y) <= infinity_level
+      else
+         call put_end(z)
+         k = min(k, max_tenths)
+         is_infinite = falls(finite(:k))
+         is_done = is_infinite .or. k >= least_tenths
+      end if
 
-   !> The values, one for each tenth of t, end as a power of t.
+   contains
+
+      !> Puts the homogeneous coordinates of `z` into `e`.
+      subroutine put_end(z)
+         complex(dp), intent(in) :: z(:)
+
+         e%x = [1.0_dp + sum(chart(:, 1)*z(:h%p)), z(:h%p)]
+         e%y = [1.0_dp + sum(chart(:, 2)*z(h%p + 1:)), z(h%p + 1:)]
+      end subroutine put_end
+   end subroutine follow_to_end
+
+   !> The values, one for each tenth of t, end at infinity, as a power of t. Few of them show it only if they fall fast.
    pure logical function falls(finite)
-      real(wp), intent(in) :: finite(:)
+      real(dp), intent(in) :: finite(:)
+      real(dp) :: power
 
       associate (k => size(finite))
-         falls = finite(k) <= infinity_level .or. log10(finite(k - 2)/finite(k)) >= 2.0_wp*least_power
+         falls = .false.
+         if (k < 3) return
+         power = 0.5_dp*log10(finite(k - 2)/finite(k))
+         falls = finite(k) <= infinity_level .or. (k > least_tenths .and. power >= least_power) &
+            .or. (finite(k) <= far .and. power >= sure_power)
       end associate
    end function falls
 
@@ -266,26 +296,26 @@ contains
    !> divided down to the part `least` of the whole.
    subroutine follow(h, from, to, least, z, is_done)
       type(paths_t), intent(in) :: h
-      real(wp), intent(in) :: from, to, least
-      complex(wp), intent(inout) :: z(:)
+      real(dp), intent(in) :: from, to, least
+      complex(dp), intent(inout) :: z(:)
       logical, intent(out) :: is_done
-      complex(wp) :: next(size(z))
-      real(wp) :: s, step, correction
+      complex(dp) :: next(size(z))
+      real(dp) :: s, step, correction
 
-      s = 0.0_wp
+      s = 0.0_dp
       step = max(first_step, least)
       do
-         step = min(step, 1.0_wp - s)
+         step = min(step, 1.0_dp - s)
          call predict(h, from + s*(to - from), step*(to - from), z, next, is_done)
          if (is_done) call correct(h, from + (s + step)*(to - from), next, correction, is_done)
          if (is_done) then
             z = next
             s = s + step
-            if (s >= 1.0_wp - epsilon(1.0_wp)) return
+            if (s >= 1.0_dp - epsilon(1.0_dp)) return
             ! The error of a step goes with its fifth power.
-            step = step*min(3.0_wp, max(0.5_wp, (h%careful*aim/max(correction, converged**2))**0.2_wp))
+            step = step*min(3.0_dp, max(0.5_dp, (h%careful*aim/max(correction, epsilon(1.0_dp)))**0.2_dp))
          else
-            step = 0.4_wp*step
+            step = 0.4_dp*step
          end if
          if (step < least) exit
       end do
@@ -295,34 +325,34 @@ contains
    !> A step of length `step` in t along the tangent, by Runge and Kutta's rule of fourth order.
    subroutine predict(h, t, step, z, next, is_done)
       type(paths_t), intent(in) :: h
-      real(wp), intent(in) :: t, step
-      complex(wp), intent(in) :: z(:)
-      complex(wp), intent(out) :: next(:)
+      real(dp), intent(in) :: t, step
+      complex(dp), intent(in) :: z(:)
+      complex(dp), intent(out) :: next(:)
       logical, intent(out) :: is_done
-      complex(wp), dimension(size(z)) :: k1, k2, k3, k4
+      complex(dp), dimension(size(z)) :: k1, k2, k3, k4
 
       next = z
       call find_tangent(h, t, z, k1, is_done)
-      if (is_done) call find_tangent(h, t + 0.5_wp*step, z + 0.5_wp*step*k1, k2, is_done)
-      if (is_done) call find_tangent(h, t + 0.5_wp*step, z + 0.5_wp*step*k2, k3, is_done)
+      if (is_done) call find_tangent(h, t + 0.5_dp*step, z + 0.5_dp*step*k1, k2, is_done)
+      if (is_done) call find_tangent(h, t + 0.5_dp*step, z + 0.5_dp*step*k2, k3, is_done)
       if (is_done) call find_tangent(h, t + step, z + step*k3, k4, is_done)
-      if (is_done) next = z + step*(k1 + 2.0_wp*(k2 + k3) + k4)/6.0_wp
-      is_done = is_done .and. maxval(abs(next - z)) <= maxval(abs(z))
+      if (is_done) next = z + step*(k1 + 2.0_dp*(k2 + k3) + k4)/6.0_dp
+      is_done = is_done .and. size_of(next - z) <= size_of(z)
    end subroutine predict
 
    !> dz/dt at (`z`, `t`).
    subroutine find_tangent(h, t, z, tangent, is_done)
       type(paths_t), intent(in) :: h
-      real(wp), intent(in) :: t
-      complex(wp), intent(in) :: z(:)
-      complex(wp), intent(out) :: tangent(:)
+      real(dp), intent(in) :: t
+      complex(dp), intent(in) :: z(:)
+      complex(dp), intent(out) :: tangent(:)
       logical, intent(out) :: is_done
-      complex(wp) :: a(size(z), size(z)), r(size(z))
+      complex(dp) :: a(size(z), size(z)), r(size(z))
       integer :: pivots(size(z))
       logical :: is_singular
 
-      tangent = 0.0_wp
-      is_done = maxval(abs(z)) <= 1.0_wp/epsilon(1.0_wp)
+      tangent = 0.0_dp
+      is_done = size_of(z) <= 1.0_dp/epsilon(1.0_dp)
       if (.not. is_done) return
       call assemble(h, t, z, a, r, tangent)
       call factor_complex(size(z), a, pivots, is_singular)
@@ -333,25 +363,25 @@ contains
    !> Newton's method at `t`; `correction`: the first one, in parts of z. `is_done`: it was small, the others smaller.
    subroutine correct(h, t, z, correction, is_done)
       type(paths_t), intent(in) :: h
-      real(wp), intent(in) :: t
-      complex(wp), intent(inout) :: z(:)
-      real(wp), intent(out) :: correction
+      real(dp), intent(in) :: t
+      complex(dp), intent(inout) :: z(:)
+      real(dp), intent(out) :: correction
       logical, intent(out) :: is_done
-      complex(wp) :: a(size(z), size(z)), r(size(z)), slope(size(z))
+      complex(dp) :: a(size(z), size(z)), r(size(z))
       integer :: pivots(size(z)), k
       logical :: is_singular
-      real(wp) :: now, before
+      real(dp) :: now, before
 
       is_done = .false.
-      before = 2.0_wp*h%careful*largest
+      before = 2.0_dp*h%careful*largest
       do k = 1, max_corrections
-         call assemble(h, t, z, a, r, slope)
+         call assemble(h, t, z, a, r)
          call factor_complex(size(z), a, pivots, is_singular)
          if (is_singular) return
          call solve_complex(size(z), a, pivots, r)
-         now = maxval(abs(r))/maxval(abs(z))
+         now = size_of(r)/size_of(z)
          if (k == 1) correction = now
-         if (.not. now <= 0.5_wp*before) return
+         if (.not. now <= 0.5_dp*before) return
          z = z - r
          is_done = now <= converged
          if (is_done) return
@@ -359,37 +389,45 @@ contains
       end do
    end subroutine correct
 
-   !> The residual `r` of the homotopy with its patches, its derivatives `a` by z, and by t with the opposite sign.
+   !> The largest real or imaginary part of `z`.
+   pure real(dp) function size_of(z)
+      complex(dp), intent(in) :: z(:)
+      integer :: k
+
+      size_of = 0.0_dp
+      do k = 1, size(z)
+         size_of = max(size_of, abs(real(z(k))), abs(aimag(z(k))))
+      end do
+   end function size_of
+
+   !> The residual `r` of the homotopy, its derivatives `a` by z, and by t with the opposite sign.
    subroutine assemble(h, t, z, a, r, slope)
       type(paths_t), intent(in) :: h
-      real(wp), intent(in) :: t
-      complex(wp), intent(in) :: z(:)
-      complex(wp), intent(out) :: a(:, :), r(:), slope(:)
-      complex(wp) :: left, right, g(2*h%f%p)
-      integer :: j
+      real(dp), intent(in) :: t
+      complex(dp), intent(in) :: z(:)
+      complex(dp), intent(out) :: a(:, :), r(:)
+      complex(dp), intent(out), optional :: slope(:)
+      complex(dp) :: x(0:h%p), y(0:h%p), c(0:h%p, 0:h%p)
+      integer :: j, k
 
-      associate (p => h%f%p)
-         associate (x => z(:p + 1), y => z(p + 2:))
-            a(:2*p, :) = derivatives_at(h%f, x, y)
-            do j = 1, 2*p
-               ! The derivatives by y, times y, are the values.
-               r(j) = sum(a(j, p + 2:)*y)
-               a(j, :) = (1.0_wp - t)*a(j, :)
-               left = sum(h%a(:, j)*x)
-               right = sum(h%b(:, j)*y)
-               g(j) = left*right
-               a(j, :p + 1) = a(j, :p + 1) + t*right*h%a(:, j)
-               a(j, p + 2:) = a(j, p + 2:) + t*left*h%b(:, j)
+      associate (p => h%p)
+         x = [(1.0_dp, 0.0_dp), z(:p)]
+         y = [(1.0_dp, 0.0_dp), z(p + 1:)]
+         do j = 1, 2*p
+            c = h%f(:, :, j) + t*h%more(:, :, j)
+            a(j, :p) = matmul(c(1:, :), y)
+            r(j) = sum(c(0, :)*y) + sum(a(j, :p)*x(1:))
+            do k = 1, p
+               a(j, p + k) = sum(x*c(:, k))
             end do
-            slope(:2*p) = r(:2*p) - g
-            r(:2*p) = (1.0_wp - t)*r(:2*p) + t*g
-            a(2*p + 1:, :) = 0.0_wp
-            a(2*p + 1, :p + 1) = h%patch(:, 1)
-            a(2*p + 2, p + 2:) = h%patch(:, 2)
-            r(2*p + 1) = sum(h%patch(:, 1)*x) - 1.0_wp
-            r(2*p + 2) = sum(h%patch(:, 2)*y) - 1.0_wp
-            slope(2*p + 1:) = 0.0_wp
-         end associate
+         end do
+         if (.not. present(slope)) return
+         slope = 0.0_dp
+         do j = 1, 2*p
+            do k = 0, p
+               slope(j) = slope(j) - sum(x*h%more(:, k, j))*y(k)
+            end do
+         end do
       end associate
    end subroutine assemble
 end module homotopy

@@ -2,6 +2,7 @@
 !> the sizes of `assemblies`, up to 14 unknowns, the calls of ZGESV take as long as its work, and the paths followed
 !> there are the same with every LAPACK.
 module complex_lu
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    implicit none
    private
@@ -13,39 +14,61 @@ contains
    !> pivot is zero.
    pure subroutine factor_complex(n, a, pivots, is_singular)
       integer, intent(in) :: n
-      complex(wp), intent(inout) :: a(n, n)
+      complex(dp), intent(inout) :: a(n, n)
       integer, intent(out) :: pivots(n)
       logical, intent(out) :: is_singular
-      complex(wp) :: row(n)
-      integer :: i, k
+      complex(dp) :: one
+      real(dp) :: largest
+      integer :: i, j, k
 
       is_singular = .false.
       do k = 1, n
-         pivots(k) = k - 1 + maxloc(abs(real(a(k:, k))) + abs(aimag(a(k:, k))), 1)
+         largest = 0.0_dp
+         pivots(k) = k
+         do i = k, n
+            if (size_of(a(i, k)) <= largest) cycle
+            largest = size_of(a(i, k))
+            pivots(k) = i
+         end do
+         is_singular = .not. largest > sqrt(tiny(1.0_dp))
+         if (is_singular) return
          if (pivots(k) /= k) then
-            row = a(k, :)
-            a(k, :) = a(pivots(k), :)
-            a(pivots(k), :) = row
+            do j = 1, n
+               one = a(k, j)
+               a(k, j) = a(pivots(k), j)
+               a(pivots(k), j) = one
+            end do
          end if
-         if (abs(a(k, k)) <= tiny(1.0_wp)) then
-            is_singular = .true.
-            return
-         end if
-         a(k + 1:, k) = a(k + 1:, k)/a(k, k)
+         ! The diagonal has the inverse pivots: to multiply is cheaper than to divide.
+         a(k, k) = conjg(a(k, k))/(real(a(k, k))**2 + aimag(a(k, k))**2)
          do i = k + 1, n
-            a(k + 1:, i) = a(k + 1:, i) - a(k + 1:, k)*a(k, i)
+            a(i, k) = a(i, k)*a(k, k)
+         end do
+         do j = k + 1, n
+            do i = k + 1, n
+               a(i, j) = a(i, j) - a(i, k)*a(k, j)
+            end do
          end do
       end do
+
+   contains
+
+      !> A size of `z`, without a root.
+      pure real(dp) function size_of(z)
+         complex(dp), intent(in) :: z
+
+         size_of = abs(real(z)) + abs(aimag(z))
+      end function size_of
    end subroutine factor_complex
 
    !> Solves for `b` (n) with the factors of `factor_complex`.
    pure subroutine solve_complex(n, a, pivots, b)
       integer, intent(in) :: n
-      complex(wp), intent(in) :: a(n, n)
+      complex(dp), intent(in) :: a(n, n)
       integer, intent(in) :: pivots(n)
-      complex(wp), intent(inout) :: b(n)
-      complex(wp) :: one
-      integer :: k
+      complex(dp), intent(inout) :: b(n)
+      complex(dp) :: one
+      integer :: i, k
 
       do k = 1, n
          one = b(pivots(k))
@@ -53,11 +76,15 @@ contains
          b(k) = one
       end do
       do k = 1, n
-         b(k + 1:) = b(k + 1:) - a(k + 1:, k)*b(k)
+         do i = k + 1, n
+            b(i) = b(i) - a(i, k)*b(k)
+         end do
       end do
       do k = n, 1, -1
-         b(k) = b(k)/a(k, k)
-         b(:k - 1) = b(:k - 1) - a(:k - 1, k)*b(k)
+         b(k) = b(k)*a(k, k)
+         do i = 1, k - 1
+            b(i) = b(i) - a(i, k)*b(k)
+         end do
       end do
    end subroutine solve_complex
 

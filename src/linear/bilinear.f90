@@ -2,22 +2,31 @@
 !> coefficients by chance they have C(2p, p) solutions (the two-homogeneous number of Bezout), some of them at infinity.
 !> Those with p = 1 are solved in closed form.
 module bilinear
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    implicit none
    private
-   public :: bilinear_t, path_end_t, ends_t, derivatives_at, solve_quadratic, path_count, &
-      finiteness, infinity_level
+   public :: bilinear_t, path_start_t, path_end_t, ends_t, solve_quadratic, path_count, finiteness, &
+      infinity_level, rounding
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
    type :: bilinear_t
       integer :: p = 0                                !< unknowns of each group
-      complex(wp), allocatable :: c(:, :, :)          !< (0:p, 0:p, 2p); the largest element of each is about 1
-      complex(wp), allocatable :: plane(:)            !< (0:p)
+      complex(dp), allocatable :: c(:, :, :)          !< (0:p, 0:p, 2p); the largest element of each is about 1
+      complex(dp), allocatable :: plane(:)            !< (0:p)
    end type bilinear_t
+
+   !> A system of the same form with its solutions, in the chart x_0 = 1 + sum(chart_k x_k).
+   type :: path_start_t
+      integer :: p = 0                                !< 0: there is none
+      complex(dp), allocatable :: chart(:, :)         !< (p, 2) of x and of y
+      complex(dp), allocatable :: c(:, :, :)          !< (0:p, 0:p, 2p) of 1 and the other coordinates
+      complex(dp), allocatable :: z(:, :)             !< (2p, paths) the solutions: x and y without their first one
+   end type path_start_t
 
    !> A solution, up to a factor of x and one of y.
    type :: path_end_t
-      complex(wp), allocatable :: x(:), y(:)          !< (p + 1) the homogeneous one first
+      complex(dp), allocatable :: x(:), y(:)          !< (p + 1) the homogeneous one first
       logical :: is_singular = .false.                !< several solutions in one, or a point of a curve of solutions
    end type path_end_t
 
@@ -29,10 +38,12 @@ module bilinear
       type(path_end_t), allocatable :: list(:)             !< finite ones
    end type ends_t
 
+   !> Rounding of coefficients, which may be of another kind.
+   real(dp), parameter :: rounding = max(epsilon(1.0_dp), real(epsilon(1.0_wp), dp))
    !> A discriminant below this part of its terms is zero.
-   real(wp), parameter :: zero_level = 256.0_wp*epsilon(1.0_wp)
+   real(dp), parameter :: zero_level = 256.0_dp*rounding
    !> Solutions nearer to infinity than this are there: no slide is a million times as long as its loop.
-   real(wp), parameter :: infinity_level = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*rounding)
 
 contains
 
@@ -47,25 +58,10 @@ contains
       end do
    end function path_count
 
-   !> (2p, 2p + 2) Derivatives of the 2p functions with respect to x and y; those by y, times y, are the functions.
-   pure function derivatives_at(b, x, y) result(a)
-      type(bilinear_t), intent(in) :: b
-      complex(wp), intent(in) :: x(0:), y(0:)
-      complex(wp) :: a(2*b%p, 2*b%p + 2)
-      integer :: j, k
-
-      do j = 1, 2*b%p
-         do k = 0, b%p
-            a(j, b%p + 2 + k) = sum(x*b%c(:, k, j))
-            a(j, 1 + k) = sum(b%c(k, :, j)*y)
-         end do
-      end do
-   end function derivatives_at
-
    !> How far (x, y) is from infinity: 0 there, about 1 where no coordinate is large.
-   pure real(wp) function finiteness(b, x, y)
+   pure real(dp) function finiteness(b, x, y)
       type(bilinear_t), intent(in) :: b
-      complex(wp), intent(in) :: x(0:), y(0:)
+      complex(dp), intent(in) :: x(0:), y(0:)
 
       finiteness = min(abs(sum(b%plane*x))/maxval(abs(x)), abs(sum(conjg(b%plane)*y))/maxval(abs(y)))
    end function finiteness
@@ -75,8 +71,8 @@ contains
       type(bilinear_t), intent(in) :: b
       type(ends_t), intent(out) :: ends
       logical, intent(out) :: moves
-      complex(wp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
-      real(wp) :: size_of
+      complex(dp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
+      real(dp) :: size_of
       type(path_end_t) :: e
       integer :: k
 
@@ -92,16 +88,16 @@ contains
       moves = size_of <= zero_level
       if (moves) ends%paths = 0
       if (moves) return
-      e%is_singular = abs(q(1)**2 - 4.0_wp*q(0)*q(2)) <= zero_level*size_of**2
-      root = 0.0_wp
-      if (.not. e%is_singular) root = sqrt(q(1)**2 - 4.0_wp*q(0)*q(2))
-      if (real(conjg(q(1))*root) < 0.0_wp) root = -root
+      e%is_singular = abs(q(1)**2 - 4.0_dp*q(0)*q(2)) <= zero_level*size_of**2
+      root = 0.0_dp
+      if (.not. e%is_singular) root = sqrt(q(1)**2 - 4.0_dp*q(0)*q(2))
+      if (real(conjg(q(1))*root) < 0.0_dp) root = -root
       do k = 1, 2
          ! (x_1 : x_0) = (-q_1 - root : 2 q_2) = (2 q_0 : -q_1 + root), and with the other sign of the root.
-         x = [2.0_wp*q(2), -q(1) - root]
-         if (k == 2) x = [-q(1) - root, 2.0_wp*q(0)]
-         if (e%is_singular .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_wp*q(0)]
-         if (e%is_singular .and. abs(q(2)) >= abs(q(0))) x = [2.0_wp*q(2), -q(1)]
+         x = [2.0_dp*q(2), -q(1) - root]
+         if (k == 2) x = [-q(1) - root, 2.0_dp*q(0)]
+         if (e%is_singular .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_dp*q(0)]
+         if (e%is_singular .and. abs(q(2)) >= abs(q(0))) x = [2.0_dp*q(2), -q(1)]
          r(:, 1) = x(0)*b%c(0, :, 1) + x(1)*b%c(1, :, 1)
          r(:, 2) = x(0)*b%c(0, :, 2) + x(1)*b%c(1, :, 2)
          if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
