@@ -26,6 +26,10 @@ module levenberg_marquardt
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: larger blocks are left as they are.
    integer, parameter :: max_unknowns = 600
+   !> Wider blocks are not asked for what is open alone: that is one number, and not worth minutes.
+   integer, parameter :: max_alone = 150
+   !> Equations that shall close count so many times as much as others: what is left of them goes with the square.
+   real(wp), parameter :: stiff(2) = [30.0_wp, 1.0e3_wp]
 
    !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown.
    type :: room_t
@@ -37,7 +41,8 @@ module levenberg_marquardt
 contains
 
    !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
-   !> it is smallest, and `c` has the closure error there and its pair or drive. `reached`: it is at most `near`.
+   !> it is smallest, and `c` has the pair or drive that is open the most there, and its closure error as `open_alone`
+   !> finds it. `reached`: the residual is at most `near`.
    subroutine levenberg_marquardt_solve(b, i, near, s, c, reached)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -46,9 +51,9 @@ contains
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: reached
       type(room_t) :: w
-      real(wp), allocatable :: start(:), even(:)
+      real(wp), allocatable :: start(:)
       real(wp) :: least, found
-      integer :: k, m
+      integer :: k
 
       reached = .false.
       associate (block => b%list(i))
@@ -63,10 +68,8 @@ contains
       w%best = start
       least = huge(least)
       do k = 0, max_starts - 1
-         ! Off by nothing at first, then by more and more, up to half a turn.
-         even = [(2.0_wp*modulo(golden*real(k*size(start) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(start))]
-         call set_values(b, i, start + 3.0_wp*real(k, wp)/real(max_starts, wp)*even, s)
-         call descend(b, i, near, w, s, found)
+         call set_values(b, i, around(start, k), s)
+         call descend(b, i, near, spread(1.0_wp, 1, w%shape%rows), w, s, found)
          if (found < least) then
             least = found
             w%best = values_of(b, i, s)
@@ -77,13 +80,63 @@ contains
       call assemble_dense(b, i, s, w%a, w%r)
       call note_closure_error(b, i, w%r, c)
       reached = least <= near
+      ! Redundant equations share what is lacking.
+      if (.not. reached .and. w%shape%rows <= w%shape%n) call open_alone(b, i, near, w, s, c)
    end subroutine levenberg_marquardt_solve
 
-   !> Reduces the sum of squares from the values of `s`; `found`: the largest residual at the end.
-   subroutine descend(b, i, near, w, s, found)
+   !> Puts into `c` by how much its pair or drive is open at least while all others of block `i` are closed; 0: no such
+   !> position is found. The values of `s` stay.
+   subroutine open_alone(b, i, near, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: near
+      type(room_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      type(convergence_t) :: one
+      logical :: own(0:w%shape%rows)
+      real(wp) :: found
+      integer :: k, m
+
+      c%open%value = 0.0_wp
+      if (w%shape%n > max_alone) return
+      own = .false.
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m), row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
+            if (row%pair == c%open%pair .and. row%drive == c%open%drive .and. (row%angular .eqv. c%open%is_angle)) &
+               own([g%row_x, g%row_y]) = .true.
+         end associate
+      end do
+      do k = 0, max_starts - 1, 2
+         call set_values(b, i, around(w%best, k), s)
+         do m = 1, size(stiff)
+            call descend(b, i, near, merge(1.0_wp, stiff(m), own(1:)), w, s, found)
+         end do
+         call assemble_dense(b, i, s, w%a, w%r)
+         call note_closure_error(b, i, w%r, one)
+         if (any(.not. own(1:) .and. .not. stiff(2)*abs(w%r(:w%shape%rows)) <= one%open%value)) cycle
+         if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
+      end do
+      call set_values(b, i, w%best, s)
+   end subroutine open_alone
+
+   !> Start number `k` around `x`: off by nothing at first, then by more and more, up to half a turn.
+   pure function around(x, k) result(y)
+      real(wp), intent(in) :: x(:)
+      integer, intent(in) :: k
+      real(wp) :: y(size(x))
+      integer :: m
+
+      y = [(2.0_wp*modulo(golden*real(k*size(x) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(x))]
+      y = x + 3.0_wp*real(k, wp)/real(max_starts, wp)*y
+   end function around
+
+   !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`;
+   !> `found`: the largest of these products at the end.
+   subroutine descend(b, i, near, weights, w, s, found)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: near, weights(:)
       type(room_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: found
@@ -93,18 +146,18 @@ contains
       damping = first_damping
       call assemble_dense(b, i, s, w%a, w%r)
       do iteration = 1, max_iterations
-         found = maxval(abs(w%r(:w%shape%rows)))
+         found = maxval(weights*abs(w%r(:w%shape%rows)))
          if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
-         square = sum(w%r(:w%shape%rows)**2)
+         square = sum((weights*w%r(:w%shape%rows))**2)
          w%x = values_of(b, i, s)
          ! Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
          associate (m => w%shape%rows, n => w%shape%n)
             w%b = 0.0_wp
             do k = 1, n
-               w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = w%a((k - 1)*m + 1:k*m)
+               w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = weights*w%a((k - 1)*m + 1:k*m)
                w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
             end do
-            w%d(:m) = w%r(:m)
+            w%d(:m) = weights*w%r(:m)
             w%d(m + 1:) = 0.0_wp
             call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
             step = maxval(abs(w%d(:n)))
@@ -112,7 +165,7 @@ contains
          end associate
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
          call assemble_dense(b, i, s, w%a, w%r)
-         if (sum(w%r(:w%shape%rows)**2) < square) then
+         if (sum((weights*w%r(:w%shape%rows))**2) < square) then
             damping = max(0.2_wp*damping, min_damping)
             if (step <= min_step) exit
          else
@@ -121,7 +174,6 @@ contains
             call assemble_dense(b, i, s, w%a, w%r)
          end if
       end do
-      found = maxval(abs(w%r(:w%shape%rows)))
+      found = maxval(weights*abs(w%r(:w%shape%rows)))
    end subroutine descend
-
 end module levenberg_marquardt
