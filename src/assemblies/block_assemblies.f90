@@ -106,7 +106,7 @@ contains
       subroutine take_end(e)
          type(path_end_t), intent(in) :: e
          type(convergence_t) :: c
-         real(wp) :: x(f%n), residual
+         real(wp) :: x(size(f%turns)), residual
          logical :: is_real
          integer :: k
 
@@ -132,7 +132,7 @@ contains
          do k = 1, size(found%x, 2)
             if (apart(x, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
          end do
-         found%x = reshape([found%x, x], [f%n, size(found%x, 2) + 1])
+         found%x = reshape([found%x, x], [size(x), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
          found%is_open = [found%is_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))

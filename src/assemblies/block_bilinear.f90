@@ -10,15 +10,16 @@ module block_bilinear
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t
    use block_equations, only: find_known_parts
-   use isotropic, only: equal_unknowns_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
+   use isotropic, only: directions_of_slides, given, direction_factor, linear_form, size_of_loop, i_unit
    use bilinear, only: bilinear_t, path_end_t, rounding
    implicit none
    private
    public :: block_form_t, make_form, solves_all, real_values
 
    !> The system of a block, from whose solutions its unknowns follow.
-   type, extends(equal_unknowns_t) :: block_form_t
-      complex(dp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
+   type :: block_form_t
+      integer, allocatable :: turns(:)                !< (n) see `directions_of_slides`
+      complex(dp), allocatable :: basis(:, :)         !< (0:n, 0:p) of directions and slides from the system's unknowns
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
       logical :: is_impossible = .false.              !< its linear equations contradict one another
       type(bilinear_t) :: system
@@ -35,7 +36,7 @@ module block_bilinear
 
    !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
    type :: projection_t
-      complex(wp), allocatable :: l(:)                !< (q + 1) a linear form, its constant part first
+      complex(wp), allocatable :: l(:)                !< (n + 1) a linear form, its constant part first
       real(wp) :: size_of = 0.0_wp                    !< the sum of the sizes of its terms, in the unit of the loop
       complex(wp) :: factor = 1.0_wp
       integer :: at = 0
@@ -45,8 +46,8 @@ module block_bilinear
    !> Equations in the making.
    type :: draft_t
       integer :: linear = 0, bilinear = 0
-      complex(wp), allocatable :: a(:, :)             !< (0:q, linear): sum over k of a_k x_k = 0
-      complex(wp), allocatable :: c(:, :, :)          !< (0:q, 0:q, bilinear)
+      complex(wp), allocatable :: a(:, :)             !< (0:n, linear): sum over k of a_k x_k = 0
+      complex(wp), allocatable :: c(:, :, :)          !< (0:n, 0:n, bilinear)
       real(wp), allocatable :: size_of(:)             !< (bilinear) of the terms of each: see projection_t
       type(projection_t), allocatable :: projections(:)
    end type draft_t
@@ -60,38 +61,69 @@ contains
       type(state_t), intent(inout) :: s
       type(block_form_t), intent(out) :: f
       type(draft_t) :: d
-      integer :: m, rows
+      integer :: m
 
       call find_known_parts(b, i, s)
-      call make_group(b, i, s, f%equal_unknowns_t)
-      rows = b%list(i)%shape%rows
-      allocate (d%projections(0))
-      allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
-      allocate (d%size_of(rows + f%q), source=1.0_wp)
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         if (b%loops(m)%kind /= loop_angles) call add_loop(b, i, m, s, f, d)
-      end do
-      call add_projections(d)
-      call add_pairs(f, d)
-      call reduce(f, d, rows > f%n)
+      f%turns = directions_of_slides(b, i)
+      associate (rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
+         allocate (d%projections(0))
+         allocate (d%a(0:n, rows), d%c(0:n, 0:n, rows + n), source=(0.0_wp, 0.0_wp))
+         allocate (d%size_of(rows + n), source=1.0_wp)
+         do m = b%list(i)%first_loop, b%list(i)%last_loop
+            if (b%loops(m)%kind == loop_angles) then
+               call add_angles(b, i, m, s, f, d)
+            else
+               call add_loop(b, i, m, s, n, d)
+            end if
+         end do
+         call add_projections(d)
+         call add_pairs(f, d)
+         call reduce(f, d, rows > n)
+      end associate
    end subroutine make_form
 
-   !> Adds the equations of loop `m` of block `i`: each a projection of the loop.
-   subroutine add_loop(b, i, m, s, f, d)
+   !> Adds what loop `m` of block `i` asks of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
+   pure subroutine add_angles(b, i, m, s, f, d)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, m
       type(state_t), intent(in) :: s
       type(block_form_t), intent(in) :: f
       type(draft_t), intent(inout) :: d
+      complex(wp) :: ratio
+      integer :: less
+
+      associate (g => b%loops(m))
+         if (g%orientation_column == g%less_column) return
+         d%linear = d%linear + 1
+         if (g%orientation <= b%orientations) then
+            less = g%less_column
+            ratio = exp(i_unit*given(b, i, g%row_x, s))*direction_factor(less, g%less, s)
+            d%a(g%orientation_column, d%linear) = direction_factor(g%orientation_column, g%orientation, s)
+         else
+            less = f%turns(g%orientation_column)
+            ratio = given(b, i, g%row_x, s) + s%u(g%less)%value
+            d%a(g%orientation_column, d%linear) = 1.0_wp
+         end if
+         d%a(less, d%linear) = d%a(less, d%linear) - ratio
+      end associate
+   end subroutine add_angles
+
+   !> Adds the equations of loop `m` of block `i`, of `n` unknowns: each a projection of the loop.
+   subroutine add_loop(b, i, m, s, n, d)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, m, n
+      type(state_t), intent(in) :: s
+      type(draft_t), intent(inout) :: d
       type(projection_t) :: one
 
-      allocate (one%l(f%q + 1))
-      one%l(:) = linear_form(b, m, s, f%equal_unknowns_t)
+      allocate (one%l(n + 1))
+      one%l(:) = linear_form(b, m, s, n)
       one%size_of = size_of_loop(b, m, s)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
-            call find_direction(f%equal_unknowns_t, g%orientation_column, g%orientation, s, one%at, one%factor)
-            one%factor = one%factor*cmplx(b%numbers%loops(m)%direction%x, b%numbers%loops(m)%direction%y, wp)
+            one%at = g%orientation_column
+            one%factor = direction_factor(one%at, g%orientation, s) &
+               *cmplx(b%numbers%loops(m)%direction%x, b%numbers%loops(m)%direction%y, wp)
          end if
          if (g%row_x > 0) call add(g%row_x)
          one%factor = i_unit
@@ -183,7 +215,7 @@ contains
       type(draft_t), intent(inout) :: d
       integer :: k, j
 
-      do k = 1, f%q
+      do k = 1, size(f%turns)
          if (f%turns(k) < 0) then
             do j = 1, d%bilinear
                d%c(0, 0, j) = d%c(0, 0, j) + d%c(k, k, j)
@@ -191,7 +223,7 @@ contains
             end do
          end if
       end do
-      do k = 1, f%q
+      do k = 1, size(f%turns)
          d%bilinear = d%bilinear + 1
          if (f%turns(k) < 0) then
             d%c(k, k, d%bilinear) = 1.0_wp
@@ -216,7 +248,7 @@ contains
       level = merge(surplus_level, zero_level, is_redundant)
       call find_null_space(transpose(d%a(:, :d%linear)), level, basis)
       p = size(basis, 2) - 1
-      allocate (f%basis(0:f%q, 0:p))
+      allocate (f%basis(0:size(f%turns), 0:p))
       f%basis(:, :) = cmplx(basis, kind=dp)
       allocate (c(0:p, 0:p, d%bilinear), independent((p + 1)**2, 0))
       count_of = 0
@@ -227,9 +259,8 @@ contains
             size_of = max(d%size_of(j), maxval(abs(d%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))
-            if (is_redundant) then
-               if (.not. is_new(reshape(one, [(p + 1)**2]), independent)) cycle
-            end if
+            ! Of angles that differ by what is given one equation is left twice.
+            if (.not. is_new(reshape(one, [(p + 1)**2]), level, independent)) cycle
          end associate
          count_of = count_of + 1
       end do
@@ -249,9 +280,10 @@ contains
    end subroutine reduce
 
    !> The coefficients `one` are no combination of those before, of which `independent` (size(one), any number) are
-   !> orthogonal combinations of length 1; it becomes one column wider.
-   logical function is_new(one, independent)
+   !> orthogonal combinations of length 1; it becomes one column wider. Parts of `one` below `level` are rounding.
+   logical function is_new(one, level, independent)
       complex(wp), intent(in) :: one(:)
+      real(wp), intent(in) :: level
       complex(wp), allocatable, intent(inout) :: independent(:, :)
       complex(wp) :: left(size(one))
       integer :: k
@@ -260,7 +292,7 @@ contains
       do k = 1, size(independent, 2)
          left = left - dot_product(independent(:, k), left)*independent(:, k)
       end do
-      is_new = norm2(abs(left)) > surplus_level*norm2(abs(one))
+      is_new = norm2(abs(left)) > level*norm2(abs(one))
       if (is_new) independent = reshape([independent, left/norm2(abs(left))], [size(one), size(independent, 2) + 1])
    end function is_new
 
@@ -284,7 +316,7 @@ contains
       real(dp), intent(in) :: level
       real(wp), intent(out) :: x(:)
       logical, intent(out) :: is_real
-      complex(dp) :: w(0:f%q), v(0:f%q)
+      complex(dp) :: w(0:size(f%turns)), v(0:size(f%turns))
       integer :: k
 
       w = matmul(f%basis, e%x)
@@ -293,16 +325,12 @@ contains
       v = conjg(v/v(0))
       is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
       w = 0.5_dp*(w + v)
-      do k = 1, f%n
-         x(k) = f%offset(k)
-         if (f%base(k) == 0) cycle
-         associate (at => f%place(f%base(k)))
-            if (f%turns(at) < 0) then
-               x(k) = x(k) + real(atan2(aimag(w(at)), real(w(at))), wp)
-            else
-               x(k) = x(k) + real(w(at)*conjg(w(f%turns(at))), wp)
-            end if
-         end associate
+      do k = 1, size(x)
+         if (f%turns(k) < 0) then
+            x(k) = real(atan2(aimag(w(k)), real(w(k))), wp)
+         else
+            x(k) = real(w(k)*conjg(w(f%turns(k))), wp)
+         end if
       end do
    end subroutine real_values
 end module block_bilinear

@@ -137,10 +137,9 @@ contains
       type(placed_t), intent(in) :: from, to
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
-      type(workspace_t) :: work
+      type(workspace_t), allocatable :: work            ! few steps need it
 
       tube = new_tube(e%blocks, size(e%laws))
-      work = new_workspace(e%blocks)
       proof%is_proved = .true.
       call prove_part(from, to, min_part*abs(to%t - from%t))
 
@@ -185,6 +184,7 @@ contains
             p%state%drive_value(0:2, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
          end do
          is_found = .false.
+         if (.not. allocated(work)) work = new_workspace(e%blocks)
          do k = 1, size(list)
             c = convergence_t()
             call solve_block(e%blocks, list(k), e%tolerance, work, p%state, c)
