@@ -49,9 +49,9 @@ module homotopy
 
 contains
 
-   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions. `start`: where the paths
-   !> begin, if it is for that p; otherwise afterwards points of all these paths, from which those of a similar system are
-   !> short.
+   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions. `start`: where the
+   !> paths begin, if it is for that p; otherwise afterwards points of all these paths, from which those of a similar
+   !> system are short.
    subroutine follow_paths(f, start, ends, moves)
       type(bilinear_t), intent(in) :: f
       type(path_start_t), intent(inout) :: start
@@ -175,8 +175,8 @@ contains
       end do
    end subroutine choose_next
 
-   !> Follows every path of `f` from the `start`; `near`: their points at t = near_end, if all come so far. Two paths that
-   !> come to one regular end have jumped on the way: they have failed.
+   !> Follows every path of `f` from the `start`; `near`: their points at t = near_end, if all come so far. Two paths
+   !> that come to one regular end have jumped on the way: they have failed.
    subroutine follow_all(f, careful, start, ends, near)
       type(bilinear_t), intent(in) :: f
       real(dp), intent(in) :: careful

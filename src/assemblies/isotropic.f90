@@ -37,8 +37,8 @@ contains
       end associate
    end function given
 
-   !> What unknown number `u` of all, in column `column` of its block, is a multiple of: 1 of a direction of the block, a
-   !> known direction otherwise.
+   !> What unknown number `u` of all, in column `column` of its block, is a multiple of: 1 of a direction of the block,
+   !> a known direction otherwise.
    pure complex(wp) function direction_factor(column, u, s) result(factor)
       integer, intent(in) :: column, u
       type(state_t), intent(in) :: s
