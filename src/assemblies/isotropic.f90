@@ -20,7 +20,7 @@ contains
       integer :: turns(b%list(i)%shape%n)
       integer :: k
 
-      turns = -1
+      turns = merge(-1, 0, b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations)
       do k = b%loops(b%list(i)%first_loop)%first_slide, b%loops(b%list(i)%last_loop)%last_slide
          if (b%slides(k)%column > 0) turns(b%slides(k)%column) = b%slides(k)%orientation_column
       end do
