@@ -141,73 +141,45 @@ contains
       end subroutine add
    end subroutine add_loop
 
-   !> Two projections of one loop on different directions that turn together are one linear equation: the components of
-   !> a closed loop, or a slide that is driven and its guide. The others are bilinear.
+   !> Two projections of one loop, in whatever unit, on different directions that turn together are one linear equation:
+   !> the components of a closed loop, or a slide that is driven and its guide. The others are bilinear.
    subroutine add_projections(d)
       type(draft_t), intent(inout) :: d
       logical :: is_done(size(d%projections))
-      integer :: j, k
+      real(wp) :: turn, ratio
+      integer :: j, k, m
 
       is_done = .false.
       do j = 1, size(is_done)
-         do k = j + 1, size(is_done)
-            if (is_done(j) .or. is_done(k)) cycle
-            if (.not. are_of_one_loop(d%projections(j), d%projections(k))) cycle
-            call add_whole_loop(d%projections(j), d%projections(k), d)
-            is_done([j, k]) = .true.
-         end do
-         if (.not. is_done(j)) call add_real_part(d%projections(j), d)
+         associate (one => d%projections(j))
+            do k = j + 1, size(is_done)
+               associate (other => d%projections(k))
+                  turn = aimag(conjg(one%factor)*other%factor)
+                  if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(zero_level)) cycle
+                  if (maxval(abs(one%l)) <= 0.0_wp .or. maxval(abs(other%l)) <= 0.0_wp) cycle
+                  m = maxloc(abs(one%l), 1)
+                  ratio = real(other%l(m)/one%l(m))
+                  if (maxval(abs(other%l - ratio*one%l)) > zero_level*maxval(abs(other%l))) cycle
+                  ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
+                  d%linear = d%linear + 1
+                  d%a(:, d%linear) = one%l
+                  d%a(one%at, d%linear) = d%a(one%at, d%linear) &
+                     - i_unit*(other%value/ratio*one%factor - one%value*other%factor)/turn
+                  is_done([j, k]) = .true.
+               end associate
+            end do
+            if (is_done(j)) cycle
+            d%bilinear = d%bilinear + 1
+            associate (c => d%c(:, :, d%bilinear), at => one%at + 1)
+               ! associate loses the lower bound: element 1 is that of 1.
+               c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
+               c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
+               c(1, 1) = c(1, 1) - one%value
+            end associate
+            d%size_of(d%bilinear) = one%size_of + abs(one%value)
+         end associate
       end do
    end subroutine add_projections
-
-   !> `one` and `other` project the same loop, of more than nothing and in whatever unit, on directions that differ and
-   !> turn together.
-   pure logical function are_of_one_loop(one, other)
-      type(projection_t), intent(in) :: one, other
-
-      are_of_one_loop = one%at == other%at .and. abs(aimag(conjg(one%factor)*other%factor)) > sqrt(zero_level) .and. &
-         minval([maxval(abs(one%l)), maxval(abs(other%l))]) > 0.0_wp
-      if (are_of_one_loop) are_of_one_loop = &
-         maxval(abs(other%l - ratio(one, other)*one%l)) <= zero_level*maxval(abs(other%l))
-   end function are_of_one_loop
-
-   !> The loop of `other` over that of `one`, if they are the same one.
-   pure real(wp) function ratio(one, other)
-      type(projection_t), intent(in) :: one, other
-      integer :: k
-
-      k = maxloc(abs(one%l), 1)
-      ratio = real(other%l(k)/one%l(k))
-   end function ratio
-
-   !> Adds the loop l = r w for which Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
-   subroutine add_whole_loop(one, other, d)
-      type(projection_t), intent(in) :: one, other
-      type(draft_t), intent(inout) :: d
-      complex(wp) :: r
-      real(wp) :: value
-
-      value = other%value/ratio(one, other)
-      r = i_unit*(value*one%factor - one%value*other%factor)/aimag(conjg(one%factor)*other%factor)
-      d%linear = d%linear + 1
-      d%a(:, d%linear) = one%l
-      d%a(one%at, d%linear) = d%a(one%at, d%linear) - r
-   end subroutine add_whole_loop
-
-   !> Adds the projection `one` as it is.
-   subroutine add_real_part(one, d)
-      type(projection_t), intent(in) :: one
-      type(draft_t), intent(inout) :: d
-
-      d%bilinear = d%bilinear + 1
-      associate (c => d%c(:, :, d%bilinear), at => one%at + 1)
-         ! associate loses the lower bound: element 1 is that of 1.
-         c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
-         c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
-         c(1, 1) = c(1, 1) - one%value
-      end associate
-      d%size_of(d%bilinear) = one%size_of + abs(one%value)
-   end subroutine add_real_part
 
    !> Adds w w' = 1 and z w' = z' w, and puts 1 for w w' in the other equations.
    subroutine add_pairs(f, d)

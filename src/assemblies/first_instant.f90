@@ -173,7 +173,6 @@ contains
       type(convergence_t), intent(out) :: c
       type(block_positions_t) :: every
       real(wp) :: start(e%blocks%list(i)%shape%n)
-      logical :: is_isolated
       integer :: k
 
       allocate (found%x(size(start), 0), found%distance(0))
@@ -184,30 +183,18 @@ contains
       if (e%blocks%list(i)%direct .or. is_certain(c)) return
 
       call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i), every)
-      is_isolated = .not. (every%moves .or. every%group > max_group)
-      found%are_all = is_isolated .and. every%failed == 0
-      k = size(found%distance)
-      if (k == 1 .and. is_isolated) found%are_all = found%are_all .and. is_among(found%x(:, 1))
       do k = 1, size(every%sign_of)
          call note_position(every%x(:, k), every%sign_of(k) == 0)
       end do
+      ! There is one more if that of Newton's method is none of them.
+      found%are_all = .not. (every%moves .or. every%group > max_group .or. every%failed > 0) &
+         .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
       call set_values(e%blocks, i, start, e%state)
       call come_near(e, i, c)
       if (is_solved(c)) call note_position(values_of(e%blocks, i, e%state), c%singular)
 
    contains
-
-      !> The position `x` is one of `every`.
-      logical function is_among(x)
-         real(wp), intent(in) :: x(:)
-         integer :: k
-
-         is_among = .false.
-         do k = 1, size(every%sign_of)
-            is_among = is_among .or. are_alike(x, every%x(:, k), c%singular .or. every%sign_of(k) == 0)
-         end do
-      end function is_among
 
       !> The positions `x` and `y` are one, as far as is known; whole turns do not count.
       logical function are_alike(x, y, is_singular)

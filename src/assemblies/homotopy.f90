@@ -329,36 +329,27 @@ contains
       complex(dp), intent(in) :: z(:)
       complex(dp), intent(out) :: next(:)
       logical, intent(out) :: is_done
-      complex(dp), dimension(size(z)) :: k1, k2, k3, k4
-
-      next = z
-      call find_tangent(h, t, z, k1, is_done)
-      if (is_done) call find_tangent(h, t + 0.5_dp*step, z + 0.5_dp*step*k1, k2, is_done)
-      if (is_done) call find_tangent(h, t + 0.5_dp*step, z + 0.5_dp*step*k2, k3, is_done)
-      if (is_done) call find_tangent(h, t + step, z + step*k3, k4, is_done)
-      if (is_done) next = z + step*(k1 + 2.0_dp*(k2 + k3) + k4)/6.0_dp
-      is_done = is_done .and. size_of(next - z) <= size_of(z)
-   end subroutine predict
-
-   !> dz/dt at (`z`, `t`).
-   subroutine find_tangent(h, t, z, tangent, is_done)
-      type(paths_t), intent(in) :: h
-      real(dp), intent(in) :: t
-      complex(dp), intent(in) :: z(:)
-      complex(dp), intent(out) :: tangent(:)
-      logical, intent(out) :: is_done
-      complex(dp) :: a(size(z), size(z)), r(size(z))
-      integer :: pivots(size(z))
+      real(dp), parameter :: part(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
+      real(dp), parameter :: weight(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
+      complex(dp) :: a(size(z), size(z)), x(size(z)), r(size(z)), tangent(size(z))
+      integer :: pivots(size(z)), k
       logical :: is_singular
 
+      next = z
       tangent = 0.0_dp
-      is_done = size_of(z) <= 1.0_dp/epsilon(1.0_dp)
-      if (.not. is_done) return
-      call assemble(h, t, z, a, r, tangent)
-      call factor_complex(size(z), a, pivots, is_singular)
-      is_done = .not. is_singular
-      if (is_done) call solve_complex(size(z), a, pivots, tangent)
-   end subroutine find_tangent
+      do k = 1, size(part)
+         x = z + part(k)*step*tangent
+         is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
+         if (.not. is_done) return
+         call assemble(h, t + part(k)*step, x, a, r, tangent)
+         call factor_complex(size(z), a, pivots, is_singular)
+         is_done = .not. is_singular
+         if (.not. is_done) return
+         call solve_complex(size(z), a, pivots, tangent)
+         next = next + weight(k)*step*tangent
+      end do
+      is_done = size_of(next - z) <= size_of(z)
+   end subroutine predict
 
    !> Newton's method at `t`; `correction`: the first one, in parts of z. `is_done`: it was small, the others smaller.
    subroutine correct(h, t, z, correction, is_done)

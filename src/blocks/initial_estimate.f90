@@ -2,15 +2,15 @@
 !> x and y of its links with care and no angles, or wrong ones: then the places of the pairs show how the links lie.
 !>
 !> For fixed places the sum of the squared closure errors of the pairs is, as a function of the angle u of one
-!> orientation class,
-!>    c cos u + s sin u + p cos^2 u + q cos u sin u + w sin^2 u
-!> It is minimized over one class after another, until no angle changes. Only those pairs count whose point on the
-!> other link has a known place: its origin, or a point of a link whose angle is known already.
+!> orientation class, but for a constant,
+!>    c cos u + s sin u + p cos 2u + q sin 2u
+!> Five values give it. It is minimized over one class after another, until no angle changes. Only those pairs count
+!> whose point on the other link has a known place: its origin, or a point of a link whose angle is known already.
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
    use grouping, only: sorted_t, sorted
-   use planar, only: direction, rotated, quarter_turn, cross, point_of, pi, without_turns
+   use planar, only: direction, quarter_turn, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use scales, only: solver_length
    use links_tree, only: tree_t, axes_t
@@ -65,24 +65,24 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(wp), intent(in) :: phi(:)
-      real(wp) :: closure_error(2), angle
+      real(wp) :: angles(2)
 
-      closure_error = estimated_place(m, m%pairs(i)%point_j, phi) - estimated_place(m, m%pairs(i)%point_i, phi)
-      angle = phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha
-      slide = dot_product(closure_error, direction(angle))
+      angles = phi(m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link)
+      slide = dot_product(closure_error_of(m, i, angles), direction(angles(1) + m%pairs(i)%alpha))
    end function estimated_slide
 
-   !> Place (2) of point `i` with its link at the deck's place and the angle of `phi` (links).
-   pure function estimated_place(m, i, phi) result(p)
+   !> (2) From the first point of pair `k` to the other, their links at the deck's places and the `angles` (2).
+   pure function closure_error_of(m, k, angles) result(closure_error)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-      real(wp), intent(in) :: phi(:)
-      real(wp) :: p(2)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: angles(2)
+      real(wp) :: closure_error(2)
 
-      associate (link => m%points(i)%link)
-         p = point_of([m%links(link)%position(:2), phi(link)], m%points(i)%offset)
+      associate (i => m%points(m%pairs(k)%point_i), j => m%points(m%pairs(k)%point_j))
+         closure_error = point_of([m%links(j%link)%position(:2), angles(2)], j%offset) &
+            - point_of([m%links(i%link)%position(:2), angles(1)], i%offset)
       end associate
-   end function estimated_place
+   end function closure_error_of
 
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
    function estimated_directions(m, t, a, span) result(phi)
@@ -133,21 +133,29 @@ contains
       !> form is small at all angles. Then the places of its points are known as well.
       subroutine minimize_closure_errors(u)
          real(wp), intent(inout) :: u(0:)
-         real(wp) :: e(5)
-         integer :: i, k, orientation
+         real(wp) :: e(4), before, angle, sum_of
+         integer :: i, j, k, orientation
 
          do orientation = 1, t%orientations
+            before = u(orientation)
             e = 0.0_wp
-            do i = classes%first(orientation), classes%first(orientation + 1) - 1
-               associate (link => classes%member(i))
-                  do k = t%near%first(link), t%near%first(link + 1) - 1
-                     if (is_reported(t%near%member(k), orientation)) &
-                        call add_pair(t%near%member(k), orientation, u, e)
-                  end do
-               end associate
+            do j = 0, 4
+               angle = 0.4_wp*pi*real(j, wp)
+               u(orientation) = angle
+               sum_of = 0.0_wp
+               do i = classes%first(orientation), classes%first(orientation + 1) - 1
+                  associate (link => classes%member(i))
+                     do k = t%near%first(link), t%near%first(link + 1) - 1
+                        if (is_reported(t%near%member(k), orientation)) &
+                           sum_of = sum_of + opening_of(u, t%near%member(k))**2
+                     end do
+                  end associate
+               end do
+               e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
             end do
+            u(orientation) = before
             if (maxval(abs(e)) <= min_form_part*length**2) cycle
-            u(orientation) = least(e, u(orientation))
+            u(orientation) = least(e, before)
             where (t%orientation(m%points%link) == orientation) placed = .true.
          end do
       end subroutine minimize_closure_errors
@@ -161,54 +169,6 @@ contains
                .and. (placed(j) .or. t%orientation(m%points(j)%link) == orientation)
          end associate
       end function is_reported
-
-      !> Adds what pair `k` gives to the form `e` of `orientation`.
-      pure subroutine add_pair(k, orientation, u, e)
-         integer, intent(in) :: k, orientation
-         real(wp), intent(in) :: u(0:)
-         real(wp), intent(inout) :: e(5)
-         real(wp) :: fixed(2), body_vector(2), n(2), a, b, h
-
-         fixed = 0.0_wp
-         body_vector = 0.0_wp
-         call split(m%pairs(k)%point_i, orientation, 1.0_wp, u, fixed, body_vector)
-         call split(m%pairs(k)%point_j, orientation, -1.0_wp, u, fixed, body_vector)
-         if (m%pairs(k)%kind == pair_revolute) then
-            e(1) = e(1) + 2.0_wp*dot_product(fixed, body_vector)
-            e(2) = e(2) + 2.0_wp*cross(body_vector, fixed)
-         else
-            n = normal(k)
-            a = dot_product(fixed, n)
-            b = cross(n, fixed)
-            h = dot_product(body_vector, n) - m%pairs(k)%offset
-            e = e + [2.0_wp*h*a, 2.0_wp*h*b, a*a, 2.0_wp*a*b, b*b]
-         end if
-      end subroutine add_pair
-
-      !> Adds `sign_of` times the place of `point` to what stays where it is and what turns with `orientation`.
-      pure subroutine split(point, orientation, sign_of, u, fixed, body_vector)
-         integer, intent(in) :: point, orientation
-         real(wp), intent(in) :: sign_of, u(0:)
-         real(wp), intent(inout) :: fixed(2), body_vector(2)
-         integer :: link
-
-         link = m%points(point)%link
-         fixed = fixed + sign_of*m%links(link)%position(:2)
-         if (t%orientation(link) == orientation) then
-            body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(a%angle_offset(link)))
-         else
-            fixed = fixed + sign_of*rotated(m%points(point)%offset, &
-               direction(a%angle_offset(link) + u(t%orientation(link))))
-         end if
-      end subroutine split
-
-      !> (2) The normal of the guide of pair `k` in the axes of its orientation class.
-      pure function normal(k) result(n)
-         integer, intent(in) :: k
-         real(wp) :: n(2)
-
-         n = quarter_turn(direction(a%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
-      end function normal
 
       !> A link of the classes `changed` (0:classes) has a pair, both sides of which have their places, that is open by
       !> more than a part of that link's size, from the places of the deck and the angles `u`. Its size is the longest
@@ -229,7 +189,8 @@ contains
                           j => m%pairs(t%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
                   arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
-                  if (m%pairs(pair)%kind /= pair_revolute) arm = arm + norm2(closure_error_of(u, pair))
+                  if (m%pairs(pair)%kind /= pair_revolute) &
+                     arm = arm + norm2(closure_error_of(m, pair, angles_of(u, pair)))
                   size_of = max(size_of, arm)
                   open = max(open, opening_of(u, pair))
                end associate
@@ -255,37 +216,34 @@ contains
       pure real(wp) function opening_of(u, k) result(opening)
          real(wp), intent(in) :: u(0:)
          integer, intent(in) :: k
+         real(wp) :: angles(2), closure_error(2)
 
-         if (m%pairs(k)%kind == pair_revolute) then
-            opening = norm2(closure_error_of(u, k))
-         else
-            associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
-               opening = abs(dot_product(closure_error_of(u, k), rotated(normal(k), direction(u_i))) &
-                  - m%pairs(k)%offset)
-            end associate
-         end if
+         angles = angles_of(u, k)
+         closure_error = closure_error_of(m, k, angles)
+         opening = norm2(closure_error)
+         if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset &
+            + dot_product(closure_error, quarter_turn(direction(angles(1) + m%pairs(k)%alpha))))
       end function opening_of
 
-      !> (2) From the one point of pair `k` to the other.
-      pure function closure_error_of(u, k) result(closure_error)
+      !> (2) The angles of the links of pair `k`.
+      pure function angles_of(u, k) result(angles)
          real(wp), intent(in) :: u(0:)
          integer, intent(in) :: k
-         real(wp) :: closure_error(2), none(2)
+         real(wp) :: angles(2)
+         integer :: links(2)
 
-         closure_error = 0.0_wp
-         none = 0.0_wp
-         call split(m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
-         call split(m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
-      end function closure_error_of
+         links = m%points([m%pairs(k)%point_i, m%pairs(k)%point_j])%link
+         angles = a%angle_offset(links) + u(t%orientation(links))
+      end function angles_of
    end function estimated_directions
 
    !> The angle at which the form `e` is least, `start` where it is about as small.
    pure real(wp) function least(e, start) result(u)
-      real(wp), intent(in) :: e(5), start
+      real(wp), intent(in) :: e(4), start
       real(wp) :: v, slope, lipschitz
       integer :: i
 
-      if (maxval(abs(e(3:))) <= 0.0_wp) then
+      if (maxval(abs(e(3:))) <= alike*sum(abs(e))) then
          u = atan2(-e(2), -e(1))
          return
       end if
@@ -296,20 +254,16 @@ contains
          if (form(e, v) < form(e, u) - alike*sum(abs(e))) u = v
       end do
       do i = 1, 3
-         associate (c => cos(u), s => sin(u), c2 => cos(2.0_wp*u), s2 => sin(2.0_wp*u))
-            slope = -e(1)*s + e(2)*c + (e(5) - e(3))*s2 + e(4)*c2
-            lipschitz = -e(1)*c - e(2)*s + 2.0_wp*(e(5) - e(3))*c2 - 2.0_wp*e(4)*s2
-         end associate
+         slope = form([e(2), -e(1), 2.0_wp*e(4), -2.0_wp*e(3)], u)
+         lipschitz = -form([e(1), e(2), 4.0_wp*e(3), 4.0_wp*e(4)], u)
          if (lipschitz > abs(slope)) u = u - slope/lipschitz
       end do
    end function least
 
    !> The trigonometric form with coefficients `e` at the angle `u`.
    pure real(wp) function form(e, u)
-      real(wp), intent(in) :: e(5), u
+      real(wp), intent(in) :: e(4), u
 
-      associate (c => cos(u), s => sin(u))
-         form = e(1)*c + e(2)*s + e(3)*c*c + e(4)*c*s + e(5)*s*s
-      end associate
+      form = dot_product(e, [direction(u), direction(2.0_wp*u)])
    end function form
 end module initial_estimate

@@ -119,14 +119,11 @@ contains
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: k
       integer, allocatable :: links(:)
-      logical :: of_block(size(e%orientation_of))
       integer :: i
 
-      do i = 1, size(of_block)
-         of_block(i) = .false.
-         if (e%orientation_of(i) > 0) of_block(i) = e%blocks%block_of(e%orientation_of(i)) == k
-      end do
-      links = pack([(i, i=1, size(of_block))], of_block)
+      associate (block_of => [0, e%blocks%block_of])
+         links = pack([(i, i=1, size(e%orientation_of))], block_of(1 + e%orientation_of) == k)
+      end associate
    end function links_of_block
 
    !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.
