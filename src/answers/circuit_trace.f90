@@ -93,7 +93,7 @@ contains
       type(circuit_t), intent(out) :: circuit
       type(curve_point_t) :: a, b, again
       real(wp) :: h
-      integer :: n, sure
+      integer :: n, sure, k
       logical :: ok, closes, leaves
 
       allocate (circuit%points(64), circuit%changes(0))
@@ -126,7 +126,16 @@ contains
             call find_root(c, a, b, of_size, c%far, again, ok)
             if (ok) b = again
          end if
-         call find_dead_points()
+         ! The dead points between point `sure`, the last one at which the drive's sense is known, and `b`. Where they
+         ! are no neighbours it turns back too near to a change point to tell the two apart.
+         if (sure > 0 .and. is_sure(b)) then
+            if (sure == n) then
+               call append_dead_points(b)
+            else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
+               k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
+               circuit%points(k)%is_dead = .true.
+            end if
+         end if
          call append(b)
          if (is_sure(b)) sure = n
          if (closes) circuit%ends(2) = end_closed
@@ -161,20 +170,6 @@ contains
          end associate
          circuit%changes = [circuit%changes, change]
       end subroutine pass_change_point
-
-      !> Appends or marks the dead points between point `sure`, the last of the `n` points at which the drive's sense is
-      !> known, and `b`. Where they are no neighbours it turns back too near to a change point to tell the two apart.
-      subroutine find_dead_points()
-         integer :: k
-
-         if (sure == 0 .or. .not. is_sure(b)) return
-         if (sure == n) then
-            call append_dead_points(b)
-         else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
-            k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
-            circuit%points(k)%is_dead = .true.
-         end if
-      end subroutine find_dead_points
 
       !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes
       !> its sign; two where it does so and back, about the place at which it is least.
