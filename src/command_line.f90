@@ -147,7 +147,7 @@ contains
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: word
-      integer :: i, k
+      integer :: i, k, first
       logical :: has_deck
 
       options%deck = ''
@@ -220,10 +220,29 @@ contains
             end if
          end select
       end do
-      if (.not. allocated(failure)) call check_study()
-      if (.not. allocated(failure)) call check_files()
-      if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
-         find_form(options%deck) == form_unknown) then
+      ! A study and times are no listing; a study reads its deck more than once.
+      if ((options%study .or. options%time) .and. len(options%show) == 0) then
+         if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
+            .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
+            .or. (options%study .and. options%time)) then
+            call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
+               //' CAN ONLY BE COMBINED WITH -o AND --quiet')
+         else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
+            call reject('OPTION --study NEEDS THE DECK AS A FILE')
+         end if
+      end if
+      ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
+      if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
+         call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
+      first = findloc(to_standard_output(options%files), .true., dim=1)
+      do k = 1, out_last
+         if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
+            call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k)%word)//' NEEDS')
+         if (to_standard_output(options%files(k)) .and. k > first) &
+            call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first)%word)//' OR ' &
+               //trim(file_options(k)%word))
+      end do
+      if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
          word = ''
          do k = 1, size(forms)
             word = word//' '//trim(form_name(k))
@@ -235,42 +254,12 @@ contains
 
    contains
 
-      !> Makes `failure` hold the sentence `text`.
+      !> Makes `failure` hold the sentence `text`, if it is the first.
       subroutine reject(text)
          character(*), intent(in) :: text
 
-         call fail(failure, status_rejected, text)
+         if (.not. allocated(failure)) call fail(failure, status_rejected, text)
       end subroutine reject
-
-      !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
-      subroutine check_files()
-         integer :: first
-
-         if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-            call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
-         first = findloc(to_standard_output(options%files), .true., dim=1)
-         do k = 1, out_last
-            if (to_standard_output(options%files(k)) .and. k > first) &
-               call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first)%word)//' OR ' &
-                  //trim(file_options(k)%word))
-            if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
-               call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k)%word)//' NEEDS')
-            if (allocated(failure)) return
-         end do
-      end subroutine check_files
-
-      !> A study and times are no listing; a study reads its deck more than once.
-      subroutine check_study()
-         if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
-         if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
-            .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
-            .or. (options%study .and. options%time)) then
-            call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
-               //' CAN ONLY BE COMBINED WITH -o AND --quiet')
-         else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-            call reject('OPTION --study NEEDS THE DECK AS A FILE')
-         end if
-      end subroutine check_study
 
       !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output,
       !> or of a directory. All `files` of the option have it.

@@ -91,7 +91,19 @@ contains
       share = job_share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
-      if (.not. allocated(failure) .and. o%varies) call check_variants()
+      if (.not. allocated(failure) .and. o%varies) then
+         ! Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
+         ! Their numbers must be whole numbers of the default kind.
+         if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
+            'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
+         if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
+            allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
+            'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
+         do i = 1, out_last
+            if (file_options(i)%each_set .and. allocated(options%files(i)%text)) call fail(failure, status_rejected, &
+               'OPTION '//trim(file_options(i)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
+         end do
+      end if
       if (.not. allocated(failure) .and. allocated(options%files(out_circuits)%text)) then
          if (.not. any(sets%circuits)) call fail(failure, status_rejected, &
             'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
@@ -151,22 +163,6 @@ contains
       call end_process(status)
 
    contains
-
-      !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
-      !> Their numbers must be whole numbers of the default kind.
-      subroutine check_variants()
-         integer :: k
-
-         if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
-            'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
-         if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
-            allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
-            'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
-         do k = 1, out_last
-            if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
-               'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
-         end do
-      end subroutine check_variants
 
       !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
       function said() result(text)
@@ -305,6 +301,8 @@ contains
       type(writers_t), intent(inout) :: o
       type(layout_t) :: layout
       type(summary_t) :: summary
+      type(variant_row_t) :: row
+      type(mechanism_t) :: variant
       logical :: full
       integer :: n, k
 
@@ -320,31 +318,23 @@ contains
       if (are_together(m, full, o)) then
          call run_together()
       else
-         call run_each()
+         do while (n <= last)
+            row = new_row(summary, v, n)
+            if (o%asked(out_listing) .and. full) call put_variant(o%files(out_listing, 0), layout, summary, m, row)
+            call run_variant(variant, row)
+            if (is_over(o, i)) exit
+            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
+            call write_row(row)
+            n = n + 1
+         end do
       end if
       if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
       if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing, 0), m)
 
    contains
 
-      !> Solves and writes the variants `n` to `last` of `v` one after another; `n`: the first that is not written.
-      subroutine run_each()
-         type(variant_row_t) :: row
-         type(mechanism_t) :: variant
-
-         do while (n <= last)
-            row = new_row(summary, v, n)
-            if (o%asked(out_listing) .and. full) &
-               call put_variant(o%files(out_listing, 0), layout, summary, m, row)
-            call run_variant(variant, row)
-            if (is_over(o, i)) return
-            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
-            call write_row(row)
-            n = n + 1
-         end do
-      end subroutine run_each
-
-      !> The same of rows alone, as many variants at a time as there are lanes.
+      !> Solves and writes rows alone of the variants `n` to `last` of `v`, as many at a time as there are lanes; `n`:
+      !> the first that is not written.
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)

@@ -4,7 +4,7 @@ program main
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp_name
    use failures, only: failure_t, capitals, status_signal
-   use system_calls, only: occupy_standard_descriptors, end_by_signal, is_terminal
+   use system_calls, only: occupy_standard_descriptors, end_by_signal, isatty
    use command_line, only: options_t, out_listing, read_command, help_text, explained, explained_fields
    use cards, only: layout_of
    use job, only: run_job
@@ -22,7 +22,7 @@ program main
    call read_command(options, failure)
    if (allocated(failure)) call leave(failure%status, ' *** '//failure%text)
    if (command_argument_count() == 0) then
-      if (is_terminal(0_c_int)) options%show = 'HELP'
+      if (isatty(0_c_int) /= 0) options%show = 'HELP'
    end if
    select case (options%show)
    case ('HELP')

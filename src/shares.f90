@@ -45,7 +45,9 @@ contains
       type(progress_t), intent(inout) :: progress
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
-      integer :: list(processes), started, taken, k
+      character(4096) :: block
+      character(:), allocatable :: said
+      integer :: list(processes), started, taken, ended, k, n
       integer(c_int) :: reads, writes
       logical :: closed
 
@@ -75,31 +77,14 @@ contains
       if (started < processes) then
          status = status_system
          message = ' *** CANNOT START A PROCESS FOR'//text_of(started + 1)//' ('//capitals(reason_of(last_error()))//')'
-         call interrupt_all()
+         call interrupt_child(list(:started))
       end if
       if (reads >= 0) then
          closed = close_descriptor(writes)
-         call follow()
-         closed = close_descriptor(reads)
-      end if
-
-      ! The children have written these files.
-      taken = min(parts_taken(o%turns), part_count(s))
-      if (taken > 0) o%files(:, 0)%emptied = .true.
-      call forget_files(o, s%first, first_of(s, taken + 1) - 1)
-      call close_turns(o%turns)
-
-   contains
-
-      !> Waits for the children, takes over the first message, and finds the status of the whole.
-      subroutine follow()
-         character(4096) :: block
-         character(:), allocatable :: said
-         integer :: ended, k, n
-
+         ! The children end; their first message is that of the whole, and so is the worst status.
          said = ''
          do
-            if (signal_received() > 0) call interrupt_all()
+            if (signal_received() > 0) call interrupt_child(list(:started))
             if (has_input(reads, look_time)) then
                n = read_bytes(reads, block)
                if (n <= 0) exit
@@ -120,16 +105,16 @@ contains
                status = max(status, ended)
             end if
          end do
-      end subroutine follow
+         closed = close_descriptor(reads)
+      end if
 
-      !> Asks all children to end.
-      subroutine interrupt_all()
-         integer :: k
+      ! The children have written these files.
+      taken = min(parts_taken(o%turns), part_count(s))
+      if (taken > 0) o%files(:, 0)%emptied = .true.
+      call forget_files(o, s%first, first_of(s, taken + 1) - 1)
+      call close_turns(o%turns)
 
-         do k = 1, started
-            call interrupt_child(list(k))
-         end do
-      end subroutine interrupt_all
+   contains
 
       !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
       pure function text_of(p) result(text)

@@ -198,7 +198,7 @@ contains
    end subroutine wait_for_child
 
    !> Asks the process `child` to end.
-   subroutine interrupt_child(child)
+   impure elemental subroutine interrupt_child(child)
       integer, intent(in) :: child
       integer(c_int) :: ignored
 

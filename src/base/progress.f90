@@ -2,7 +2,7 @@
 module progress
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int64
-   use system_calls, only: is_terminal, write_bytes
+   use system_calls, only: isatty, write_bytes
    implicit none
    private
    public :: progress_t, start_progress, show_progress, end_progress, line_over
@@ -26,8 +26,8 @@ contains
       logical, intent(in) :: wanted, printing
       integer(int64) :: count, rate
 
-      p%shown = wanted .and. is_terminal(standard_error)
-      if (p%shown .and. printing) p%shown = .not. is_terminal(standard_output)
+      p%shown = wanted .and. isatty(standard_error) /= 0
+      if (p%shown .and. printing) p%shown = isatty(standard_output) == 0
       if (.not. p%shown) return
       call system_clock(count, rate)
       p%due = count + first_seconds*rate

@@ -10,7 +10,7 @@ module system_calls
    private
    public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
-   public :: make_directory, rmdir, is_terminal
+   public :: make_directory, rmdir, isatty
    public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
@@ -221,13 +221,6 @@ contains
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
-
-   !> Whether `descriptor` is that of a terminal.
-   logical function is_terminal(descriptor)
-      integer(c_int), intent(in) :: descriptor
-
-      is_terminal = isatty(descriptor) /= 0
-   end function is_terminal
 
    !> Removes the file that `path` leads to; a symbolic link to it stays.
    subroutine remove_file(path)

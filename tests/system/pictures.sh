@@ -284,15 +284,8 @@ equal 'names with characters of XML: text' yes "$(grep -q 'data-drive="ANGLE &lt
 cp input/four_bar.deck "$w/own.deck"
 for option in --svg --animate; do
    rejected "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
-   rejected "$option twice" 1 " *** OPTION $option IS GIVEN TWICE" "$w/own.deck" $option "$w/a" $option "$w/b"
    rejected "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
    rejected "$option and --study" 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/own.deck" $option "$w/a" --study
-   rejected "$option to the file of the CSV" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" $option "$w/./a"
-   rejected "$option to the file of the listing" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" $option "$w/a"
-   rejected "$option to the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/own.deck"
-   same "$option to the deck: it is as it was" input/four_bar.deck "$w/own.deck"
-   rejected "$option to a file that cannot be" 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
-      "$w/own.deck" $option /nonexistent/x
    equal "$option: no file is made by what is refused" '' "$(ls "$w/a" 2> /dev/null)"
    if [ -w /dev/full ]; then
       "$kinmat" "$w/own.deck" $option /dev/full > "$w/out" 2> "$w/err"
