@@ -5,12 +5,13 @@ module block_assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, loop_angles
    use block_state, only: state_t, set_values, values_of
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
    use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
    use homotopy, only: follow_paths
+   use isotropic, only: given
    use block_bilinear, only: block_form_t, make_form, solves_all, real_values
    implicit none
    private
@@ -93,7 +94,7 @@ contains
          if (f%system%p == 0) then
             ends%paths = 1
             allocate (ends%list(1))
-            ends%list(1)%x = [(1.0_wp, 0.0_wp)]
+            ends%list(1)%x = [(1.0_dp, 0.0_dp)]
             ends%list(1)%y = ends%list(1)%x
          else if (f%system%p == 1) then
             call solve_quadratic(f%system, ends, moves)
@@ -114,6 +115,8 @@ contains
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
          x = anint(grid*x)/grid
+         call set_values(b, i, x, s)
+         call add_turns(x)
          call set_values(b, i, x, s)
          ! At a singular solution Newton's method would lose the way.
          do k = 1, merge(singular_steps, 0, e%is_singular)
@@ -137,6 +140,26 @@ contains
          found%is_open = [found%is_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
       end subroutine take_end
+
+      !> Adds the whole turns to the angles `x`, which `s` has, that drives ask for between two of them.
+      subroutine add_turns(x)
+         real(wp), intent(inout) :: x(:)
+         real(wp) :: off
+         integer :: m
+
+         do m = b%list(i)%first_loop, b%list(i)%last_loop
+            associate (g => b%loops(m))
+               if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
+               off = given(b, i, g%row_x, s) - s%u(g%orientation)%value + s%u(g%less)%value
+               off = off - without_turns(off)
+               if (g%orientation_column > 0) then
+                  x(g%orientation_column) = x(g%orientation_column) + off
+               else if (g%less_column > 0) then
+                  x(g%less_column) = x(g%less_column) - off
+               end if
+            end associate
+         end do
+      end subroutine add_turns
 
       !> The last of the finite ends belongs to those that `number` counts.
       subroutine leave_out(number)
