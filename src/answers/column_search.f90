@@ -46,7 +46,7 @@ contains
 
    !> Takes `node` of mechanism `c` away, and searches between it and the last one of which all is known. Two parts of
    !> one length, from an instant with an even number on, are searched together, if accelerations are simple there: the
-   !> node between them is the one in the middle, and no motion is looked for. What is found does so not depend on where
+   !> node between them is the one in the middle, and no motion is looked for. The result does not depend on where
    !> the search began: lanes begin it at any such instant.
    subroutine add_node(x, s, c, node)
       type(extremes_t), intent(inout) :: x

@@ -233,5 +233,4 @@ contains
          end if
       end subroutine look_at
    end subroutine note_instant
-
 end module extreme_search

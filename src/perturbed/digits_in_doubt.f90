@@ -143,6 +143,7 @@ contains
 
       pivot = max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)
    end function pivot_of
+
    !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
    pure subroutine find_largest(n, x, largest)
       integer, intent(in) :: n
