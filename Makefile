@@ -49,7 +49,7 @@ KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if 
 sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90') $(if $(filter quad,$(KIND)),tests/quad/quad_lapack.f90))
 # Text that several modules include, each for its own kind of numbers.
 included := $(sort $(shell find src -name '*.inc'))
-helpers := $(filter-out %/funit.f90 $(sources),$(sort $(shell find tests -name '*.f90')))
+helpers := $(filter-out $(sources),$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
 command := main allocation

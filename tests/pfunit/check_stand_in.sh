@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests the stand-in for pFUnit (pf2f90, funit.f90, tests.mk): what fails must be seen to fail.
+# Tests the stand-in for pFUnit (pf2f90, funit.F90, tests.mk): what fails must be seen to fail.
 #   check_stand_in.sh [DIRECTORY]   works in DIRECTORY (default: a temporary one, removed afterwards)
 # With PFUNIT_DIR set the installed pFUnit runs the same files and its reports are compared.
 # A path as it was called: one from the root may hold blanks, which make cannot have in the names of files.

@@ -104,7 +104,7 @@ $(unit_build)/suites.inc: $(unit_build)/suites
 $(unit_build)/unit_driver.o: $(PFUNIT_INCLUDE_DIR)/driver.F90 $(unit_build)/suites.inc
 	$(FC) $(filter-out -std=% -W% -pedantic,$(unit_flags)) -I$(unit_build) -D_TEST_SUITES='"suites.inc"' -c -o $@ $<
 else
-$(unit_build)/funit.o: $(unit_home)/funit.f90 | $(unit_build)/suites
+$(unit_build)/funit.o: $(unit_home)/funit.F90 $(unit_home)/funit_kind.inc | $(unit_build)/suites
 	$(call say,FC,$(patsubst $(unit_build)/%,%,$<),tests)$(FC) $(unit_flags) -c -o $@ $<
 
 $(unit_build)/%.F90: %.pf $(unit_home)/pf2f90 | $(unit_build)/suites
