@@ -16,11 +16,17 @@ module extremes
    private
    public :: extremes_t, extreme_t, track_t, gap_t, value_at_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_limits, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
-      column_of, strokes_t, strokes_of, ratio_decimals, closes_to, alike
+      column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
    real(wp), parameter :: alike = 10.0_wp*safe_growth*epsilon(1.0_wp)
+   !> Derivatives that no estimate of errors is made for may be off by so much, in these units: with 1/p for the inverse
+   !> of a block's Jacobian, roundings grow by 1/p^2 < `safe_growth` in velocities and by 1/p^3 in accelerations.
+   real(wp), parameter :: unseen(0:2) = alike*[1.0_wp, 1.0_wp, sqrt(safe_growth)]
+   !> An error is an estimate: only a variation that is so many times as large is known to be one. A table shows no
+   !> digit of a smaller one, for its last digit is worth a hundred errors.
+   real(wp), parameter :: above_errors = 10.0_wp
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
    !> A motion is cyclic if its end differs from its beginning by less, in the same units: a turn of 6.2831853 rad is
@@ -362,6 +368,18 @@ contains
       is_cyclic = is_covered(x) .and. all(x%tracks(x%part(q))%closure <= closes_to)
    end function is_cyclic
 
+   !> Derivative `k` of column `c` of row `q` has a least and a greatest value that differ by more than rounding can
+   !> make, or one of them is not known.
+   pure logical function varies(x, q, c, k)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: q, c, k
+
+      associate (e => x%found(:, c, k, q))
+         varies = .not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
+            > unseen(k)*x%size_of(c, k, q) + above_errors*sum(e%error)
+      end associate
+   end function varies
+
    !> The strokes of column `c` of row `q` after the last instant, in the shortest part of a cyclic run after which its
    !> reversals repeat.
    pure type(strokes_t) function strokes_of(x, q, c) result(strokes)
@@ -374,7 +392,7 @@ contains
 
       associate (e => x%found(:, c, 0, q))
          strokes%length = extreme_t(value=e(greatest)%value - e(least)%value, error=sum(e%error), &
-            exists=all(e%exists .and. e%has_bound) .and. abs(e(greatest)%t - e(least)%t) > 0.0_wp)
+            exists=all(e%exists .and. e%has_bound) .and. varies(x, q, c, 0))
       end associate
       associate (list => x%reversals%list(:x%reversals%n))
          all_of = pack(list, list%asked == q .and. list%column == c)

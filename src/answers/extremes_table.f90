@@ -13,7 +13,7 @@ module extremes_table
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
    use extremes, only: extremes_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      is_cyclic, is_covered, ratio_decimals, closes_to, column_of
+      is_cyclic, is_covered, ratio_decimals, closes_to, column_of, varies
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -45,7 +45,7 @@ contains
       moves = .false.
       goes_on = .false.
       do q = 1, size(x%asked)
-         if (.not. any([((varies(c, k), c=1, x%columns(q)), k=0, 2)])) cycle
+         if (.not. any([((varies(x, q, c, k), c=1, x%columns(q)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
          d = l%own(x%part(q))
@@ -87,15 +87,6 @@ contains
 
    contains
 
-      !> Whether column `c`, derivative `k`, of asked row `q` has two values, or one that is not known.
-      pure logical function varies(c, k)
-         integer, intent(in) :: c, k
-
-         associate (e => x%found(:, c, k, q))
-            varies = abs(e(greatest)%t - e(least)%t) > 0.0_wp .or. .not. all(e%exists .and. e%has_bound)
-         end associate
-      end function varies
-
       !> The rows of asked row `q`, that of a link, point or pair of this `name`.
       subroutine put_subject(name)
          character(*), intent(in) :: name
@@ -116,7 +107,7 @@ contains
             place = ''
             do k = 0, 2
                do c = 1, x%columns(q)
-                  if (.not. varies(c, k)) cycle
+                  if (.not. varies(x, q, c, k)) cycle
                   associate (e => x%found(which, c, k, q))
                      if (.not. e%exists) then
                         value(c, k) = trim(adjustl(l%none))
