@@ -25,12 +25,12 @@ module job
    use plot_script, only: put_script
    use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
-   use svg, only: xml_line
-   use picture, only: put_pictures
-   use animation, only: put_animations
+   use svg, only: page_t, begin_page, end_page
+   use picture, only: put_picture
+   use animation, only: put_animation
    use circuits, only: circuits_t
    use circuits_table, only: find_all_circuits
-   use circuits_picture, only: diagrams_t, add_to_page, put_circuit_page
+   use circuits_picture, only: put_circuits
    use assembly_table, only: draw_assemblies
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
@@ -65,7 +65,6 @@ module job
       type(table_t) :: table                        !< of the set at hand
       logical :: varies = .false.                   !< the deck has VARY cards
       type(variation_t), allocatable :: variations(:)   !< of the sets that have them
-      type(drawing_t), allocatable :: drawings(:)   !< (first:last)
    end type writers_t
 
 contains
@@ -181,17 +180,16 @@ contains
       type(writers_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: sets(o%first:)
       type(findings_t), intent(inout) :: findings(o%first:)
-      type(diagrams_t), allocatable :: page(:)
+      type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
-      integer :: i, before, varied
+      integer :: i, k, before, varied
 
       if (o%asked(out_csv) .and. o%options%share == 1 .and. o%own_first == 1) &
          call csv_head(o%files(out_csv, 0), o%options%errors, o%varies)
-      if (o%asked(out_svg)) call put(o%files(out_svg, 0), xml_line)
-      if (o%asked(out_svg) .or. o%asked(out_animation)) allocate (o%drawings(o%first:o%last))
-      if (o%asked(out_animation)) call put(o%files(out_animation, 0), xml_line)
-      if (o%asked(out_circuits)) call put(o%files(out_circuits, 0), xml_line)
+      do k = out_svg, out_circuits
+         if (o%asked(k)) call begin_page(o%files(k, 0), pages(k))
+      end do
       before = o%first - 1
       varied = 0
       ! Where no set has variants, those before the part at hand need not be passed over.
@@ -212,31 +210,30 @@ contains
             end if
             exit
          end if
-         if (o%asked(out_svg) .or. o%asked(out_animation)) &
-            call draw_set(sets(i), size(o%drawings), o%drawings(i), o%progress)
+         ! Sets that were broken off are not drawn.
+         if (o%asked(out_svg) .or. o%asked(out_animation)) call draw_set(sets(i), size(sets), o, pages)
          if (o%asked(out_circuits) .and. sets(i)%circuits) then
             ! As a picture, circuits have an analysis of their own.
             call make_set_analysis(sets(i), a)
             call advance_set(a, instant(sets(i), 0))
             call find_all_circuits(a, found)
-            call add_to_page(page, sets(i), a, found)
+            call put_circuits(pages(out_circuits), sets(i), a, found)
          end if
       end do
-      ! Sets that were broken off are not drawn.
-      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), o%drawings(o%first:i - 1))
-      if (o%asked(out_animation)) &
-         call put_animations(o%files(out_animation, 0), o%drawings(o%first:i - 1))
-      if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
+      do k = out_svg, out_circuits
+         if (o%asked(k)) call end_page(o%files(k, 0), pages(k))
+      end do
    end subroutine run_sets
 
-   !> Records the drawing `d` of the film of `m`, one of so many `sets` on a page. It has an analysis of its own: a
-   !> picture shows links that no table asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, sets, d, progress)
+   !> Draws the film of `m`, one of so many `sets`, on those of the `pages` that are asked for. It has an analysis of
+   !> its own: a picture shows links that no table asks for, and what is printed must not depend on it.
+   subroutine draw_set(m, sets, o, pages)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets
-      type(drawing_t), intent(out) :: d
-      type(progress_t), intent(inout) :: progress
+      type(writers_t), intent(inout) :: o
+      type(page_t), intent(inout), target :: pages(out_svg:)
       type(mechanism_t) :: film
+      type(drawing_t), target :: d
       type(set_analysis_t) :: a
       integer :: every, k
 
@@ -248,12 +245,14 @@ contains
          if (every == 0 .and. k == film%steps + 1) call make_set_analysis(with_all_links(m), a)
          call advance_set(a, instant(film, k))
          call record_instant(d, a%now, k)
-         if (progress%shown) call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, &
+         if (o%progress%shown) call show_progress(o%progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, &
             instant_count(film) - 1)
          if (signal_received() > 0) return
       end do
       if (m%assemblies) call make_set_analysis(m, a)
       if (m%assemblies) call draw_assemblies(a, d)
+      if (o%asked(out_svg)) call put_picture(pages(out_svg), d)
+      if (o%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.

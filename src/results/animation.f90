@@ -3,7 +3,6 @@
 !> between two frames, place and angle evenly.
 module animation
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted
    use planar, only: in_degrees, without_turns, point_of
    use scales, only: is_length
    use drives, only: law_t, drive_motion, new_law
@@ -12,17 +11,15 @@ module animation
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of, pole_name
-   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path
+   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_traces, put_ring, put_foot, &
+      line_height
    use picture, only: closes
-   use picture_page, only: place_canvas, paths_of, put_flagged, put_ring, put_set_head, put_flags, put_scale, &
-      flag_lines, fitted, width, line_height
-   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
-      attribute, translation
-   use text_output, only: output_t
+   use svg, only: page_t, width, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
+      attribute, translation, fitted
    use listing, only: words_of_mark
    implicit none
    private
-   public :: put_animations
+   public :: put_animation
 
    !> The time from its first to its last frame, and of the rest at its end where the motion does not come back (s).
    real(wp), parameter :: motion_seconds = 10.0_wp, pause_seconds = 1.0_wp
@@ -44,32 +41,11 @@ module animation
 
 contains
 
-   !> Writes the animation of the sets that `films` have recorded, one below the other.
-   subroutine put_animations(o, films)
-      type(output_t), intent(inout), target :: o
-      type(drawing_t), intent(in), target :: films(:)
-      type(canvas_t) :: page(size(films))
-      integer :: top, i, k
-
-      top = 0
-      do i = 1, size(films)
-         call make_canvas(o, films(i), page(i))
-         if (films(i)%films > 0) page(i)%s = films(i)%frame(1)
-         page(i)%faint = [(k, k=1, films(i)%films)]
-         page(i)%paths = paths_of(films(i))
-         call place_canvas(page(i), top)
-         top = page(i)%bottom + bar_room
-      end do
-      call svg_head(o, width, max(1, top))
-      do i = 1, size(films)
-         if (films(i)%films > 0) call put_film(page(i))
-      end do
-      call put_end(o, 'svg')
-   end subroutine put_animations
-
-   !> Draws one set, with the bar of the time below.
-   subroutine put_film(c)
-      type(canvas_t), intent(inout) :: c
+   !> Draws the film `d` of a set, with the bar of the time below, at the end of the `page`.
+   subroutine put_animation(page, d)
+      type(page_t), intent(inout), target :: page
+      type(drawing_t), intent(in), target :: d
+      type(canvas_t) :: c
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
       integer, allocatable :: frame(:)       ! (keys) at equal steps of time
@@ -78,47 +54,35 @@ contains
       logical :: smooth                      ! there are positions between them
       integer :: i
 
+      if (d%films == 0) return
+      call make_canvas(page, d, d%frame(1), [(i, i=1, d%films)], c)
+      page%height = page%height + bar_room
       call find_course()
-      c%s = c%d%now
-      call put_set_head(c, c%d%frame(1)%t)
-      do i = 1, size(c%paths)
-         call put_path(c, c%paths(i))
-      end do
-      do i = 1, size(c%d%flags)
-         call put_flagged(c, c%d%flags(i)%last)
-      end do
-
-      list = shapes_of(c%d, spread(.true., 1, size(c%m%links)), c%scale)
+      c%s = d%now
+      call put_traces(c)
+      list = shapes_of(d, spread(.true., 1, size(c%m%links)), c%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
       where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
+      ! A centrode may run through the pictures of other sets.
+      call put_window(c%o, c%low, c%high)
       do i = 1, size(list)
          if (is_fixed(i) .and. list(i)%is_below) call put_shape(c, list(i))
       end do
-      ! A centrode in a link that moves may run through the pictures of other sets.
-      if (size(c%d%poles) > 0) then
-         call put_window(c%o, c%low, c%high - c%low)
-         call put_group(c%o, translation(-c%low), '')
-      end if
       call put_group(c%o, 'class="film" data-frames="'//whole(frames)//'" data-keys="' &
-         //whole(size(frame))//'" data-end="'//full(c%d%frame(c%d%films)%t)//'"', '')
+         //whole(size(frame))//'" data-end="'//full(d%frame(d%films)%t)//'"', '')
       call put_moving_links()
-      do i = 1, size(c%d%poles)
+      do i = 1, size(d%poles)
          call put_moving_centre(i)
       end do
       call put_end(c%o, 'g')
-      if (size(c%d%poles) > 0) then
-         call put_end(c%o, 'g')
-         call put_end(c%o, 'svg')
-      end if
+      call put_end(c%o, 'svg')
       do i = 1, size(list)
          if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(c, list(i))
       end do
 
       call put_clock()
-      call put_flags(c)
       call put_bar()
-      call put_scale(c)
-      call put_end(c%o, 'g')
+      call put_foot(c)
 
    contains
 
@@ -127,66 +91,60 @@ contains
       subroutine find_course()
          integer :: k, stride, pause
 
-         stride = max(1, 1 + (c%d%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
-         frame = [(min(k, c%d%films), k=1, c%d%films + stride - 1, stride)]
+         stride = max(1, 1 + (d%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
+         frame = [(min(k, d%films), k=1, d%films + stride - 1, stride)]
          frames = size(frame)
          smooth = .true.
          do k = 2, frames
-            associate (now => c%d%frame(frame(k)), before => c%d%frame(frame(k - 1)))
+            associate (now => d%frame(frame(k)), before => d%frame(frame(k - 1)))
                if (any(now%known .and. before%known .and. &
                   abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
             end associate
          end do
          pause = 0
-         if (.not. closes(c%d, frame)) pause = nint(real(frames - 1, wp)*pause_seconds/motion_seconds)
-         frame = [frame, spread(c%d%films, 1, pause)]
+         if (.not. closes(d, frame)) pause = nint(real(frames - 1, wp)*pause_seconds/motion_seconds)
+         frame = [frame, spread(d%films, 1, pause)]
          seconds = motion_seconds*real(max(1, size(frame) - 1), wp)/real(max(1, frames - 1), wp)
       end subroutine find_course
 
       !> Draws the moving links, each with its shapes in its own axes and turned about its first corner, later ones over
       !> earlier ones.
       subroutine put_moving_links()
-         type(sorted_t) :: own
          type(canvas_t) :: axes
          real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
          logical :: known(size(frame))
-         integer :: order(size(c%m%links)), i, k, last
+         integer :: link, k, last
 
-         own = sorted(list%link, size(c%m%links))
-         order(c%d%rank) = [(i, i=1, size(order))]
-         call make_canvas(c%o, c%d, axes)
-         axes%scale = c%scale
+         axes = c
          axes%s%place = 0.0_wp
          axes%s%known = .true.
-         axes%low = -real(width, wp)
-         axes%high = real(width, wp)
-         do i = 1, size(order)
-            associate (link => order(i))
-               if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
-               known = [(c%d%frame(frame(k))%known(link), k=1, size(known))]
-               if (.not. any(known)) cycle
-               ! It turns about a corner of its own: its origin may be far away.
-               axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
+         do link = 1, size(c%m%links)
+            if (c%m%links(link)%ground .or. size(d%outlines(link)%corner, 2) == 0) cycle
+            known = [(d%frame(frame(k))%known(link), k=1, size(known))]
+            if (.not. any(known)) cycle
+            ! It turns about a corner of its own: its origin may be far away.
+            associate (corner => d%outlines(link)%corner(:, 1))
+               axes%shift = -c%scale*corner*[1.0_wp, -1.0_wp]
                last = frame(findloc(known, .true., dim=1))
                turned = 0.0_wp
                do k = 1, size(known)
                   if (known(k)) last = frame(k)
-                  position = c%d%frame(last)%place(:, link)
-                  place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
+                  position = d%frame(last)%place(:, link)
+                  place(:, k) = to_pixels(c, point_of(position, corner))
                   turned = turned + without_turns(position(3) - turned)
                   angle(1, k) = -in_degrees(turned)
                end do
-               ! Two groups: one moves, one turns.
-               call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
-                  trim(c%m%links(link)%name), place, known, pale)
-               call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-               call put_moving(turn, angle, smooth)
-               do k = own%first(link), own%first(link + 1) - 1
-                  call put_shape(axes, list(own%member(k)))
-               end do
-               call put_end(c%o, 'g')
-               call put_end(c%o, 'g')
             end associate
+            ! Two groups: one moves, one turns.
+            call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
+               trim(c%m%links(link)%name), place, known, pale)
+            call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+            call put_moving(turn, angle, smooth)
+            do k = 1, size(list)
+               if (list(k)%link == link) call put_shape(axes, list(k))
+            end do
+            call put_end(c%o, 'g')
+            call put_end(c%o, 'g')
          end do
       end subroutine put_moving_links
 
@@ -201,14 +159,14 @@ contains
 
          place(:, 0) = c%low
          do k = 1, size(frame)
-            associate (s => c%d%frame(frame(k)))
+            associate (s => d%frame(frame(k)))
                place(:, k) = to_pixels(c, s%centre(:, i))
                is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
             end associate
             if (.not. is_there(k)) place(:, k) = place(:, k - 1)
          end do
          if (.not. any(is_there)) return
-         name = pole_name(c%m, c%d%poles(i))
+         name = pole_name(c%m, d%poles(i))
          call begin_moving(attribute('data-pole', name)//' ', name, place(:, 1:), is_there, 0.0_wp)
          call put_ring(c, i, [0.0_wp, 0.0_wp])
          call put_end(c%o, 'g')
@@ -226,7 +184,7 @@ contains
          do i = 1, size(value, 1)
             law = new_law(c%m%drives(i))
             do k = 1, frames
-               f = drive_motion(law, c%d%frame(frame(k))%t)
+               f = drive_motion(law, d%frame(frame(k))%t)
                value(i, k) = f(0)
             end do
             if (c%m%degrees .and. .not. is_length(c%m%drives(i))) value(i, :) = in_degrees(value(i, :))
@@ -235,20 +193,20 @@ contains
             where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
          end do
 
-         y = c%bottom - 16 - line_height*flag_lines(c%d)
-         call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
+         y = c%bottom - 11 - line_height*flag_lines(d)
+         call put_window(c%o, real([14, y - line_height], wp), real([width - 14, y], wp))
          call put_group(c%o, 'class="clock"', '')
          up(1, :) = 0.0_wp
          up(2, :) = [(-real(line_height*(min(k, frames) - 1), wp), k=1, size(frame))]
          call put_moving(shift, up, .false.)
          do k = 1, frames
-            associate (s => c%d%frame(frame(k)))
+            associate (s => d%frame(frame(k)))
                words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
                do i = 1, size(value, 1)
                   words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
                end do
                if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
-               call put_words(c%o, real([0, line_height*k - 5], wp), 'start', &
+               call put_words(c%o, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
                   trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
             end associate
          end do
@@ -265,14 +223,14 @@ contains
          first = [bar_ends(1), y]
          call put_line(c%o, 'polyline', reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
          last = -1.0_wp
-         do k = 1, size(c%d%flagged_at)
-            x = along_bar(c%d%flagged_at(k))
+         do k = 1, size(d%flagged_at)
+            x = along_bar(d%flagged_at(k))
             if (abs(x - last) < 1.0_wp) cycle
             last = x
             call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
          end do
          call put_group(c%o, 'class="now"', '')
-         call put_moving(shift, reshape([(along_bar(c%d%frame(frame(k))%t) - first(1), 0.0_wp, &
+         call put_moving(shift, reshape([(along_bar(d%frame(frame(k))%t) - first(1), 0.0_wp, &
             k=1, size(frame))], [2, size(frame)]), smooth)
          call put_circle(c%o, first, dot_radius, 'class="point"')
          call put_end(c%o, 'g')
@@ -284,7 +242,7 @@ contains
          real(wp) :: part
 
          part = 0.0_wp
-         associate (t0 => c%d%frame(1)%t, t1 => c%d%frame(c%d%frames)%t)
+         associate (t0 => d%frame(1)%t, t1 => d%frame(d%frames)%t)
             if (abs(t1 - t0) > 0.0_wp) part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
          end associate
          x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
@@ -313,5 +271,5 @@ contains
          call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
             //fitted(seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';', '/>')
       end subroutine put_moving
-   end subroutine put_film
+   end subroutine put_animation
 end module animation

@@ -14,7 +14,7 @@ module drawing
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, point_velocity, joint_point, outline_t, outlines_of, hull, corners_at, distance_to
+   public :: point_place, point_velocity, joint_point, outline_t, outlines_of, hull, moved, distance_to
 
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation leaps.
@@ -81,7 +81,6 @@ module drawing
       type(mechanism_t) :: m
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       type(outline_t), allocatable :: outlines(:)   !< (links)
-      integer, allocatable :: rank(:)        !< (links) when each of them is drawn, 1 first
       integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
       integer, allocatable :: poles(:)       !< the requests of poles
       type(guide_t), allocatable :: guides(:)
@@ -147,9 +146,8 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: every
       type(drawing_t) :: d
-      type(sorted_t) :: by_corners
       real(wp) :: angles(2)
-      integer :: corners(size(m%links)), ends(2), i, k, most
+      integer :: ends(2), i, k, most
 
       d%m = m
       d%every = every
@@ -186,14 +184,6 @@ contains
             g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
          end associate
       end do
-      ! First polygons are drawn, then bars and rods, then a single point, such as a block.
-      corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(m%links))]
-      do i = 1, size(d%guides)
-         corners(d%guides(i)%carrier) = max(2, corners(d%guides(i)%carrier))
-      end do
-      by_corners = sorted(4 - corners, 4)
-      allocate (d%rank(size(m%links)))
-      d%rank(by_corners%member) = [(i, i=1, size(m%links))]
       d%now = snapshot_of_ground(d)
 
       most = max(2, min(max_frames, max_held/size(m%links)))
@@ -354,13 +344,13 @@ contains
       type(drawing_t), intent(in) :: d
       logical, intent(in) :: known(:)
       integer, intent(in) :: i
-      integer :: ends(2), links(2), rank(2)
+      integer :: ends(2), links(2)
 
       ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
       links = d%m%points(ends)%link
-      rank = merge(merge(0, d%rank(links), d%m%links(links)%ground), -1, known(links))
       point = 0
-      if (any(rank >= 0)) point = ends(maxloc(rank, dim=1))
+      if (any(known(links))) &
+         point = ends(maxloc(merge(0, links, d%m%links(links)%ground), dim=1, mask=known(links)))
    end function joint_point
 
    !> The outlines (links) of all links of `m`, in one pass over its points.
@@ -380,28 +370,29 @@ contains
       end do
    end function outlines_of
 
-   !> The corners (2, :) of the outline `h` of a link at `position` (x, y, phi).
-   pure function corners_at(h, position) result(p)
-      type(outline_t), intent(in) :: h
-      real(wp), intent(in) :: position(3)
-      real(wp) :: p(2, size(h%corner, 2))
+   !> The places `p` (2, :) of the axes of a link at `position` (x, y, phi).
+   pure function moved(p, position) result(q)
+      real(wp), intent(in) :: p(:, :), position(3)
+      real(wp) :: q(2, size(p, 2))
       integer :: k
 
       do k = 1, size(p, 2)
-         p(:, k) = point_of(position, h%corner(:, k))
+         q(:, k) = point_of(position, p(:, k))
       end do
-   end function corners_at
+   end function moved
 
-   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise), whose
-   !> sides are longer at both ends by the part `longer` of their lengths; 0 inside.
-   pure real(wp) function distance_to(c, p, longer) result(distance)
-      real(wp), intent(in) :: c(:, :), p(2), longer
-      real(wp) :: u(2), along
+   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise); 0
+   !> inside. A bar is longer at both ends by the part `in_line` of its length: what is in line with it is near.
+   pure real(wp) function distance_to(c, p) result(distance)
+      real(wp), intent(in) :: c(:, :), p(2)
+      real(wp), parameter :: in_line = 0.5_wp
+      real(wp) :: u(2), along, longer
       logical :: inside
       integer :: k, n
 
       n = size(c, 2)
       inside = n > 2
+      longer = merge(0.0_wp, in_line, inside)
       distance = huge(distance)
       do k = 1, n
          u = c(:, 1 + modulo(k, n)) - c(:, k)

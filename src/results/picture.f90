@@ -1,25 +1,22 @@
-!> The picture of a run as SVG, one set below the other: the mechanism at one instant, faint at some others, the paths
-!> of the points that PRINT asks for, the centrodes that POLE asks for, flagged positions, names, and a scale. Which
-!> frames it shows: the one in which the mechanism is read best, and a few others.
+!> The picture of a set as SVG: the mechanism at one instant, faint at some others, the paths of the points that PRINT
+!> asks for, the centrodes that POLE asks for, flagged positions, names, and a scale. Which frames it shows: the one in
+!> which the mechanism is read best, and a few others.
 module picture
    use kinds, only: wp, label_length
    use mechanism, only: pair_revolute, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
-   use planar, only: degree, direction, quarter_turn, cross, point_of
+   use planar, only: degree, direction, quarter_turn
    use drives, only: drive_motion, new_law
    use names, only: drive_name
-   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates, corners_at, &
-      distance_to
+   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates, moved, distance_to
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
-   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_line, put_name, cover_of, tie
-   use picture_page, only: place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
-      put_scale, flag_lines, fitted, width, line_height, centre_radius
-   use svg, only: svg_head, put_end, put_group, put_line, put_words
-   use text_output, only: output_t
+   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_traces, put_ring, &
+      put_name, put_foot, add_line, add_lines, cover_of, tie, line_height, centre_radius
+   use svg, only: page_t, put_end, put_group, put_window, put_line, put_words, fitted
    use phrases
    implicit none
    private
-   public :: put_pictures, put_centre, candidates, clearest, faint_frames, closes
+   public :: put_picture, put_centre, candidates, clearest, faint_frames, closes
 
    !> A picture of more links or points than this has no names: they would cover it.
    integer, parameter :: max_names = 120
@@ -29,22 +26,20 @@ module picture
    real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
    !> Where along a bar its name may stand, in parts of its length.
    real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
-   !> The arrow of a drive, in pixels: radius of an arc, length of an arrow, its distance from the place along it and
-   !> aside, its tip.
-   real(wp), parameter :: arc_radius = 24.0_wp, arrow_length = 36.0_wp, arrow_start = 14.0_wp, &
-      arrow_aside = half_block(2) + 10.0_wp, tip_length = 9.0_wp, tip_half = 4.5_wp
-   integer, parameter :: arc_pieces = 12
-   !> The angle of an arc without and with its tip, and where it may begin, from the side of the link in its own sense
-   !> (degrees).
-   real(wp), parameter :: arc_angle = 110.0_wp, tip_angle = 22.0_wp, &
+   !> The arrow of a drive is a line of so many pieces, the last ones its tip.
+   integer, parameter :: pieces = 10, of_tip = 2
+   !> Its pixels: length of a straight one, its distance from the place along it and aside, half the tip; radius of an
+   !> arc.
+   real(wp), parameter :: arrow_length = 45.0_wp, arrow_start = 14.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
+      tip_half = 4.5_wp, arc_radius = 24.0_wp
+   !> The angle of an arc, and where it may begin, from the side of the link in its own sense (degrees).
+   real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
    !> The weight of an arrow for names, and what one farther from its place counts, in pixels of overlap.
-   real(wp), parameter :: arrow_weight = 3.0_wp, away = 20.0_wp
+   real(wp), parameter :: arrow_weight = 3.0_wp, away = 30.0_wp
 
-   !> A joint is crowded if it is nearer to a bar or guide that is not its own than this part of the mechanism.
+   !> A joint is crowded if it is nearer to a bar that is not its own than this part of the mechanism.
    real(wp), parameter :: clear_distance = 0.1_wp
-   !> A joint in line with a bar counts as crowded by this part.
-   real(wp), parameter :: in_line = 0.5_wp
    !> A later frame is taken if so many joints fewer are crowded. Reason: the first instant is what a reader expects,
    !> and rounding errors must not choose.
    real(wp), parameter :: much_clearer = 0.5_wp
@@ -58,81 +53,66 @@ module picture
 
 contains
 
-   !> Writes the picture of the sets that the `drawings` have recorded.
-   subroutine put_pictures(o, drawings)
-      type(output_t), intent(inout), target :: o
-      type(drawing_t), intent(in), target :: drawings(:)
-      type(canvas_t) :: page(size(drawings))
-      type(element_t), allocatable :: all_shapes(:)
-      integer, allocatable :: list(:)
+   !> Draws the set that the drawing `d` has recorded, at the end of the `page`.
+   subroutine put_picture(page, d)
+      type(page_t), intent(inout), target :: page
+      type(drawing_t), intent(in), target :: d
+      type(canvas_t) :: c
+      type(snapshot_t) :: s
+      type(element_t), allocatable :: list(:)
+      integer, allocatable :: from(:), faint(:)
       character(:), allocatable :: now, others
       real(wp) :: y
-      integer :: top, best, i, k
+      integer :: best, k
 
-      top = 0
-      do i = 1, size(drawings)
-         associate (c => page(i), d => drawings(i))
-            call make_canvas(o, drawings(i), c)
-            if (size(d%own) > 0) then
-               list = candidates(d)
-               best = clearest(d, list)
-               c%faint = faint_frames(d, list, best)
-               if (d%assemblies) best = d%own(1)
-               if (d%assemblies) c%faint = d%own(2:)
-               c%s = d%frame(best)
-            end if
-            if (d%every > 0) c%paths = paths_of(d)
-            call place_canvas(c, top)
-            top = c%bottom
-         end associate
+      s = d%now
+      faint = [integer ::]
+      if (size(d%own) > 0) then
+         from = candidates(d)
+         best = clearest(d, from)
+         faint = faint_frames(d, from, best)
+         if (d%assemblies) best = d%own(1)
+         if (d%assemblies) faint = d%own(2:)
+         s = d%frame(best)
+      end if
+      call make_canvas(page, d, s, faint, c)
+
+      call put_group(c%o, 'class="faint"', '')
+      do k = 1, size(faint)
+         call put_outlines(c, d%frame(faint(k)), .false.)
       end do
-      call svg_head(o, width, max(1, top))
-      do i = 1, size(page)
-         associate (c => page(i), d => drawings(i))
-            call put_set_head(c, c%s%t)
-            call put_group(o, 'class="faint"', '')
-            do k = 1, size(c%faint)
-               call put_outlines(c, d%frame(c%faint(k)), .false.)
-            end do
-            call put_end(o, 'g')
-            do k = 1, size(c%paths)
-               call put_path(c, c%paths(k))
-            end do
-            do k = 1, size(d%flags)
-               call put_flagged(c, d%flags(k)%last)
-            end do
-            all_shapes = shapes_of(d, c%s%known, c%scale)
-            do k = 1, size(all_shapes)
-               call put_shape(c, all_shapes(k))
-            end do
-            call put_drives(c)
-            do k = 1, size(d%poles)
-               call put_centre(c, k)
-            end do
-            if (max(size(d%m%links), size(d%m%points)) <= max_names) then
-               call put_points(c)
-               call put_links(c)
-            end if
-            ! At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
-            if (size(d%own) > 0) then
-               y = real(c%bottom - 16 - line_height*flag_lines(d), wp)
-               now = 'T = '//fitted(c%s%t)//' '//trim(d%m%time_unit)
-               call put_words(o, [14.0_wp, y], 'start', 'class="time"', now)
-               others = phrase(say_faint, d%m%polish)
-               do k = 1, size(c%faint)
-                  others = others//trim(merge(', ', '  ', k > 1))//' '//fitted(d%frame(c%faint(k))%t)
-               end do
-               if (d%assemblies) others = phrase(say_faint_assemblies, d%m%polish)
-               if (size(c%faint) > 0) &
-                  call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
-            end if
-            call put_flags(c)
-            call put_scale(c)
-            call put_end(o, 'g')
-         end associate
+      call put_end(c%o, 'g')
+      call put_traces(c)
+      list = shapes_of(d, s%known, c%scale)
+      call put_window(c%o, c%low, c%high)
+      do k = 1, size(list)
+         call put_shape(c, list(k))
       end do
-      call put_end(o, 'svg')
-   end subroutine put_pictures
+      call put_end(c%o, 'svg')
+      call put_drives(c)
+      do k = 1, size(d%poles)
+         call put_centre(c, k)
+      end do
+      if (max(size(d%m%links), size(d%m%points)) <= max_names) then
+         call put_points(c)
+         call put_links(c)
+      end if
+
+      ! At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
+      if (size(d%own) > 0) then
+         y = real(c%bottom - 16 - line_height*flag_lines(d), wp)
+         now = 'T = '//fitted(s%t)//' '//trim(d%m%time_unit)
+         call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
+         others = phrase(say_faint, d%m%polish)
+         do k = 1, size(faint)
+            others = others//trim(merge(', ', '  ', k > 1))//' '//fitted(d%frame(faint(k))%t)
+         end do
+         if (d%assemblies) others = phrase(say_faint_assemblies, d%m%polish)
+         if (size(faint) > 0) &
+            call put_words(c%o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
+      end if
+      call put_foot(c)
+   end subroutine put_picture
 
    !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
    !> that of its acceleration.
@@ -169,11 +149,11 @@ contains
    contains
 
       !> Draws an arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise
-      !> about its first joint. Of places where it may begin, that is taken where it covers least.
+      !> about its first joint.
       subroutine put_arc(base, link, sense)
          integer, intent(in) :: base, link
          real(wp), intent(in) :: sense
-         real(wp) :: center(2), start, best(2, 0:arc_pieces), e(2), cover, least
+         real(wp) :: center(2), start, e(2), lines(2, 0:pieces, size(arc_starts))
          integer :: i, k, ends(2), point
 
          point = 0
@@ -192,75 +172,67 @@ contains
          center = c%s%place(:2, link)
          if (point > 0) center = point_place(c%m, c%s, point)
          start = c%s%place(3, link)
-         associate (corners => corners_at(c%d%outlines(link), c%s%place(:, link)))
+         associate (corners => moved(c%d%outlines(link)%corner, c%s%place(:, link)))
             if (size(corners, 2) > 1) then
                e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
                if (c%scale*norm2(e) > 1.0_wp) start = atan2(e(2), e(1))
             end if
          end associate
-         center = to_pixels(c, center)
-         least = huge(least)
          do k = 1, size(arc_starts)
-            cover = cover_of(c, arc(center, start + sense*degree*arc_starts(k), sense*degree*(arc_angle + tip_angle)))
-            if (cover >= least - tie) cycle
-            least = cover
-            best = arc(center, start + sense*degree*arc_starts(k), sense*degree*arc_angle)
+            do i = 0, pieces
+               e = direction(start + sense*degree*(arc_starts(k) + arc_angle*real(i, wp)/real(pieces, wp)))
+               lines(:, i, k) = to_pixels(c, center) + arc_radius*[e(1), -e(2)]
+            end do
          end do
-         do k = 1, arc_pieces
-            call add_line(c, best(:, k - 1), best(:, k), arrow_weight)
-         end do
-         e = (best(:, arc_pieces) - center)/arc_radius
-         call put_line_with_tip(best, -sense*quarter_turn(e))
+         call put_clearest(lines, spread(0.0_wp, 1, size(arc_starts)))
       end subroutine put_arc
 
-      !> The pixels (2, 0:arc_pieces) of an arc about the pixel `center` (2), from `start` over `angle` (rad).
-      pure function arc(center, start, angle) result(p)
-         real(wp), intent(in) :: center(2), start, angle
-         real(wp) :: p(2, 0:arc_pieces)
-         integer :: k
-
-         do k = 0, arc_pieces
-            p(:, k) = center + arc_radius*direction(start + angle*real(k, wp)/real(arc_pieces, wp))*[1.0_wp, -1.0_wp]
-         end do
-      end function arc
-
       !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point` or, if it may be `ahead`
-      !> of it, there: where it covers least.
+      !> of it, there.
       subroutine put_arrow(point, sense, ahead)
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
          logical, intent(in) :: ahead
-         real(wp) :: p(2), e(2), ends(2, 2), best(2, 2), cover, least
-         integer :: side, k
+         real(wp), parameter :: costs(0:4) = away*[0.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp]
+         real(wp) :: e(2), start(2), lines(2, 0:pieces, 0:4)
+         integer :: side, i
 
-         p = to_pixels(c, point_place(c%m, c%s, point))
          e = sense*[1.0_wp, -1.0_wp]
-         least = huge(least)
-         do side = merge(0, 1, ahead), 4
-            ends(:, 1) = p + arrow_start*e
-            if (side > 0) ends(:, 1) = p - 0.5_wp*arrow_length*e + real((side + 1)/2, wp) &
+         do side = 0, 4
+            start = arrow_start*e
+            if (side > 0) start = -0.5_wp*arrow_length*e + real((side + 1)/2, wp) &
                *merge(arrow_aside, -arrow_aside, (mod(side, 2) == 1) .eqv. (e(1) < 0.0_wp))*quarter_turn(e)
-            ends(:, 2) = ends(:, 1) + arrow_length*e
-            cover = cover_of(c, reshape([(ends(:, 1) + real(k, wp)/6.0_wp*(ends(:, 2) + tip_length*e - ends(:, 1)), &
-               k=0, 6)], [2, 7])) + away*real((side + 1)/2, wp)
-            if (cover >= least - tie) cycle
-            least = cover
-            best = ends
+            do i = 0, pieces
+               lines(:, i, side) = to_pixels(c, point_place(c%m, c%s, point)) + start &
+                  + arrow_length*real(i, wp)/real(pieces, wp)*e
+            end do
          end do
-         call put_line_with_tip(best, e)
-         call add_line(c, best(:, 1), best(:, 2) + tip_length*e, arrow_weight)
+         i = merge(0, 1, ahead)
+         call put_clearest(lines(:, :, i:), costs(i:))
       end subroutine put_arrow
 
-      !> Draws a line through the pixels `p` (2, :) with the tip of an arrow in the direction `e` (2) at its end.
-      subroutine put_line_with_tip(p, e)
-         real(wp), intent(in) :: p(:, :), e(2)
+      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `costs` (:): what each
+      !> counts besides.
+      subroutine put_clearest(lines, costs)
+         real(wp), intent(in) :: lines(:, 0:, :), costs(:)
+         real(wp) :: cover, least, e(2)
+         integer :: k, best
 
-         call put_line(c%o, 'polyline', p, 'class="drive"')
-         associate (last => p(:, size(p, 2)), aside => tip_half*quarter_turn(e))
-            call put_line(c%o, 'polygon', reshape([last + tip_length*e, last + aside, last - aside], [2, 3]), &
-               'class="tip"')
+         best = 1
+         least = huge(least)
+         do k = 1, size(lines, 3)
+            cover = cover_of(c, lines(:, :, k)) + costs(k)
+            if (cover >= least - tie) cycle
+            least = cover
+            best = k
+         end do
+         associate (line => lines(:, :, best), tail => lines(:, pieces - of_tip, best), tip => lines(:, pieces, best))
+            e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
+            call put_line(c%o, 'polyline', line(:, :1 + pieces - of_tip), 'class="drive"')
+            call put_line(c%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), 'class="tip"')
+            call add_lines(c, line, arrow_weight)
          end associate
-      end subroutine put_line_with_tip
+      end subroutine put_clearest
    end subroutine put_drives
 
    !> Draws the ring of the instant centre of pole number `i`, with its name, if it is in the picture.
@@ -318,7 +290,7 @@ contains
 
       do i = 1, size(c%m%links)
          if (c%m%links(i)%ground .or. .not. c%s%known(i)) cycle
-         corners = corners_at(c%d%outlines(i), c%s%place(:, i))
+         corners = moved(c%d%outlines(i)%corner, c%s%place(:, i))
          n = size(corners, 2)
          if (n == 0) cycle
          places = merge(size(along), 1, n > 1)
@@ -388,28 +360,11 @@ contains
          do k = 1, size(d%m%links)
             if (d%m%links(k)%ground .or. any(own == k) .or. .not. s%known(k) .or. size(d%outlines(k)%corner, 2) < 2) &
                cycle
-            associate (corners => corners_at(d%outlines(k), s%place(:, k))/extent)
-               crowded = crowded + max(nearness(distance_to(corners, p, 0.0_wp)), &
-                  merge(in_line, 0.0_wp, size(corners, 2) == 2)*nearness(distance_to(corners, p, 1.0_wp)))
-            end associate
-         end do
-         if (d%m%pairs(i)%kind /= pair_revolute) cycle
-         do k = 1, size(d%guides)
-            associate (g => d%guides(k))
-               if (.not. s%known(g%carrier) .or. any(own == g%block)) cycle
-               crowded = crowded + nearness(abs(cross(direction(s%place(3, g%carrier) + g%angle), &
-                  p - point_of(s%place(:, g%carrier), g%foot)/extent)))
-            end associate
+            crowded = crowded + max(0.0_wp, &
+               1.0_wp - distance_to(moved(d%outlines(k)%corner, s%place(:, k))/extent, p)/clear_distance)
          end do
       end do
    end function crowded_joints
-
-   !> 1 at the distance 0, 0 at `clear_distance` and from there on.
-   pure real(wp) function nearness(distance)
-      real(wp), intent(in) :: distance
-
-      nearness = max(0.0_wp, 1.0_wp - distance/clear_distance)
-   end function nearness
 
    !> The larger side of what the known moving links cover at the position `s`.
    pure real(wp) function extent_of(d, s) result(extent)
@@ -422,7 +377,7 @@ contains
       high = -huge(1.0_wp)
       do i = 1, size(d%m%links)
          if (d%m%links(i)%ground .or. .not. s%known(i)) cycle
-         associate (p => corners_at(d%outlines(i), s%place(:, i)))
+         associate (p => moved(d%outlines(i)%corner, s%place(:, i)))
             low = min(low, minval(p, dim=2))
             high = max(high, maxval(p, dim=2))
          end associate
@@ -473,8 +428,8 @@ contains
       extent = extent_of(d, d%frame(i))
       do k = 1, size(d%m%links)
          if (d%m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
-         associate (p => corners_at(d%outlines(k), d%frame(i)%place(:, k)), &
-            q => corners_at(d%outlines(k), d%frame(j)%place(:, k)))
+         associate (p => moved(d%outlines(k)%corner, d%frame(i)%place(:, k)), &
+            q => moved(d%outlines(k)%corner, d%frame(j)%place(:, k)))
             if (size(p) > 0) distance = max(distance, maxval(abs(p - q)))
          end associate
       end do

@@ -4,6 +4,7 @@ module shapes
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
    use planar, only: direction, quarter_turn, rotated
+   use scales, only: characteristic_length
    use drawing, only: drawing_t, guide_t, joint_point, point_place
    use svg, only: attribute
    implicit none
@@ -12,7 +13,7 @@ module shapes
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
-      character(:), allocatable :: element      !< of SVG; 'hatch' the strokes below a line, 'cut' a line in the picture
+      character(:), allocatable :: element      !< of SVG; 'hatch' the strokes below a line; 'centrode'
       character(:), allocatable :: attributes, title
       integer :: link = 0                       !< 0: the fixed plane
       logical :: is_below = .false.             !< it is drawn before all links
@@ -36,8 +37,9 @@ module shapes
    real(wp), parameter :: box = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, centrode_weight = 0.4_wp
    !> A centrode that comes so near to its first place, in parts of its first step, has come back.
    real(wp), parameter :: come_back = 0.5_wp
-   !> A centrode of fewer pixels is one place for the eye.
-   real(wp), parameter :: one_place = 0.01_wp
+   !> A centrode of fewer pixels is one place for the eye. A place so many characteristic lengths away is no number for
+   !> a viewer.
+   real(wp), parameter :: one_place = 0.01_wp, far = 1.0e3_wp
 
 contains
 
@@ -54,7 +56,7 @@ contains
       integer :: ends(2), used, i, k
 
       used = 0
-      allocate (list(64))
+      allocate (list(4*size(d%m%pairs) + 2*size(d%m%links) + size(d%m%points) + d%films*size(d%poles)))
       ! A support under each joint of the ground.
       do i = 1, size(d%m%pairs)
          if (d%m%pairs(i)%kind /= pair_revolute) cycle
@@ -114,7 +116,7 @@ contains
             'class="point" '//attribute('data-point', trim(d%m%points(i)%name)), spread(d%m%points(i)%offset, 2, 1), &
             weight=box, radius=point_radius)
       end do
-      call make_room(used)
+      list = list(:used)
 
    contains
 
@@ -126,7 +128,6 @@ contains
          real(wp), intent(in), optional :: pixels(:, :), weight, radius
          character(*), intent(in), optional :: title
 
-         if (used == size(list)) call make_room(2*used)
          used = used + 1
          associate (one => list(used))
             one%link = link
@@ -141,16 +142,6 @@ contains
             if (present(radius)) one%radius = radius
          end associate
       end subroutine add
-
-      !> Changes the size of `list` to `n`, at least `used`.
-      subroutine make_room(n)
-         integer, intent(in) :: n
-         type(element_t), allocatable :: other(:)
-
-         allocate (other(n))
-         other(:used) = list(:used)
-         call move_alloc(other, list)
-      end subroutine make_room
 
       !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
       !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
@@ -183,8 +174,8 @@ contains
       end subroutine add_guide
 
       !> Adds the centrode of pole number `i` in its link number `side`, 1 or 2, as it lies in that link: the two touch
-      !> at the instant centre. It may run to infinity, and the picture cuts it. Where the sense of the relative turn
-      !> changes, the centre has passed through infinity.
+      !> at the instant centre. It may run to infinity, and the picture shows its part of it. Where the sense of the
+      !> relative turn changes, the centre has passed through infinity. A place that is `far` is not drawn.
       subroutine add_centrode(i, side)
          integer, intent(in) :: i, side
          character(:), allocatable :: attributes
@@ -204,6 +195,7 @@ contains
                goes_on(k) = now%has_centre(i)
             end associate
          end do
+         goes_on = goes_on .and. all(abs(p) < far*characteristic_length(d%m), dim=1)
          goes_on = goes_on .and. eoshift(goes_on, 1) .and. ((turn > 0.0_wp) .eqv. (eoshift(turn, 1) > 0.0_wp))
          if (.not. any(goes_on)) return
          ! The pole of two links that a joint holds together stays in both: rounding errors would decide all below.
@@ -227,7 +219,7 @@ contains
          first = 1
          do last = 1, d%films
             if (goes_on(last)) cycle
-            if (last > first) call add(links(side), 'cut', attributes, p(:, first:last), weight=centrode_weight, &
+            if (last > first) call add(links(side), 'centrode', attributes, p(:, first:last), weight=centrode_weight, &
                title=pole_name(d%m, d%poles(i)))
             first = last + 1
          end do

@@ -4,14 +4,23 @@ module svg
    use kinds, only: wp
    use planar, only: quarter_turn
    use text_output, only: output_t, put, add
-   use numerals, only: fixed, whole
+   use numerals, only: fixed, whole, max_decimals
    implicit none
    private
-   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, put_words, &
-      put_columns, pixels, without_zeros, escaped, attribute, translation
+   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, &
+      put_words, put_columns, pixels, escaped, attribute, translation, fitted
 
+   !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
+   !> first line.
+   type :: page_t
+      type(output_t) :: body
+      integer :: height = 0                  !< of what is drawn so far (pixels)
+   end type page_t
+
+   !> The width of a page (pixels).
+   integer, parameter, public :: width = 800
    !> The first line of a file that holds a picture.
-   character(*), parameter, public :: xml_line = '<?xml version="1.0" encoding="US-ASCII"?>'
+   character(*), parameter :: xml_line = '<?xml version="1.0" encoding="US-ASCII"?>'
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
       'text{font-family:"DejaVu Sans",Verdana,Arial,sans-serif;font-size:12px;fill:#222;stroke:#fff;stroke-width:3;', &
@@ -52,21 +61,35 @@ module svg
 
 contains
 
-   !> Begins a picture of `width` times `height` pixels with a white ground.
-   subroutine svg_head(o, width, height)
+   !> Begins the file `o` of a `page`, which is empty.
+   subroutine begin_page(o, page)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: width, height
+      type(page_t), intent(out) :: page
+
+      call put(o, xml_line)
+      allocate (character(1) :: page%body%buffer)
+      page%body%held = .true.
+   end subroutine begin_page
+
+   !> Writes the `page` to the file `o`, with a white ground.
+   subroutine end_page(o, page)
+      type(output_t), intent(inout) :: o
+      type(page_t), intent(in) :: page
+      character(:), allocatable :: height
       integer :: i
 
+      height = whole(max(1, page%height))
       call put(o, '<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="'//whole(width)//'" height="' &
-         //whole(height)//'" viewBox="0 0 '//whole(width)//' '//whole(height)//'">')
+         //height//'" viewBox="0 0 '//whole(width)//' '//height//'">')
       call put(o, '<style type="text/css">')
       do i = 1, size(style)
          call put(o, trim(style(i)))
       end do
       call put(o, '</style>')
-      call put(o, '<rect width="'//whole(width)//'" height="'//whole(height)//'" fill="#fff"/>')
-   end subroutine svg_head
+      call put(o, '<rect width="'//whole(width)//'" height="'//height//'" fill="#fff"/>')
+      call add(o, page%body%buffer(:page%body%used))
+      call put_end(o, 'svg')
+   end subroutine end_page
 
    !> Begins a group of elements with the attributes `attributes`; `title`, if not '', is what a viewer says of it.
    subroutine put_group(o, attributes, title)
@@ -175,14 +198,14 @@ contains
       call put(o, '"'//ending)
    end subroutine put_columns
 
-   !> Begins a picture in the picture: what follows is seen from the place `p` (2) on, over `extent` (2), and has its
-   !> places from there.
-   subroutine put_window(o, p, extent)
+   !> Begins a window: of what follows only the part from `low` to `high` (2) is seen.
+   subroutine put_window(o, low, high)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2), extent(2)
+      real(wp), intent(in) :: low(2), high(2)
 
-      call put(o, '<svg x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" width="'//pixels(extent(1))//'" height="' &
-         //pixels(extent(2))//'" overflow="hidden">')
+      call put(o, '<svg x="'//pixels(low(1))//'" y="'//pixels(low(2))//'" width="'//pixels(high(1) - low(1)) &
+         //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//place(low)//' '//place(high - low) &
+         //'" overflow="hidden">')
    end subroutine put_window
 
    !> The place `p` (2) in a path.
@@ -200,6 +223,21 @@ contains
 
       text = without_zeros(fixed(x + tie, 2, 0))
    end function pixels
+
+   !> `x` with six digits, without zeros at their end. A negative number keeps the zero before its point.
+   pure function fitted(x) result(text)
+      real(wp), intent(in) :: x
+      character(:), allocatable :: text
+      integer :: e
+
+      e = 0
+      if (abs(x) > 0.0_wp) e = floor(log10(abs(x)))
+      if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
+         text = without_zeros(fixed(x, 5, e))//'E'//whole(e)
+      else
+         text = without_zeros(fixed(x, min(5 - e, max_decimals - merge(1, 0, x < 0.0_wp)), 0))
+      end if
+   end function fitted
 
    !> The number `digits` without zeros at the end of its decimals.
    pure function without_zeros(digits) result(text)

@@ -148,8 +148,8 @@ equal 'rings of an animation' '3 rings, 0 off' "$(awk '
       dx = at[2] - x0 - scale*x[set, part[2]]; dy = at[3] - y0 + scale*y[set, part[2]]; off += dx*dx + dy*dy > 1e-3 }
    END { print rings " rings, " off + 0 " off" }' "$w/poles.csv" "$w/poles.moving.svg")"
 
-# centrodes SVG: of each centrode its width in units of length, its lines, how far it leaves the picture, and whether it
-# goes through the ring of its instant centre; of the first set.
+# centrodes SVG: of each centrode its width in units of length, its lines, and whether it goes through the ring of its instant
+# centre; of the first set.
 centrodes() { awk '
    function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
    function away(x, y, a, b, c, d,   s) {
@@ -169,7 +169,6 @@ centrodes() { awk '
       n = split(value($0, "points"), place, " ")
       for (k = 1; k <= n; k++) {
          split(place[k], p, ",")
-         if (p[1] < 3.99 || p[1] > 796.01 || p[2] < 33.99) outside[g]++
          if (p[1] < low[g]) low[g] = p[1]
          if (p[1] > high[g]) high[g] = p[1]
          x[g, ++points[g]] = p[1]; y[g, points[g]] = p[2]; first[g, points[g]] = (k == 1)
@@ -182,20 +181,30 @@ centrodes() { awk '
          d = away(rx[r], ry[r], x[k, i - 1], y[k, i - 1], x[k, i], y[k, i])
          if (d < least) least = d
       }
-      printf "%s %.2f %d %d %s\n", name[k], (high[k] - low[k])/scale, lines[k], outside[k], least < 0.5 ? "through" : "beside"
+      printf "%s %.2f %d %s\n", name[k], (high[k] - low[k])/scale, lines[k], least < 0.5 ? "through" : "beside"
    } }' "$1"; }
 # The circles of Cardan have the diameters 6 and 3: the bar turns once, its centre twice round the smaller one, drawn once.
 # Those of the shoes, which are at infinity, are not there.
 sed -e '/^POLE    BASE    SHOE/d' -e '/^POLE    SHOE/d' input/cardan.deck > "$w/cardan.deck"
 "$kinmat" "$w/cardan.deck" --no-listing --svg "$w/cardan.svg"
-equal "Cardan's circles" 'BASE-BAR 6.00 1 0 through
-BASE-BAR 3.00 1 0 through' "$(centrodes "$w/cardan.svg")"
-# Those of a coupler run twice to infinity: three lines each, cut at the border of the picture; those of crank and rocker are closed.
+equal "Cardan's circles" 'BASE-BAR 6.00 1 through
+BASE-BAR 3.00 1 through' "$(centrodes "$w/cardan.svg")"
+# Those of a coupler run twice to infinity: three lines each, in a window; those of crank and rocker are closed.
 # Coarse instants make no coarse centrodes.
-equal 'centrodes of a four-bar' '2 3 0 through
-2 3 0 through
-1 1 0 through
-1 1 0 through' "$(centrodes "$w/poles.svg" | awk '{ print ($1 == "BASE-COUPLER") + 1, $3, $4, $5 }')"
+equal 'centrodes of a four-bar' '2 3 through
+2 3 through
+1 1 through
+1 1 through' "$(centrodes "$w/poles.svg" | awk '{ print ($1 == "BASE-COUPLER") + 1, $3, $4 }')"
+equal 'centrodes in a window' 6 "$(awk '/<svg x=/ { inside = 1 } /<.svg>/ { inside = 0 } inside' "$w/poles.svg" |
+   grep -c 'class="centrode" data-centrode="BASE-COUPLER"')"
+# Coarse instants make no coarse centrodes.
+equal 'centrodes of a four-bar' '2 3 through
+2 3 through
+1 1 through
+1 1 through' "$(centrodes "$w/poles.svg" | awk '{ print ($1 == "BASE-COUPLER") + 1, $3, $4 }')"
+equal 'centrodes in a window' 4 "$(awk '/<svg x=/ { inside = 1 } /<.svg>/ { inside = 0 } inside' "$w/poles.svg" |
+   grep -cE 'class="centrode" data-centrode="BASE-COUPLER" data-link="(BASE|COUPLER)".*points="[^"]* [^"]*"' |
+   awk '{ print $1 - 2 }')"
 sed -e '/^END/q' -e 's/^TIME.*/TIME    4                       0.0             12.0/' input/poles.deck > "$w/coarse.deck"
 "$kinmat" "$w/coarse.deck" --no-listing --svg "$w/coarse.svg"
 equal 'centrodes of coarse instants' "$(centrodes "$w/poles.svg" | cut -d' ' -f3-)" "$(centrodes "$w/coarse.svg" | cut -d' ' -f3-)"
