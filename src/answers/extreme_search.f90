@@ -23,11 +23,10 @@ module extreme_search
    real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
    integer, parameter :: max_nearer = 5, max_farther = 8
 
-   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point or the
-   !> pole of a law.
+   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
    type :: end_t
       real(wp) :: t = 0.0_wp
-      logical :: is_open = .false., is_change = .false., is_pole = .false.
+      logical :: is_open = .false., is_change = .false.
    end type end_t
 
 contains
@@ -76,7 +75,7 @@ contains
       subroutine search_step()
          real(wp), allocatable :: ends(:), times(:)
          real(wp) :: from
-         logical :: is_open, is_change, is_limit, is_pole, to_open, to_change
+         logical :: is_open, is_change, is_limit, to_open, to_change
          integer :: i
 
          associate (track => x%tracks(c), t1 => x%tracks(c)%t)
@@ -84,7 +83,7 @@ contains
             ! Most steps have no ends, and no nodes but their own.
             if (known .and. track%is_known .and. .not. allocated(s%now%motions(c)%diagnostics) &
                .and. size(track%joints) == 0 .and. abs(now%t - t1) <= track%longest) return
-            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit, is_pole)
+            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
             if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
             if (track%is_lost) ends = [real(wp) ::]
             times = times_between(track%joints, track%longest, x%run, t1, now%t)
@@ -94,8 +93,7 @@ contains
             do i = 1, size(ends)
                to_open = i < size(ends) .or. is_limit .or. .not. known
                to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
-               call search_piece(times, end_t(from, is_open, is_change), end_t(ends(i), to_open, to_change, &
-                  is_pole .and. i == size(ends)))
+               call search_piece(times, end_t(from, is_open, is_change), end_t(ends(i), to_open, to_change))
                is_open = .true.
                is_change = .true.
                from = ends(i)
@@ -106,17 +104,16 @@ contains
 
       !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached:
       !> that is the last. A change point that is later only by rounding is the same one, or at `from` itself.
-      pure subroutine find_ends(q, from, way, ends, is_limit, is_pole)
+      pure subroutine find_ends(q, from, way, ends, is_limit)
          type(motion_t), intent(in) :: q
          real(wp), intent(in) :: from, way
          real(wp), allocatable, intent(out) :: ends(:)
-         logical, intent(out) :: is_limit, is_pole
+         logical, intent(out) :: is_limit
          real(wp) :: last
          integer :: i
 
          allocate (ends(0))
          is_limit = .false.
-         is_pole = .false.
          if (.not. allocated(q%diagnostics)) return
          last = from
          do i = 1, size(q%diagnostics)
@@ -128,7 +125,6 @@ contains
                ! A limit at the instant itself is later only by rounding.
                last = way*min(way*d%t, way*q%t)
                ends = [ends, last]
-               is_pole = d%is_pole
             end associate
          end do
       end subroutine find_ends
@@ -187,7 +183,7 @@ contains
                if (.not. is_known(near(i), x%tracks(c)%rows)) exit
             end do
             if (i <= places) cycle
-            limits = limits_of(near, at%is_change, at%is_pole, x%size_of)
+            limits = limits_of(near, at%is_change, x%size_of)
             if (largest_error(limits) < least_error) then
                least_error = largest_error(limits)
                best = limits

@@ -255,12 +255,9 @@ contains
       type(one_sided_t), intent(in) :: limits
       real(wp) :: gain
       integer :: which, c, k
-      logical :: comes_back
 
       do k = 0, 2
          do c = 1, x%columns(row)
-            ! Before the pole of a law what is faster and faster and stays within bounds goes to and fro.
-            comes_back = limits%at_pole .and. k > 0 .and. limits%has_bound(c, 0, row)
             do which = least, greatest
                associate (e => x%found(which, c, k, row), value => limits%value(c, k, row), &
                           error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
@@ -270,7 +267,7 @@ contains
                   if (has_bound) then
                      if (e%exists .and. gain <= alike*x%size_of(c, k, row) + e%error + error) cycle
                   else
-                     if (.not. comes_back .and. ((value > 0.0_wp) .neqv. which == greatest)) cycle
+                     if ((value > 0.0_wp) .neqv. which == greatest) cycle
                   end if
                   e = extreme_t(exists=.true., has_bound=has_bound, is_located=.true., t=t, value=value, error=error)
                end associate

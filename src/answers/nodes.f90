@@ -33,9 +33,6 @@ module nodes
    !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
    !> numbers below the second, in characteristic ones.
    real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
-   !> Before the pole of a law links turn ever faster: of their coordinates only those beyond so many characteristic
-   !> ones go to infinity with the drive, and the others come back.
-   real(wp), parameter :: far = 10.0_wp
 
    !> The rows at one time, of the requests of one independent mechanism.
    type :: node_t
@@ -49,7 +46,6 @@ module nodes
 
    !> The limits (3, 0:2, asked) on one side of a time.
    type :: one_sided_t
-      logical :: at_pole = .false.                     !< the law of a drive goes to infinity there
       logical, allocatable :: has_bound(:, :, :)
       real(wp), allocatable :: value(:, :, :)          !< the limit; of what has none, a value with its sign
       real(wp), allocatable :: error(:, :, :)          !< of the limit
@@ -173,11 +169,11 @@ contains
       times = t + sign(nearest, from - t)*[(i**2, i=1, places)]
    end function places_beside
 
-   !> The limits at the time beside which the `nodes` are, a change point, a limit, or (`is_pole`) the pole of a law;
-   !> `size_of` (3, 0:2, asked): characteristic values.
-   pure function limits_of(nodes, is_change, is_pole, size_of) result(limits)
+   !> The limits at the time beside which the `nodes` are, a change point or a limit; `size_of` (3, 0:2, asked):
+   !> characteristic values.
+   pure function limits_of(nodes, is_change, size_of) result(limits)
       type(node_t), intent(in) :: nodes(places)
-      logical, intent(in) :: is_change, is_pole
+      logical, intent(in) :: is_change
       real(wp), intent(in) :: size_of(:, 0:, :)
       type(one_sided_t) :: limits
       real(wp), dimension(places) :: f, five, four
@@ -185,7 +181,6 @@ contains
 
       five = merge(in_time, in_root, is_change)
       four = merge(four_in_time, four_in_root, is_change)
-      limits%at_pole = is_pole
       allocate (limits%value, limits%error, mold=nodes(1)%value)
       allocate (limits%has_bound(3, 0:2, size(size_of, 3)))
       do q = 1, size(size_of, 3)
@@ -196,7 +191,7 @@ contains
                limits%error(c, k, q) = 2.0_wp*abs(dot_product(five - four, f)) &
                   + maxval([(nodes(i)%error(c, k, q), i=1, places)])
                limits%has_bound(c, k, q) = is_change .or. abs(f(1)) < growth*abs(f(2)) &
-                  .or. abs(f(1)) < merge(far, small, is_pole .and. k == 0)*size_of(c, k, q)
+                  .or. abs(f(1)) < small*size_of(c, k, q)
                if (.not. limits%has_bound(c, k, q)) limits%value(c, k, q) = f(1)
             end do
          end do

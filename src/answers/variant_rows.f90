@@ -4,7 +4,7 @@ module variant_rows
    use planar, only: in_degrees
    use mechanism, only: request_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
-   use drives, only: new_law, drive_motion, pole_value
+   use drives, only: new_law, drive_motion
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
@@ -278,7 +278,6 @@ contains
                r%cells(n + 2) = cell_t(cell_word, word=drive_name(own, own%drives(r%limit%drive)))
             end associate
             r%cells(n + 3) = cell_t(cell_number, r%limit%value)
-            if (r%limit%is_pole) r%cells(n + 3) = cell_t(cell_unbounded, sign(1.0_wp, r%limit%value))
             if (r%limit%is_angle .and. set%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
          end if
       end if
@@ -344,8 +343,6 @@ contains
 
       if (d == 0) return
       associate (drive => set%parts(set%drives(d)%part)%drives(set%drives(d)%number))
-         cell = cell_t(cell_unbounded, sign(1.0_wp, pole_value(drive, set%t0)))
-         if (abs(t) <= 0.0_wp .and. abs(pole_value(drive, set%t0)) > 0.0_wp) return
          f = drive_motion(new_law(drive), t)
          cell = cell_t(cell_number, f(1))
       end associate

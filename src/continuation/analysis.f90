@@ -7,7 +7,7 @@ module analysis
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
    use drives, only: is_at_rest, halve, middle_of
-   use drive_excursion, only: has_pole_between, short_of_pole, largest_derivative
+   use drive_excursion, only: largest_derivative
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
@@ -96,35 +96,24 @@ contains
       type(motion_t), intent(inout) :: found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
-      real(wp) :: to
       integer :: iterations
-      logical :: is_over_pole, goes_on
+      logical :: goes_on
 
       call come_back(a)
       iterations = a%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
-      to = t
-      is_over_pole = a%follows .and. has_pole_between(a%drives, a%t, t)
-      if (is_over_pole) to = short_of_pole(a%drives, a%t)
-      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, to)) then
+      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, t)) then
          call pass_over(a, t, found)
          return
       end if
-      call reach(a, to, step, list)
-      if (step%arrived .and. is_over_pole) then
-         ! The motion comes to t = 0, where the law goes to infinity, without another limit.
-         call go_back(a%following_t, step)
-         call note_limit(a%limits, a%t, a%t, 0.0_wp, .false., [diagnostic_t(kind=diagnostic_limit, &
-            drive=a%drives%infinite, is_pole=.true., value=a%drives%pole(merge(1, 2, a%t < 0.0_wp)))])
-         call pass_over(a, t, found)
-         return
-      else if (step%arrived) then
+      call reach(a, t, step, list)
+      if (step%arrived) then
          call arrive(a, step, list, found)
       else
          if (allocated(step%passed)) call add_diagnostics(step%passed, found)
          a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
-         call give_up(a, to, step, found)
+         call give_up(a, t, step, found)
       end if
       goes_on = found%known == 2 .and. .not. found%rests
       if (allocated(a%dense)) then
@@ -327,7 +316,7 @@ contains
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
-         if (.not. has_pole_between(a%drives, a%t, found%t)) call get_driven_links(a%engine, t, found)
+         call get_driven_links(a%engine, t, found)
       end if
 
       allocate (list(0))
@@ -354,8 +343,7 @@ contains
       if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
    end subroutine give_up
 
-   !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason. Beyond a
-   !> pole of a law no link has a position.
+   !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason.
    subroutine pass_over(a, t, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
@@ -363,7 +351,7 @@ contains
       integer :: side
 
       call cut(found, -1, mark_not_converged)
-      if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call get_driven_links(a%engine, t, found)
+      call get_driven_links(a%engine, t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       side = limit_before(a%limits, t)

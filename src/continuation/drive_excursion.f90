@@ -10,21 +10,17 @@ module drive_excursion
    use mechanism, only: mechanism_t, find_instants
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
-   use planar, only: pi
-   use drives, only: law_t, new_law, drive_motion, pole_value, bounds_t, bounds_of, halve, middle_of
+   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
-      largest_derivative, judge_step, has_pole_between, short_of_pole
+      largest_derivative, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
    real(wp), parameter :: largest_excursion = 0.03_wp
    !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
    real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
-   !> The motion is followed towards a pole of a law until the drive has turned so far (rad), or gone so many lengths:
-   !> as far as card RANGE follows it. What has no limit till then turns for ever.
-   real(wp), parameter :: far_turned = 24.0_wp*pi, far_gone = 100.0_wp
 
    !> The laws of all drives, and bounds of them. Times are in the deck's unit.
    type :: drive_excursion_t
@@ -33,8 +29,6 @@ module drive_excursion
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
       real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
-      integer :: infinite = 0                     !< a drive whose law goes to infinity between them; 0: none
-      real(wp) :: pole(2) = 0.0_wp                !< where that goes from earlier and from later times: -huge or huge
    end type drive_excursion_t
 
 contains
@@ -58,13 +52,6 @@ contains
       end do
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
-      do i = 1, size(m%drives)
-         if (p%first >= 0.0_wp .or. p%last <= 0.0_wp .or. p%infinite > 0) exit
-         p%pole = [pole_value(m%drives(i), p%first), pole_value(m%drives(i), p%last)]
-         if (abs(p%pole(1)) > 0.0_wp) p%infinite = i
-      end do
-      ! No step is plain then, nor has it bounds.
-      if (p%infinite > 0) return
       rate = largest_derivative(p, 1, p%first, p%last)
       p%longest = huge(1.0_wp)
       if (rate > largest_change/huge(1.0_wp)) p%longest = largest_change/rate
@@ -182,33 +169,6 @@ contains
          steps = max(steps, abs(f2(1) - f1(1))*p%unit(i)/largest_change)
       end do
    end function steps_at_least
-
-   !> Some law goes to infinity at t = 0, between `t1` and `t2`.
-   pure logical function has_pole_between(p, t1, t2)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t1, t2
-
-      has_pole_between = p%infinite > 0 .and. min(t1, t2) < 0.0_wp .and. max(t1, t2) > 0.0_wp
-   end function has_pole_between
-
-   !> The time to which the motion is followed from `t` where a law goes to infinity at t = 0: until its drive has gone
-   !> so far that no other limit is expected. Positions that drives alone give need not be followed.
-   pure real(wp) function short_of_pole(p, t) result(low)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t
-      real(wp) :: from(3), f(3), high, far
-      integer :: i
-
-      low = t
-      if (size(p%laws) == 0) return
-      far = merge(far_gone/p%unit(p%infinite), far_turned, is_length(p%laws(p%infinite)%drive))
-      from = drive_motion(p%laws(p%infinite), t)
-      high = 0.0_wp
-      do i = 1, digits(1.0_wp)
-         f = drive_motion(p%laws(p%infinite), middle_of(low, high))
-         call halve(abs(f(1) - from(1)) < far, low, high)
-      end do
-   end function short_of_pole
 
    !> Bounds derivative number `k` of every drive between `t1` and `t2`, in radians or characteristic lengths; huge: no
    !> bound.

@@ -4,7 +4,7 @@ module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use mechanism, only: remark_jumps, mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
+   use mechanism, only: remark_jumps, drive_t, term_t, drive_links, find_instants, drive_angle, &
       drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
@@ -13,7 +13,7 @@ module deck_drives
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
       form_rise, form_end
-   use input_errors, only: error_code_t, error_count, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
+   use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
       drive_one_link, drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, &
       table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
@@ -39,7 +39,7 @@ contains
             call build_terms(n)
             ! Without a value at t = 0 it has that of the drawing; the values of a table are absolute. In a deck with
             ! errors what the drive names may not be there.
-            drive%drawn = .not. set%cards(k)%given(1) .and. has_drawing(set) .and. error_count(set%errors) == 0 &
+            drive%drawn = .not. set%cards(k)%given(1) .and. has_drawing(set) .and. set%errors%count == 0 &
                .and. .not. any(drive%terms%kind == term_table)
             if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
             set%mechanism%drives(n) = drive
@@ -187,12 +187,12 @@ contains
                if (real(last, dp) > real(term%knots(size(term%knots)), dp)) call add_instant_error(table_range, last)
             else if (term%kind == term_power) then
                ! t**p exists for t < 0 if p is a whole number, and with two derivatives at t = 0 if p is 0, 1 or at
-               ! least 2.
+               ! least 2. The motion passes t = 0 between instants as well.
                associate (p => term%r(2))
                   if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
                      call add_instant_error(power_negative, first)
-                  else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp) then
-                     if (meets_zero(set%mechanism)) call add_instant_error(power_zero, 0.0_wp)
+                  else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp .and. first <= 0.0_wp .and. last >= 0.0_wp) then
+                     call add_instant_error(power_zero, 0.0_wp)
                   end if
                end associate
                if (is_large(term, first)) call add_instant_error(power_large, first)
@@ -226,19 +226,4 @@ contains
          is_large = log10(abs(term%r(1))) + 2.0_wp*log10(max(p, 1.0_wp)) + (p + 2.0_wp)*abs(log10(abs(t))) > max_order
       end associate
    end function is_large
-
-   !> Whether one of the instants of `m` is t = 0, but for rounding. Those of TIME are evenly spaced: only those next to
-   !> the place where their line crosses zero can be.
-   pure logical function meets_zero(m)
-      type(mechanism_t), intent(in) :: m
-      integer :: k, near
-
-      meets_zero = any(.not. abs(m%at) > 0.0_wp)
-      if (m%steps < 1 .or. meets_zero) return
-      if (min(m%t0, m%t1) > 0.0_wp .or. max(m%t0, m%t1) < 0.0_wp) return
-      near = nint(m%steps*(m%t0/(m%t0 - m%t1)))
-      do k = max(near - 1, 0), min(near + 1, m%steps)
-         if (abs(instant(m, k)) <= 4.0_wp*epsilon(1.0_wp)*max(abs(m%t0), abs(m%t1))) meets_zero = .true.
-      end do
-   end function meets_zero
 end module deck_drives

@@ -22,7 +22,7 @@ module drives
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
+   public :: law_t, new_law, drive_motion, bounds_t, bounds_of, drive_rate, joints_of
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
    !> A drive made ready for evaluation.
@@ -216,26 +216,6 @@ contains
          end associate
       end do
    end function drive_rate
-
-   !> Where the law of `drive` goes as the time comes to 0 from the side of `t`: -huge or huge, to infinity, as a
-   !> negative power does; 0: the law is finite there. No law has a pole at another time.
-   pure real(wp) function pole_value(drive, t) result(value)
-      type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      real(wp) :: least
-      integer :: i
-
-      value = 0.0_wp
-      least = 0.0_wp
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         associate (term => drive%terms(i))
-            if (term%kind /= term_power .or. term%r(2) >= least .or. abs(term%r(1)) <= 0.0_wp) cycle
-            least = term%r(2)
-            value = sign(huge(1.0_wp), monomial(term%r(1), term%r(2), sign(1.0_wp, t)))
-         end associate
-      end do
-   end function pole_value
 
    !> The times at which some derivative of the law of `drive` jumps: the knots of its tables, the joints of its rises.
    pure function joints_of(drive) result(times)

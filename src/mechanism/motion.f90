@@ -49,7 +49,6 @@ module motion
       logical :: other = .false.     !< diagnostic_change: on the other branch; diagnostic_method: at another assembly
       logical :: here = .false.                !< diagnostic_change: the instant is the change point
       logical :: returns = .false.   !< diagnostic_change, diagnostic_dead_end: back from a singular instant at `t`
-      logical :: is_pole = .false.   !< diagnostic_limit: the law of `drive` goes to infinity, -huge or huge
       logical :: is_angle = .false.            !< `value` is an angle, not a length
       real(wp) :: value = 0.0_wp               !< closure error, angle or drive's value (length or rad)
       real(wp) :: t = 0.0_wp                   !< time, in the deck's unit

@@ -4,10 +4,9 @@
 module drawing
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, instant, &
+   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, &
       plane_origin, is_listed_alone
    use planar, only: cross, direction, quarter_turn, rotated, point_of
-   use drives, only: pole_value
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
@@ -31,8 +30,6 @@ module drawing
    integer, parameter :: max_curves = 60, max_flags = 3, max_flagged = 1000
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
-   !> So near to a pole of a law, in parts of a step, no instant is computed between those of the deck.
-   real(wp), parameter :: near_pole = 1.0e-2_wp
 
    !> Points of a link closer than this part of the link's extent are one.
    real(wp), parameter :: same_place = 1.0e-6_wp
@@ -100,8 +97,8 @@ module drawing
 contains
 
    !> Makes the `film` of `m`: `m` at instants that are dense enough to be drawn, those of TIME and others between them,
-   !> or without TIME others between the first and the last of AT; none at the pole of a law. `every`: each so many
-   !> instants of the film's TIME are the deck's; 0: none. `sets`: films that are kept until all of them are drawn.
+   !> or without TIME others between the first and the last of AT. `every`: each so many instants of the film's TIME are
+   !> the deck's; 0: none. `sets`: films that are kept until all of them are drawn.
    subroutine film_of(m, sets, film, every)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets
@@ -117,29 +114,11 @@ contains
          film%t1 = maxval(m%at)
          film%steps = merge(intervals, 0, film%t1 > film%t0)
          every = 0
-         if (meets_pole(film)) film%steps = film%steps - 1
       else if (m%steps > 0) then
          every = max(1, min(intervals, max_positions/size(m%links))/m%steps)
          film%steps = every*m%steps
-         do while (every > 1 .and. meets_pole(film))
-            every = every - 1
-            film%steps = every*m%steps
-         end do
       end if
    end subroutine film_of
-
-   !> Whether an instant of TIME of `m` is at the pole of a law, or so near that its value would mean nothing.
-   pure logical function meets_pole(m)
-      type(mechanism_t), intent(in) :: m
-      integer :: i, k
-
-      meets_pole = .false.
-      do i = 1, size(m%drives)
-         if (abs(pole_value(m%drives(i), m%t0)) <= 0.0_wp) cycle
-         meets_pole = any([(abs(instant(m, k))*m%steps <= near_pole*abs(m%t1 - m%t0), k=0, m%steps)])
-         return
-      end do
-   end function meets_pole
 
    !> Returns a drawing of the film `m` without a frame. `every`: as in `film_of`.
    function new_drawing(m, every) result(d)

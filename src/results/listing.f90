@@ -316,12 +316,8 @@ contains
       case (diagnostic_inconsistent)
          text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_limit)
-         if (r%is_pole) then
-            text = phrase(say_law, m%polish)//' '//owner()//' '//phrase(say_pole_of_law, m%polish)
-         else
-            text = owner()//' = '//measure(m, r, value_digits)
-            if (r%links(1) > 0) text = text//', '//at_limit(m, r)
-         end if
+         text = owner()//' = '//measure(m, r, value_digits)
+         if (r%links(1) > 0) text = text//', '//at_limit(m, r)
       case (diagnostic_far_estimate)
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_second)

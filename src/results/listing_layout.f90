@@ -10,7 +10,7 @@ module listing_layout
       request_curve, pair_prismatic
    use points, only: centre_numbers
    use independent, only: set_t, request_of
-   use drives, only: law_t, new_law, pole_value, growing_sizes
+   use drives, only: law_t, new_law, growing_sizes
    use names, only: drive_name, more
    use scales, only: characteristic_length, characteristic_rate, latest_time, is_length, shortest_step
    use numerals, only: whole, numeral_length, max_decimals
@@ -60,7 +60,6 @@ module listing_layout
    type :: head_drive_t
       character(:), allocatable :: before, behind
       type(law_t) :: law
-      character(:), allocatable :: infinite   !< the words for its value at the pole of its law, where that has one
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
       real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `growing_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
@@ -149,7 +148,6 @@ contains
             drive%before = '   '//trim(drive_name(m, own))//' = '
             drive%behind = ' '//unit_of(d%power(n, 0), trim(merge(angle_unit(m), m%length_unit, n == 2)))
             drive%law = new_law(own)
-            if (abs(pole_value(own, m%t0)) > 0.0_wp) drive%infinite = phrase(say_infinite, m%polish)
             sizes = growing_sizes(drive%law, latest_time(m))
             drive%size_of = sizes(1, :)
             if (n == 2) drive%unit = l%angle

@@ -144,10 +144,6 @@ contains
       character(:), allocatable :: text
       real(wp) :: f(3), unknown
 
-      if (allocated(d%infinite) .and. abs(t) <= 0.0_wp) then
-         text = d%infinite
-         return
-      end if
       f = drive_motion(d%law, t)/d%unit
       unknown = nothing_known
       ! No time is as long as the square root, whose square is in the range of reals.

@@ -52,8 +52,6 @@ module phrases
       say_beyond = phrase_t('NO POSITION: BEYOND THE LIMIT OF MOTION AT T =', &
          'BRAK POLOZENIA: POZA KRESEM RUCHU W CHWILI T ='), &
       say_in_line = phrase_t('COLLINEAR', 'WSPOLLINIOWE'), &
-      say_law = phrase_t('LAW OF', 'PRAWO RUCHU:'), &
-      say_pole_of_law = phrase_t('GOES TO INFINITY AT T = 0.0', 'DAZY DO NIESKONCZONOSCI W CHWILI T = 0.0'), &
       say_off_by = phrase_t('THE ASSEMBLY FOUND DIFFERS FROM THE INITIAL ANGLE BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_begins = phrase_t('THE MOTION BEGINS HERE, IN THE ASSEMBLY NEAREST TO THE INITIAL GUESS', &
          'RUCH ZACZYNA SIE TUTAJ, W MONTAZU NAJBLIZSZYM PRZYBLIZENIU'), &
