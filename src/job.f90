@@ -42,7 +42,6 @@ module job
    use numerals, only: whole
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
-   use points, only: strides, any_due
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
@@ -64,7 +63,7 @@ module job
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
       logical :: varies = .false.                   !< the deck has VARY cards
-      type(variation_t), allocatable :: variations(:)   !< of the sets that have them
+      type(variation_t), allocatable :: variations(:)   !< (first:last) empty of sets without VARY cards
    end type writers_t
 
 contains
@@ -183,7 +182,7 @@ contains
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
-      integer :: i, k, before, varied
+      integer :: i, k, before
 
       if (o%asked(out_csv) .and. o%options%share == 1 .and. o%own_first == 1) &
          call csv_head(o%files(out_csv, 0), o%options%errors, o%varies)
@@ -191,15 +190,13 @@ contains
          if (o%asked(k)) call begin_page(o%files(k, 0), pages(k))
       end do
       before = o%first - 1
-      varied = 0
       ! Where no set has variants, those before the part at hand need not be passed over.
       if (.not. o%varies) before = o%own_first - 1
       do i = before + 1, o%last
          if (before >= o%own_last) exit
-         if (sets(i)%variants > 0) varied = varied + 1
          associate (count => max(1, sets(i)%variants))
-            if (before < o%own_last .and. before + count >= o%own_first) call run_set(sets(i), i, varied, &
-               o%own_first - before, o%own_last - before, findings(i), o)
+            if (before < o%own_last .and. before + count >= o%own_first) call run_set(sets(i), i, o%own_first - before, &
+               o%own_last - before, findings(i), o)
             before = before + count
          end associate
          if (is_over(o, i)) then
@@ -256,10 +253,9 @@ contains
    end subroutine draw_set
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
-   !> `varied`: how many sets have VARY cards up to this one.
-   subroutine run_set(m, i, varied, first, last, findings, o)
+   subroutine run_set(m, i, first, last, findings, o)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, varied, first, last
+      integer, intent(in) :: i, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       type(variant_row_t) :: counts
@@ -288,7 +284,7 @@ contains
          call run_motion(a, i, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) o%status = status_flagged
       else
-         call run_variants(a%now, i, max(1, first), min(m%variants, last), o%variations(varied), o)
+         call run_variants(a%now, i, max(1, first), min(m%variants, last), o%variations(i), o)
       end if
    end subroutine run_set
 
@@ -444,17 +440,22 @@ contains
       type(convergence_t) :: record
       type(branch_t) :: branch
       real(wp), allocatable :: errors(:)     ! for the log; not allocated where they are not asked for
-      integer, allocatable :: every(:)
+      integer, allocatable :: every(:)       ! rows are printed at each so many instants
       logical :: lists, due
       integer :: k, n
 
       call begin_analysis(a, findings)
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
-      every = strides([(request_of(a%now, n), n=1, size(a%now%rows))])
+      every = [integer ::]
+      do n = 1, size(a%now%rows)
+         associate (one => request_of(a%now, n))
+            if (all([every, 0] /= one%every)) every = [every, one%every]
+         end associate
+      end do
       do k = 0, instant_count(a%now) - 1
          call advance_set(a, instant(a%now, k))
-         due = any_due(a%now, every, k)
+         due = any(mod(k, every) == 0) .or. (k == instant_count(a%now) - 1 .and. size(every) > 0)
          if (a%now%proves) then
             call prove_set(a, due)
             if (.not. all(holds(a%now%proofs(1:)))) row%unproved = row%unproved + 1

@@ -6,7 +6,7 @@ module card_reader
    use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, real_1, &
       field_text, first_column, card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, &
       nearest_words, proposal
-   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, error_count, is_full, &
+   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, max_printed, &
       max_power, card_unknown, card_indented, past_last_column, tab_character, control_character, foreign_character, &
       border_crossed, field_unused, field_blank, label_blank_inside, label_long, whole_long, star_no_reals, &
       star_second, star_twice, star_blank, number_overflow, number_underflow
@@ -52,7 +52,7 @@ contains
       logical :: cut(size(card_fields))
       integer :: before, last, i
 
-      before = error_count(errors)
+      before = errors%count
       parsed%card = card
       last = len_trim(card%text)
       do i = label_a, label_c
@@ -63,9 +63,9 @@ contains
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
       call check_characters(parsed%card, parsed%names_certain, parsed%has_small, errors)
-      if (error_count(errors) == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
+      if (errors%count == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
-      parsed%valid = error_count(errors) == before
+      parsed%valid = errors%count == before
       if (.not. parsed%valid .or. parsed%form == form_title) return
       ! The reals, and the labels that the card does not take, may hold the beginning of a number.
       call find_cuts(card, card_fields, 'L'//forms(parsed%form)%labels//'---', cut, errors)
@@ -75,7 +75,7 @@ contains
          if (card_fields(label_c + i)%first > last) exit
          if (.not. cut(label_c + i)) call read_real_field(parsed, card, card_fields(label_c + i), i, errors)
       end do
-      parsed%valid = error_count(errors) == before
+      parsed%valid = errors%count == before
    end subroutine read_card
 
    !> Makes the text of the TITLE card `card` printable: letters without their accents, cut at the last column. Both are
@@ -146,9 +146,9 @@ contains
       integer :: before, i
       logical :: clean, has_small, cut(3)
 
-      before = error_count(errors)
+      before = errors%count
       call check_characters(card, clean, has_small, errors)
-      if (error_count(errors) > before) then
+      if (errors%count > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
          call add_field_error(errors, card_unknown, card, card_fields(card_name))
@@ -174,7 +174,7 @@ contains
       end if
       if (allocated(above%star)) return
       above%star = card
-      above%valid = above%valid .and. error_count(errors) == before
+      above%valid = above%valid .and. errors%count == before
    end subroutine read_star
 
    !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
@@ -230,7 +230,7 @@ contains
          code = card_indented
       else if (name == '') then
          code = field_blank
-      else if (.not. is_full(errors)) then
+      else if (errors%count < max_printed) then
          associate (nearest => nearest_words(capitals(name), forms%layout(:label_length)))
             if (size(nearest) > 0) form = nearest(1)
             hint = proposal(forms(nearest)%layout(:label_length))

@@ -10,7 +10,7 @@ module card_sets
       form_prism, form_cylinder, form_joint, form_toler, form_vary, form_end, nearest_words, proposal
    use card_reader, only: parsed_card_t
    use failures, only: capitals
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
+   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, max_printed, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
    use card_numbers, only: angle_in_radians
    use drawn_values, only: take_drawn, coincides
@@ -322,7 +322,7 @@ contains
       integer :: link, point, n
 
       hint = ''
-      if (is_full(set%errors)) return
+      if (set%errors%count >= max_printed) return
       associate (card => set%cards(k), text => set%cards(k)%card%text, field => card_fields(i), m => set%mechanism)
          link = find_name(set%named(request_link)%table, card%label(i))
          point = find_name(set%named(request_point)%table, card%label(i))

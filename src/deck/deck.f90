@@ -8,14 +8,14 @@ module deck
    use card_sets, only: card_set_t, begin_set, append_card, set_apart, read_small_letters, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values, change_numbers
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
-      form_at, form_vary, form_end
+      form_at, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
-   use input_errors, only: add_field_error, add_deck_error, error_count, error_report, take_remarks, &
-      deck_empty, deck_long, end_missing, set_empty, star_first, link_missing, time_missing
+   use input_errors, only: add_error, add_field_error, error_report, deck_empty, deck_long, end_missing, set_empty, &
+      star_first, link_missing, time_missing
    use numerals, only: whole
    implicit none
    private
@@ -36,8 +36,7 @@ module deck
    !> What has been read so far.
    type :: reading_t
       type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
-      type(variation_t), allocatable :: variations(:)   !< (1:varying and room) of the sets with VARY cards
-      integer :: varying = 0                     !< sets with VARY cards
+      type(variation_t), allocatable :: variations(:)   !< (closed) and room, empty of sets without VARY cards
       integer :: closed = 0                       !< number of those that have their END
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
@@ -48,7 +47,7 @@ contains
    !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
    !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
    !> (`report` says why) or status_system. `share`: only its sets are wanted, or of a deck with VARY cards its
-   !> variants, for which all sets are. `variations`: of the sets that have VARY cards.
+   !> variants, for which all sets are. `variations` (number of sets): their VARY cards; empty where a set has none.
    subroutine read_deck(path, sets, report, failure, share, variations)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
@@ -61,7 +60,7 @@ contains
       integer :: errors, from, to
       integer(int64) :: n
 
-      allocate (progress%sets(4), progress%variations(0))
+      allocate (progress%sets(4), progress%variations(4))
       call begin_set(progress%set, 1)
       call open_source(source, path, failure)
       if (.not. allocated(failure)) then
@@ -69,16 +68,15 @@ contains
          call close_source(source)
       end if
       report = error_report(progress%set%errors)
-      errors = error_count(progress%set%errors)
+      errors = progress%set%errors%count
       if (.not. allocated(failure) .and. errors > 0) &
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
-      if (present(variations)) variations = progress%variations(:progress%varying)
 
       from = 1
       to = progress%closed
       if (present(share)) then
-         share%varies = progress%varying > 0
+         share%varies = any(progress%sets(:progress%closed)%variants > 0)
          share%sets = progress%closed
          n = share%sets
          if (share%varies) n = variants_before(progress%sets, share%sets + 1)
@@ -90,6 +88,7 @@ contains
          end if
       end if
       sets = progress%sets(from:to)
+      if (present(variations)) variations = progress%variations(from:to)
    end subroutine read_deck
 
    !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.
@@ -113,7 +112,7 @@ contains
          if (allocated(failure)) return
          if (.not. found) exit
          if (card%number > max_cards) then
-            call add_deck_error(progress%set%errors, deck_long, whole(max_cards))
+            call add_error(progress%set%errors, deck_long, card_t(), card_fields(card_name), 1, '', whole(max_cards))
             return
          end if
          if (is_passed_over(card)) cycle
@@ -121,7 +120,7 @@ contains
          call take_card(card, progress)
       end do
       if (last%number == 0) then
-         call add_deck_error(progress%set%errors, deck_empty)
+         call add_error(progress%set%errors, deck_empty, card_t(), card_fields(card_name), 1, '')
       else if (progress%set%count > 0) then
          call add_field_error(progress%set%errors, end_missing, last, card_fields(card_name))
          progress%set%names_certain = .false.
@@ -169,38 +168,35 @@ contains
       type(reading_t), intent(inout) :: progress
       type(mechanism_t), allocatable :: larger(:)
       type(variation_t), allocatable :: more(:)
+      integer :: n
 
+      if (progress%closed == size(progress%sets)) then
+         allocate (larger(2*progress%closed), more(2*progress%closed))
+         larger(:progress%closed) = progress%sets
+         more(:progress%closed) = progress%variations
+         call move_alloc(larger, progress%sets)
+         call move_alloc(more, progress%variations)
+      end if
+      progress%closed = progress%closed + 1
       associate (set => progress%set)
          call read_small_letters(set)
          call set_apart(set)
          call build_mechanism(set)
-         if (set%number_of(form_vary) > 0) then
-            if (progress%varying == size(progress%variations)) then
-               allocate (more(max(4, 2*progress%varying)))
-               more(:progress%varying) = progress%variations
-               call move_alloc(more, progress%variations)
-            end if
-            progress%varying = progress%varying + 1
-            call build_variation(set, progress%variations(progress%varying))
-         end if
-         if (error_count(set%errors) == progress%errors_before) then
+         call build_variation(set, progress%variations(progress%closed))
+         if (set%errors%count == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
             call check_centres(set)
             call check_angles(set)
             call check_guides(set)
-            if (error_count(set%errors) == progress%errors_before) call check_drawing(set)
+            if (set%errors%count == progress%errors_before) call check_drawing(set)
             call build_echo(set)
          end if
-         call take_remarks(set%errors, set%mechanism%remarks)
-         progress%errors_before = error_count(set%errors)
+         n = min(set%errors%remarked, size(set%errors%remarks))
+         if (n > 0) set%mechanism%remarks = set%errors%remarks(:n)
+         set%errors%remarked = 0
+         progress%errors_before = set%errors%count
       end associate
-      if (progress%closed == size(progress%sets)) then
-         allocate (larger(2*progress%closed))
-         larger(1:progress%closed) = progress%sets
-         call move_alloc(larger, progress%sets)
-      end if
-      progress%closed = progress%closed + 1
       progress%sets(progress%closed) = progress%set%mechanism
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
@@ -233,7 +229,7 @@ contains
       end if
       call take_values(v, n)
       call build_mechanism(v%set)
-      if (error_count(v%set%errors) == 0) then
+      if (v%set%errors%count == 0) then
          call check_terms(v%set)
          call check_centres(v%set)
       end if

@@ -14,7 +14,7 @@ module deck_variants
       form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_toler, &
       form_vary, form_end, forms, reals_of, card_fields
    use failures, only: capitals
-   use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
+   use input_errors, only: input_errors_t, error_code_t, vary_alone, vary_number, vary_count, vary_equal, &
       vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long, toler_alone, &
       toler_none, toler_second, toler_blank, number_range
    use numbers, only: read_whole
@@ -53,7 +53,7 @@ module deck_variants
 
    !> The variants of a set.
    type :: variation_t
-      type(card_set_t) :: set                       !< its cards; their numbers are those of the variant built last
+      type(card_set_t), allocatable :: set          !< its cards; their numbers are those of the variant built last
       type(varied_t), allocatable :: numbers(:)
       integer, allocatable :: counts(:)             !< (axes) of values
       integer :: total = 0                          !< of variants
@@ -91,7 +91,7 @@ contains
                      call add_card_error(set, toler_none, k, real_1 + i - 1)
                   else if (card%real(i) < 0.0_wp) then
                      call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
-                  else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
+                  else if (card%real(i) > 0.0_wp .and. set%errors%count == 0) then
                      n = n + 1
                      unit = number_unit(set%mechanism, number)
                      list(n) = tolerance_t(card_number_t=number, size_of=card%real(i), text=real_text(card, i), &
@@ -159,7 +159,7 @@ contains
       end do
       v%total = int(total)
       set%mechanism%variants = max(1, v%total)
-      if (error_count(set%errors) > 0) return
+      if (set%errors%count > 0) return
       v%set = set
 
    contains
@@ -193,7 +193,7 @@ contains
             if (continues) continues = card%below == set%cards(i - 1)%below &
                .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
             if (n == 0) then
-               if (error_count(set%errors) == 0) then
+               if (set%errors%count == 0) then
                   one%number = number_on_card(set, one%card, one%place)
                   name = number_name(set%mechanism, one%number)
                   border = index(name, ' ', back=.true.)

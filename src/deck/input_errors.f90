@@ -9,11 +9,10 @@ module input_errors
    use numerals, only: whole
    implicit none
    private
-   public :: error_code_t, input_errors_t, add_error, add_field_error, add_deck_error
-   public :: error_count, is_full, error_report, add_remark, take_remarks
+   public :: error_code_t, input_errors_t, add_error, add_field_error, error_report, add_remark
 
    !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
-   integer, parameter :: max_printed = 50
+   integer, parameter, public :: max_printed = 50
    !> Below a card, for its columns and one ten more.
    character(*), parameter :: ruler = &
       '....+....1....+....2....+....3....+....4....+....5....+....6....+....7....+....8....+....9'
@@ -29,11 +28,10 @@ module input_errors
 
    !> The errors of a deck.
    type :: input_errors_t
-      private
       integer :: count = 0               !< with those that are not printed
-      character(:), allocatable :: lines !< the messages, joined by new_line('a')
-      type(remark_t) :: remarks(max_printed)
+      character(:), allocatable :: lines !< the messages, joined by new_line('a'); none: not allocated
       integer :: remarked = 0            !< remarks about the open set, with those for which there is no room
+      type(remark_t) :: remarks(max_printed + 1)   !< the last says how many there is no room for
    end type input_errors_t
 
    ! The deck and its sets.
@@ -155,8 +153,9 @@ module input_errors
 
 contains
 
-   !> Adds the error `code` about `text` (may be ''), which begins at `column` in `field` of `card`. `more` ends the
-   !> sentence. Above it stand the card, a ruler in tens up to the end of the card or to the mark, and the mark.
+   !> Adds the error `code` about `text` (may be ''), which begins at `column` in `field` of `card`; card%number = 0:
+   !> about the deck as a whole. `more` ends the sentence. Above it stand the card, a ruler in tens up to the end of the
+   !> card or to the mark, and the mark.
    subroutine add_error(errors, code, card, field, column, text, more)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
@@ -165,32 +164,42 @@ contains
       integer, intent(in) :: column
       character(*), intent(in) :: text
       character(*), intent(in), optional :: more
-      character(:), allocatable :: head, shown, margin, quoted
+      character(1), parameter :: next = new_line('a')
+      character(:), allocatable :: lines, head, shown, margin, place
+      character(3) :: number
       integer :: form, tens
 
       errors%count = errors%count + 1
       if (errors%count > max_printed) return
-      head = whole(card%number)//' |'
-      head = ' CARD '//repeat(' ', max(6 - len(head), 0))//head
-      shown = trim(card%text)
-      ! Text beyond the last column is shown if there is room for it in a line.
-      if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
-         shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
-      call add_line(errors, head//printable(shown))
-      margin = repeat(' ', len(head) - 1)//'|'
-      tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
-      call add_line(errors, margin//ruler(:10*tens))
-      if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
-
-      quoted = ''
-      if (text /= '') quoted = ' "'//printable(trim(text))//'"'
-      ! A sentence without a subject would be read twice.
-      if (text == '' .and. index(code%sentence, 'IS ') == 1) quoted = ' A BLANK FIELD'
-      call add_message(errors, code, '  CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '// &
-                       trim(field%name)//':'//quoted, more)
+      lines = ''
+      if (allocated(errors%lines)) lines = errors%lines//next
+      place = ''
       form = code%layout
-      if (form == own_layout) form = find_form(card%text(:label_length))
-      if (form /= form_unknown) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
+      if (card%number > 0) then
+         head = whole(card%number)//' |'
+         head = ' CARD '//repeat(' ', max(6 - len(head), 0))//head
+         shown = trim(card%text)
+         ! Text beyond the last column is shown if there is room for it in a line.
+         if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
+            shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
+         margin = next//repeat(' ', len(head) - 1)//'|'
+         tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
+         lines = lines//head//printable(shown)//margin//ruler(:10*tens)
+         if (column <= 10*tens) lines = lines//margin//repeat(' ', column - 1)//'^'
+         lines = lines//next
+
+         place = 'CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '//trim(field%name)//': '
+         if (text /= '') place = place//'"'//printable(trim(text))//'" '
+         ! A sentence without a subject would be read twice.
+         if (text == '' .and. index(code%sentence, 'IS ') == 1) place = place//'A BLANK FIELD '
+         if (form == own_layout) form = find_form(card%text(:label_length))
+      end if
+
+      write (number, '(i3.3)') code%number
+      lines = lines//' *** E'//number//'  '//place//trim(code%sentence)
+      if (present(more)) lines = trim(lines//' '//more)
+      if (form /= form_unknown) lines = lines//next//' LAYOUT    |'//trim(forms(form)%layout)
+      call move_alloc(lines, errors%lines)
    end subroutine add_error
 
    !> Adds the error `code` about the whole text in `field` of `card`. `more` ends the sentence. `place`: the number of
@@ -209,16 +218,6 @@ contains
       call add_error(errors, code, card, field, column, field_text(card, field), more)
    end subroutine add_field_error
 
-   !> Adds the error `code` about the deck as a whole. `more` ends the sentence.
-   subroutine add_deck_error(errors, code, more)
-      type(input_errors_t), intent(inout) :: errors
-      type(error_code_t), intent(in) :: code
-      character(*), intent(in), optional :: more
-
-      errors%count = errors%count + 1
-      if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
-   end subroutine add_deck_error
-
    !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`. `value` ends the sentence.
    subroutine add_remark(errors, kind, card, column, text, value)
       type(input_errors_t), intent(inout) :: errors
@@ -227,36 +226,14 @@ contains
       character(*), intent(in) :: text
       character(*), intent(in), optional :: value
 
+      integer :: n
+
       errors%remarked = errors%remarked + 1
-      if (errors%remarked > max_printed) return
-      errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
-      if (present(value)) errors%remarks(errors%remarked)%value = value
+      n = min(errors%remarked, size(errors%remarks))
+      errors%remarks(n) = remark_t(kind, card%number, column, text)
+      if (present(value)) errors%remarks(n)%value = value
+      if (n > max_printed) errors%remarks(n) = remark_t(remark_more, text=whole(errors%remarked - max_printed))
    end subroutine add_remark
-
-   !> Moves the remarks about the open set to `remarks`; not allocated if there are none.
-   subroutine take_remarks(errors, remarks)
-      type(input_errors_t), intent(inout) :: errors
-      type(remark_t), allocatable, intent(out) :: remarks(:)
-
-      if (errors%remarked > 0) remarks = errors%remarks(:min(errors%remarked, max_printed))
-      if (errors%remarked > max_printed) &
-         remarks = [remarks, remark_t(remark_more, text=whole(errors%remarked - max_printed))]
-      errors%remarked = 0
-   end subroutine take_remarks
-
-   !> The number of errors so far, with those that are not printed.
-   pure integer function error_count(errors)
-      type(input_errors_t), intent(in) :: errors
-
-      error_count = errors%count
-   end function error_count
-
-   !> Whether further errors are only counted: their sentences are not needed.
-   pure logical function is_full(errors)
-      type(input_errors_t), intent(in) :: errors
-
-      is_full = errors%count >= max_printed
-   end function is_full
 
    !> All messages, lines joined by new_line('a'); '' if there is no error.
    pure function error_report(errors) result(report)
@@ -280,31 +257,4 @@ contains
          if (ichar(text(i:i)) < 32 .or. ichar(text(i:i)) > 126) shown(i:i) = '?'
       end do
    end function printable
-
-   !> Adds the line of the error `code`: its number, its `place`, its sentence, and `more`.
-   subroutine add_message(errors, code, place, more)
-      type(input_errors_t), intent(inout) :: errors
-      type(error_code_t), intent(in) :: code
-      character(*), intent(in) :: place
-      character(*), intent(in), optional :: more
-      character(3) :: number
-      character(:), allocatable :: line
-
-      write (number, '(i3.3)') code%number
-      line = ' *** E'//number//place//' '//code%sentence
-      if (present(more)) line = trim(line)//' '//more
-      call add_line(errors, trim(line))
-   end subroutine add_message
-
-   !> Appends `line` to the messages.
-   subroutine add_line(errors, line)
-      type(input_errors_t), intent(inout) :: errors
-      character(*), intent(in) :: line
-
-      if (allocated(errors%lines)) then
-         errors%lines = errors%lines//new_line('a')//line
-      else
-         errors%lines = line
-      end if
-   end subroutine add_line
 end module input_errors

@@ -13,7 +13,7 @@ module card_numbers
    use numerals, only: whole
    implicit none
    private
-   public :: unit_t, numbers_of, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
+   public :: unit_t, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
       put_number, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
@@ -37,61 +37,6 @@ module card_numbers
    character(8), parameter :: rise_numbers(3) = ['START   ', 'DURATION', 'LIFT    ']
 
 contains
-
-   !> The numbers on the cards of `m` that can have a tolerance: by links, points, pairs and drives, each kind in the
-   !> order of its cards.
-   function numbers_of(m) result(list)
-      type(mechanism_t), intent(in) :: m
-      type(card_number_t), allocatable :: list(:)
-      integer, parameter :: first_room = 64
-      integer :: i, j, n
-
-      allocate (list(first_room))
-      n = 0
-      do i = 1, size(m%links)
-         call add(number_link, i, 0, 3)
-      end do
-      do i = 1, size(m%points)
-         if (.not. m%points(i)%drawn) call add(number_point, i, 0, 2)
-         ! The first of the two points of a JOINT card.
-         associate (p => m%points(i), next => m%points(min(i + 1, size(m%points))))
-            if (i < size(m%points) .and. p%drawn .and. next%drawn .and. p%name == next%name) &
-               call add(number_joint, i, 0, 2)
-         end associate
-      end do
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) call add(number_pair, i, 0, 3)
-      end do
-      do i = 1, size(m%drives)
-         call add(number_drive, i, 0, 3)
-         if (.not. allocated(m%drives(i)%terms)) cycle
-         do j = 1, size(m%drives(i)%terms)
-            if (m%drives(i)%terms(j)%kind == term_table) then
-               call add(number_drive, i, j, size(m%drives(i)%terms(j)%values))
-            else
-               call add(number_drive, i, j, 3)
-            end if
-         end do
-      end do
-      list = list(:n)
-
-   contains
-
-      !> Adds the first `places` numbers of a card.
-      subroutine add(kind, subject, term, places)
-         integer, intent(in) :: kind, subject, term, places
-         type(card_number_t) :: one
-         integer :: place
-
-         do place = 1, places
-            one = card_number_t(kind, subject, term, place)
-            if (.not. takes_tolerance(m, one) .or. is_as_drawn(m, one)) cycle
-            if (n == size(list)) list = [list, list]
-            n = n + 1
-            list(n) = one
-         end do
-      end subroutine add
-   end function numbers_of
 
    !> Whether number `n` of `m` is blank on its card: it is the one of the drawing.
    pure logical function is_as_drawn(m, n)

@@ -35,12 +35,10 @@ module independent
 contains
 
    !> Divides the set `m` into its parts: `s`. A part has the ground links, and their points, that its pairs, drives and
-   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck. `whole`:
-   !> all links are taken for one mechanism.
-   subroutine divide(m, s, whole)
+   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   subroutine divide(m, s)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
-      logical, intent(in), optional :: whole
       type(sorted_t) :: links, points, pairs, drives, rows
       type(part_t) :: place, part
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
@@ -50,7 +48,6 @@ contains
       if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
       link_part = part_of_links(m)
       s%count = max(1, maxval([0, link_part]))
-      if (present(whole)) s%count = 1
       if (s%count == 1) link_part = 1
       ground = s%count + 1
       pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]

@@ -11,7 +11,7 @@ module points
    implicit none
    private
    public :: row_t, row_of, find_row, note_known, set_values, has_number, difference, centre_numbers, &
-      coordinates_of, is_due, is_listed, strides, any_due, is_fixed
+      coordinates_of, is_due, is_listed, is_fixed
    public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
@@ -55,26 +55,6 @@ contains
 
       is_listed = request%listed .or. is_due(m, request, k)
    end function is_listed
-
-   !> The different values of `every` among the `requests`.
-   pure function strides(requests) result(list)
-      type(request_t), intent(in) :: requests(:)
-      integer, allocatable :: list(:)
-      integer :: i
-
-      allocate (list(0))
-      do i = 1, size(requests)
-         if (all([list, 0] /= requests(i)%every)) list = [list, requests(i)%every]
-      end do
-   end function strides
-
-   !> Whether any request is printed at instant number `k` (0, 1, ...). `list`: the `strides` of the requests.
-   pure logical function any_due(m, list, k)
-      class(settings_t), intent(in) :: m
-      integer, intent(in) :: list(:), k
-
-      any_due = any(mod(k, list) == 0) .or. (k == instant_count(m) - 1 .and. size(list) > 0)
-   end function any_due
 
    !> The row of `request`, as far as the motion `q` is known. What belongs to the ground is known at every instant.
    pure function row_of(m, q, request) result(row)

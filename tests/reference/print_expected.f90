@@ -38,7 +38,7 @@ program print_expected
    type(variation_t), allocatable :: variations(:)
    type(failure_t), allocatable :: failure
    type(output_t) :: o
-   integer :: i, varied
+   integer :: i
 
    call get_command_argument(1, path)
    name = deck_name(trim(path))
@@ -46,14 +46,12 @@ program print_expected
    call read_deck(trim(path), sets, report, failure, variations=variations)
    if (allocated(failure)) call give_up(failure%text//new_line('a')//report)
    call open_output(o, '', failure)
-   varied = 0
    do i = 1, size(sets)
       call print_head(o, name, sets(i))
       if (sets(i)%variants == 0) then
          call print_motion(o, name, sets(i))
       else
-         varied = varied + 1
-         call print_variants(o, name, sets(i), variations(varied))
+         call print_variants(o, name, sets(i), variations(i))
       end if
    end do
    call close_output(o, failure)

@@ -3,7 +3,7 @@ module whole_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t
    use error_estimate, only: error_estimate_t
-   use independent, only: set_t, divide
+   use independent, only: set_t, member_t, divide
    use set_motion, only: set_motion_t
    implicit none
    private
@@ -17,8 +17,14 @@ contains
       type(motion_t), intent(in) :: q
       type(error_estimate_t), intent(in) :: errors
       type(set_motion_t) :: s
+      integer :: i
 
-      call divide(m, s%set_t, whole=.true.)
+      s%settings_t = m%settings_t
+      s%parts = [m]
+      s%rows = [(member_t(1, i), i=1, size(m%requests))]
+      s%drives = [(member_t(1, i), i=1, size(m%drives))]
+      allocate (s%cards(1))
+      s%cards(1)%links = [(i, i=1, size(m%links))]
       allocate (s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
       s%motions(1) = q
       s%errors(1) = errors
