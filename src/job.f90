@@ -9,7 +9,7 @@ module job
    use kinds, only: wp
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: settings_t, mechanism_t, instant_count, instant, with_all_links
-   use independent, only: set_t, request_of
+   use independent, only: set_t
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
    use deck, only: read_deck, job_share_t, variants_before, build_variant
    use deck_variants, only: variation_t
@@ -195,8 +195,8 @@ contains
       do i = before + 1, o%last
          if (before >= o%own_last) exit
          associate (count => max(1, sets(i)%variants))
-            if (before < o%own_last .and. before + count >= o%own_first) call run_set(sets(i), i, o%own_first - before, &
-               o%own_last - before, findings(i), o)
+            if (before < o%own_last .and. before + count >= o%own_first) &
+               call run_set(sets(i), i, o%own_first - before, o%own_last - before, findings(i), o)
             before = before + count
          end associate
          if (is_over(o, i)) then
@@ -447,12 +447,8 @@ contains
       call begin_analysis(a, findings)
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
-      every = [integer ::]
-      do n = 1, size(a%now%rows)
-         associate (one => request_of(a%now, n))
-            if (all([every, 0] /= one%every)) every = [every, one%every]
-         end associate
-      end do
+      every = [(a%now%parts(n)%requests%every, n=lbound(a%now%parts, 1), a%now%count)]
+      every = pack(every, every > 0)
       do k = 0, instant_count(a%now) - 1
          call advance_set(a, instant(a%now, k))
          due = any(mod(k, every) == 0) .or. (k == instant_count(a%now) - 1 .and. size(every) > 0)

@@ -191,8 +191,8 @@ contains
                associate (p => term%r(2))
                   if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
                      call add_instant_error(power_negative, first)
-                  else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp .and. first <= 0.0_wp .and. last >= 0.0_wp) then
-                     call add_instant_error(power_zero, 0.0_wp)
+                  else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp) then
+                     if (first <= 0.0_wp .and. last >= 0.0_wp) call add_instant_error(power_zero, 0.0_wp)
                   end if
                end associate
                if (is_large(term, first)) call add_instant_error(power_large, first)
