@@ -51,7 +51,7 @@ contains
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(inout) :: c
 
       if (follows) then
          call solve_blocks(e, t, follows, c)

@@ -229,10 +229,12 @@ contains
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(inout) :: c
 
-      c%ended = ended_singular
-      if (.not. e%blocks%solvable) return
+      if (.not. e%blocks%solvable) then
+         c = convergence_t(ended=ended_singular)
+         return
+      end if
       e%t = t
       call set_drive_values(e, t)
       c = nothing_gathered
@@ -293,23 +295,14 @@ contains
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
-
-      call find_drive_values(e, t, e%state)
-   end subroutine set_drive_values
-
-   !> Puts value, rate and acceleration of the drives at `t` into `s`.
-   pure subroutine find_drive_values(e, t, s)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t
-      type(state_t), intent(inout) :: s
       real(wp) :: f(3)
       integer :: i
 
       do i = 1, size(e%laws)
          f = drive_motion(e%laws(i), t)
-         s%drive_value(0:2, i) = f*e%unit_of(i)
+         e%state%drive_value(0:2, i) = e%unit_of(i)*f
       end do
-   end subroutine find_drive_values
+   end subroutine set_drive_values
 
    !> The position found last is that of `t`, too, at which the drives have the same values. Blocks without velocities
    !> keep it as it is; the others find their velocities and accelerations.
@@ -450,7 +443,9 @@ contains
 
       s = e%state
       if (e%history%filled > 0) then
-         call find_drive_values(e, e%history%t(0), s)
+         do k = 1, size(e%laws)
+            s%drive_value(:, k) = e%unit_of(k)*drive_motion(e%laws(k), e%history%t(0))
+         end do
          do k = 1, size(e%history%predicted)
             i = e%history%predicted(k)
             associate (past => e%history%past(i))

@@ -5,7 +5,7 @@
 !> value: it moves nothing, it is idle. Where y holds several, the last of them adds nothing to the others.
 module block_rank
    use kinds, only: wp
-   use lapack, only: gesvd, getrf
+   use lapack, only: geqrf, getrf, gesvd, ormqr
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
@@ -136,66 +136,36 @@ contains
 
    !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
    !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. It is -1 also where
-   !> columns or ranges of the two have turned so far that this alone could have changed the sign: the determinant over
-   !> the roots of those of each with itself is the product of the cosines between the ranges.
+   !> columns or ranges of the two have turned so far that this alone could have changed the sign. With both Jacobians
+   !> factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the ranges.
    integer function relative_sign(b, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: before(:)
       type(state_t), intent(inout) :: s
-      real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new
-      real(wp) :: cosines, old_size, new_size
-      integer :: sides(2), positive
+      real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new, both
+      real(wp) :: reflections(size(old, 2)), work(64*size(old, 2) + 1), cosines
+      integer :: pivots(size(old, 2)), info, k
 
       old = reshape(before, shape(old))
       new = reshape(jacobian_of(b, i, s), shape(new))
       side = -1
       if (any(sum(new*old, dim=1) < min_cosine*norm2(new, dim=1)*norm2(old, dim=1))) return
-      call find_range(old, sides(1))
-      call find_range(new, sides(2))
-      call find_determinant(matmul(transpose(old), old), old_size, positive)
-      call find_determinant(matmul(transpose(new), new), new_size, positive)
-      call find_determinant(matmul(transpose(old), new), cosines, side)
-      side = side*product(sides)
-      if (cosines < 0.5_wp*(old_size + new_size) + log(min_cosine)) side = -1
+      both = new
+      associate (rows => size(old, 1), n => size(old, 2))
+         call geqrf(rows, n, new, rows, reflections, work, size(work), info)
+         call geqrf(rows, n, old, rows, reflections, work, size(work), info)
+         call ormqr('L', 'T', rows, n, n, old, rows, reflections, both, rows, work, size(work), info)
+         call getrf(n, n, both, rows, pivots, info)
+      end associate
+      side = 1
+      cosines = 1.0_wp
+      do k = 1, size(pivots)
+         if ((old(k, k) < 0.0_wp .neqv. both(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
+         cosines = cosines*abs(both(k, k)/new(k, k))
+      end do
+      if (.not. cosines >= min_cosine) side = -1
    end function relative_sign
-
-   !> Replaces the columns of `a` (rows, n) by others of the same range, the lower factor of Gauss's elimination, well
-   !> conditioned where `a` is not; `side`: the sign of the determinant of the upper factor.
-   subroutine find_range(a, side)
-      real(wp), intent(inout) :: a(:, :)
-      integer, intent(out) :: side
-      integer :: pivots(size(a, 2)), order(size(a, 1)), info, k
-
-      call getrf(size(a, 1), size(a, 2), a, size(a, 1), pivots, info)
-      side = 1
-      order = [(k, k=1, size(a, 1))]
-      do k = 1, size(a, 2)
-         if (a(k, k) < 0.0_wp) side = -side
-         a(:k - 1, k) = 0.0_wp
-         a(k, k) = 1.0_wp
-         order([k, pivots(k)]) = order([pivots(k), k])
-      end do
-      a(order, :) = a
-   end subroutine find_range
-
-   !> The logarithm of the determinant of `a` (n, n), and its sign.
-   subroutine find_determinant(a, log_of, side)
-      real(wp), intent(in) :: a(:, :)
-      real(wp), intent(out) :: log_of
-      integer, intent(out) :: side
-      real(wp) :: factors(size(a, 1), size(a, 1))
-      integer :: pivots(size(a, 1)), info, k
-
-      factors = a
-      if (size(a) > 0) call getrf(size(a, 1), size(a, 1), factors, size(a, 1), pivots, info)
-      log_of = 0.0_wp
-      side = 1
-      do k = 1, size(a, 1)
-         log_of = log_of + log(max(abs(factors(k, k)), tiny(1.0_wp)))
-         if ((factors(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
-      end do
-   end subroutine find_determinant
 
    !> (rows) What the equations of block `i` leave with the values `x` (n), which `s` has from then on.
    function residual_of(b, i, x, s) result(r)

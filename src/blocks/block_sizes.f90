@@ -20,6 +20,7 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       real(wp) :: largest(2)
+      integer, allocatable :: u(:)
       integer :: k, m
 
       largest = 0.0_wp
@@ -27,25 +28,12 @@ contains
          largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
       end do
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         call take(b%loops(m)%orientation)
-         call take(b%loops(m)%less)
-         do k = b%loops(m)%first_vector, b%loops(m)%last_vector
-            call take(b%body_vectors(k)%orientation)
-         end do
-         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-            call take(b%slides(k)%orientation)
-            call take(b%slides(k)%unknown)
-         end do
+         associate (g => b%loops(m))
+            u = [g%orientation, g%less, b%body_vectors(g%first_vector:g%last_vector)%orientation, &
+               b%slides(g%first_slide:g%last_slide)%orientation, b%slides(g%first_slide:g%last_slide)%unknown]
+         end associate
+         largest = max(largest, [maxval(abs(s%u(u)%rate)), maxval(abs(s%u(u)%acceleration))])
       end do
-
-   contains
-
-      !> Unknown number `u` of all blocks.
-      pure subroutine take(u)
-         integer, intent(in) :: u
-
-         largest = max(largest, abs([s%u(u)%rate, s%u(u)%acceleration]))
-      end subroutine take
    end function largest_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.

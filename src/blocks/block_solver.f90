@@ -127,7 +127,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of
+      real(wp) :: before, size_of, rates(2)
       integer :: info, iteration, second, side, k
       logical :: is_closed, is_right
 
@@ -193,7 +193,24 @@ contains
             c%change = max(c%change, abs(s%u(b%unknown(block%first + k - 1))%value - w%start(k)))
          end do
       end if
-      call finish(b, i, block, numbers, w, s, c)
+      if (.not. is_solved(c)) return
+
+      ! Velocities and accelerations, unless equations contradict one another or the Jacobian is near to having no
+      ! inverse.
+      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
+      if (c%ended == ended_inconsistent) return
+      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
+      if (c%singular) return
+      call set_rates(block%first, block%last, b%unknown, w%r(second), s%u)
+      call right_hand_side(b, i, 2, s, w%r)
+      call solve_next_side(block%shape, w, w%r)
+      call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
+      associate (rows => block%shape%rows, n => block%shape%n)
+         if (rows == n) return
+         rates = largest_rates(b, i, s)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
+      end associate
    end subroutine solve_equations
 
    !> Solves for another right-hand side `v` (rows), from the factors.
@@ -270,35 +287,6 @@ contains
          if (.not. abs(x(k)) <= largest) largest = abs(x(k))
       end do
    end function largest_size
-
-   !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
-   !> having no inverse.
-   subroutine finish(b, i, block, numbers, w, s, c)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(block_t), intent(in) :: block
-      type(block_numbers_t), intent(in) :: numbers
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c
-      real(wp) :: rates(2)
-
-      if (.not. is_solved(c)) return
-      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
-      if (c%ended == ended_inconsistent) return
-      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
-      if (c%singular) return
-      associate (rows => block%shape%rows, n => block%shape%n)
-         call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
-         call right_hand_side(b, i, 2, s, w%r)
-         call solve_next_side(block%shape, w, w%r)
-         call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
-         if (rows == n) return
-         rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
-      end associate
-   end subroutine finish
 
    !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the

@@ -19,8 +19,8 @@ module analysis
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic, get_link_flags
    use at_bifurcation, only: stand_on, go_by_value, leave
-   use following, only: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
-      go_on_from, go_back, place_t, note_place, return_to, passed_of, limit_t, note_limit, limit_before
+   use following, only: following_t, step_record_t, make_following, begin_following, continue_to, go_on_from, &
+      go_back, place_t, note_place, return_to, passed_of, limit_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -103,7 +103,7 @@ contains
       iterations = a%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
-      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, t)) then
+      if (limit_before(a%limits, t) > 0) then
          call pass_over(a, t, found)
          return
       end if
@@ -141,8 +141,8 @@ contains
    subroutine reach(a, t, step, list)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
-      type(step_record_t), intent(out) :: step
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t), allocatable :: returns(:)
 
       step%rests = a%stands

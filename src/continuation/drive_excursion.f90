@@ -13,8 +13,8 @@ module drive_excursion
    use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
-      largest_derivative, judge_step
+   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, largest_derivative, &
+      judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -154,21 +154,6 @@ contains
       end do
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
-
-   !> The least number of substeps from `t1` to `t2`: each changes no drive by more than allowed.
-   pure real(wp) function steps_at_least(p, t1, t2) result(steps)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t1, t2
-      real(wp) :: f1(3), f2(3)
-      integer :: i
-
-      steps = 0.0_wp
-      do i = 1, size(p%laws)
-         f1 = drive_motion(p%laws(i), t1)
-         f2 = drive_motion(p%laws(i), t2)
-         steps = max(steps, abs(f2(1) - f1(1))*p%unit(i)/largest_change)
-      end do
-   end function steps_at_least
 
    !> Bounds derivative number `k` of every drive between `t1` and `t2`, in radians or characteristic lengths; huge: no
    !> bound.

@@ -7,8 +7,7 @@ module following
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
-   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
-      steps_at_least
+   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
@@ -17,8 +16,8 @@ module following
    use block_branches, only: pass
    implicit none
    private
-   public :: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
-      go_on_from, go_back, place_t, note_place, return_to, passed_of
+   public :: following_t, step_record_t, make_following, begin_following, continue_to, go_on_from, &
+      go_back, place_t, note_place, return_to, passed_of
    public :: limit_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -233,15 +232,6 @@ contains
       passed = 0
       if (allocated(step%passed)) passed = size(step%passed)
    end function passed_of
-
-   !> The step to `t` would need more substeps than are tried.
-   pure logical function is_too_far(f, t)
-      type(following_t), intent(in) :: f
-      real(wp), intent(in) :: t
-
-      is_too_far = f%follows .and. abs(t - f%t) > f%drives%longest
-      if (is_too_far) is_too_far = steps_at_least(f%drives, f%t, t) > real(max_substeps, wp)
-   end function is_too_far
 
    !> The motion found last, at `t`, is now the one that is followed.
    subroutine go_on_from(f, t)

@@ -58,20 +58,19 @@ contains
       integer :: i
 
       info = 0
-      if (s%n == 0) return
-      if (s%pattern > 0) then
+      if (s%pattern == 0 .and. s%rows == s%n .and. s%n > 1) then
+         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
+      else if (s%pattern > 0) then
          call factor(k, a, info)
          if (info == 0) call solve(k, b)
-      else if (s%rows > s%n) then
+      else if (s%rows > s%n .and. s%n > 0) then
          call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
             pivots(i) = i
             if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
          end do
          if (info == 0) call solve_again(s, a, pivots, work, b)
-      else if (s%n > 1) then
-         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
-      else
+      else if (s%n == 1) then
          ! One equation needs no DGESV, which takes long.
          if (abs(a(1)) <= 0.0_wp) info = 1
          if (info == 0) b(1) = b(1)/a(1)
@@ -88,15 +87,7 @@ contains
       type(klu_t), intent(inout), optional :: k
       integer :: info
 
-      if (s%n == 0) return
-      if (s%pattern > 0) then
-         call solve(k, b)
-      else if (s%rows > s%n) then
-         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
-         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
-      else if (s%n == 1) then
-         b(1) = b(1)/a(1)
-      else if (s%n == 2) then
+      if (s%n == 2 .and. s%rows == 2) then
          ! DGETRS in the order of its operations: the call itself takes many times as long.
          if (pivots(1) == 2) b(:2) = [b(2), b(1)]
          b(2) = b(2) - b(1)*a(2)
@@ -104,7 +95,14 @@ contains
          if (abs(b(2)) > 0.0_wp) b(2) = b(2)/a(4)
          b(1) = b(1) - b(2)*a(3)
          if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
-      else
+      else if (s%pattern > 0) then
+         call solve(k, b)
+      else if (s%rows > s%n .and. s%n > 0) then
+         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
+         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
+      else if (s%n == 1) then
+         b(1) = b(1)/a(1)
+      else if (s%n > 1) then
          call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
