@@ -32,8 +32,7 @@ module closure_equations
    implicit none
    private
    public :: residual, jacobian, remainder, find_drive_values
-   public :: drive_residual, drive_row, drive_remainder, place
-   public :: closure_error, normal, along, projection_row, projection_remainder, frozen_gradient
+   public :: drive_residual, drive_row, drive_remainder, closure_error, normal, projection_row
 
 contains
 
@@ -249,35 +248,28 @@ contains
 
    !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `f` (2), which has the
    !> angle `psi` and in the frozen form the reference angles `zeros` (2).
+   !>
+   !> In the frozen form (16) of d . f that of the two products d_x f_x and d_y f_y whose f is nearer to zero becomes
+   !> d s(h) h, h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x
+   !> and y columns alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(s, p, k, f, psi, zeros) result(row)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp), intent(in) :: f(2), psi, zeros(2)
-      real(wp) :: row(6), g(3), d(2)
+      real(wp) :: row(6), g(3), d(2), secant(2)
 
       d = closure_error(s, p, k)
       g = [f(1), f(2), cross(f, d)]
-      if (p%frozen) g = frozen_gradient(d, f, secants(psi, zeros))
+      if (p%frozen) then
+         secant = secants(psi, zeros)
+         g = [f(1), 0.0_wp, d(2)*secant(2)]
+         if (abs(f(2)) > abs(f(1))) g = [0.0_wp, f(2), d(1)*secant(1)]
+      end if
       associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
          row = [g(1), g(2), g(3) + dot_product(g(:2), u), -g(1), -g(2), -dot_product(g(:2), w)]
       end associate
    end function projection_row
-
-   !> Frozen coefficients (3) of d . f instead of its derivatives, as in (16): of the two products d_x f_x
-   !> and d_y f_y the one whose f is nearer to zero becomes d s(h) h, with `secant` (2) the ratios f/h, h counted from
-   !> the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y columns
-   !> alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
-   pure function frozen_gradient(d, f, secant) result(g)
-      real(wp), intent(in) :: d(2), f(2), secant(2)
-      real(wp) :: g(3)
-
-      if (abs(f(2)) <= abs(f(1))) then
-         g = [f(1), 0.0_wp, d(2)*secant(2)]
-      else
-         g = [0.0_wp, f(2), d(1)*secant(1)]
-      end if
-   end function frozen_gradient
 
    !> Acceleration remainder of the projection of prismatic pair `k` on `f` (2), at velocities `v` (3, links).
    pure real(wp) function projection_remainder(s, p, v, k, f) result(gamma)

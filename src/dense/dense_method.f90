@@ -17,7 +17,7 @@ module dense_method
    use link_motion, only: move_links, find_values
    use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
    use closure_equations, only: find_drive_values, remainder
-   use position_iteration, only: solve_newton, solve_matrix
+   use position_iteration, only: solve_position
    implicit none
    private
    public :: dense_t, make_dense, for_blocks, solve_all_links, solve_velocity, solve_acceleration
@@ -108,11 +108,8 @@ contains
 
       do k = 1, max_starts
          d%pose%q = start
-         if (d%method == method_matrix) then
-            call solve_matrix(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
-         else
-            call solve_newton(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
-         end if
+         call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%pose, &
+            d%factors, c, reach)
          if (is_solved(c) .and. .not. c%singular) then
             call reciprocal_condition(d%factors, c%reciprocal_condition)
             c%determinant = determinant_sign(d%factors)

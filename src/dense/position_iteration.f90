@@ -21,7 +21,7 @@ module position_iteration
    use closure_equations, only: residual, jacobian
    implicit none
    private
-   public :: solve_newton, solve_matrix, iterate, rounding_level
+   public :: solve_position
 
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
@@ -39,65 +39,35 @@ module position_iteration
 
 contains
 
-   !> Newton's method: moves the links of `p` to where the drives have the values `driven` (drives); see `iterate`.
-   !> The factors left in `f` are the Jacobian's.
-   subroutine solve_newton(s, driven, tolerance, p, f, c, reach)
+   !> Moves the links of `p` to a position where the drives have the values `driven` (drives): by Newton's method or, if
+   !> `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding. `f`: room for n
+   !> equations; leaves the factors of the Jacobian, of Newton's method one step of the tolerance's size before the
+   !> position, for the velocities of (21) and the accelerations of (22). `c` says how it ended. `reach`: an angle that
+   !> goes further than this from its start, in radians, would return by chance alone: diverged. `limit`: iterations
+   !> allowed.
+   subroutine solve_position(s, driven, tolerance, is_matrix, p, f, c, reach, limit)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
+      logical, intent(in) :: is_matrix
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
       real(wp), intent(in), optional :: reach
-
-      call set_pose(s, p)
-      call iterate(s, driven, tolerance, newton_iterations, p, f, c, reach)
-   end subroutine solve_newton
-
-   !> The iteration of 1987: moves the links of `p` to where the drives have the values `driven` (drives); see
-   !> `iterate`. The factors left in `f` are the Jacobian's at the position found, for the velocities of (21) and the
-   !> accelerations of (22).
-   subroutine solve_matrix(s, driven, tolerance, p, f, c, reach)
-      type(system_t), intent(in) :: s
-      real(wp), intent(in) :: driven(:), tolerance
-      type(pose_t), intent(inout) :: p
-      type(factors_t), intent(inout) :: f
-      type(convergence_t), intent(out) :: c
-      real(wp), intent(in), optional :: reach
-      integer :: info
-
-      call set_pose(s, p)
-      call choose_references(s, p)
-      call iterate(s, driven, tolerance, matrix_iterations, p, f, c, reach)
-      p%frozen = .false.
-      call set_pose(s, p)
-      if (.not. is_solved(c)) return
-      call jacobian(s, p, f%a)
-      call factor(f, info)
-      c%singular = info > 0
-   end subroutine solve_matrix
-
-   !> Moves the links of `p` to a position where the drives have the values `driven` (drives). `tolerance`: relative,
-   !> 0 for the limit of rounding; `limit`: iterations allowed. `f`: room for n equations; leaves the factors of the
-   !> last matrix, taken one step of the tolerance's size before the position. `c` says how it ended. `reach`: an angle
-   !> that goes further than this from its start, in radians, would return by chance alone: diverged.
-   subroutine iterate(s, driven, tolerance, limit, p, f, c, reach)
-      type(system_t), intent(in) :: s
-      real(wp), intent(in) :: driven(:), tolerance
-      integer, intent(in) :: limit
-      type(pose_t), intent(inout) :: p
-      type(factors_t), intent(inout) :: f
-      type(convergence_t), intent(out) :: c
-      real(wp), intent(in), optional :: reach
+      integer, intent(in), optional :: limit
       real(wp) :: r(s%n), start(size(p%q, 2)), before, first, highest, furthest
       logical :: stays
-      integer :: info
+      integer :: info, most
 
-      start = p%q(3, :)
+      call set_pose(s, p)
+      if (is_matrix) call choose_references(s, p)
+      most = merge(matrix_iterations, newton_iterations, is_matrix)
+      if (present(limit)) most = limit
       furthest = huge(furthest)
       if (present(reach)) furthest = reach
+      start = p%q(3, :)
       before = huge(before)
       first = 0.0_wp
-      do while (c%iterations < limit)
+      do while (c%iterations < most)
          c%iterations = c%iterations + 1
          call residual(s, p, driven, r)
          highest = max(1.0_wp, maxval(abs(p%q)))
@@ -135,5 +105,13 @@ contains
          before = c%step
       end do
       if (c%iterations > 1 .and. first > 0.0_wp) c%rate = (c%residual/first)**(1.0_wp/real(c%iterations - 1, wp))
-   end subroutine iterate
+      if (.not. is_matrix) return
+
+      p%frozen = .false.
+      call set_pose(s, p)
+      if (.not. is_solved(c)) return
+      call jacobian(s, p, f%a)
+      call factor(f, info)
+      c%singular = info > 0
+   end subroutine solve_position
 end module position_iteration
