@@ -355,18 +355,14 @@ contains
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       side = limit_before(a%limits, t)
-      if (side > 0) then
-         associate (told => a%limits(side)%diagnostics)
-            if (.not. a%is_lost) then
-               call add_diagnostics(told, found)
-            else if (any(told%kind == diagnostic_limit)) then
-               call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
-                  t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
-            end if
-         end associate
-      else if (.not. a%is_lost) then
-         call add_diagnostics([diagnostic_t(kind=diagnostic_long, t=a%t)], found)
-      end if
+      associate (told => a%limits(side)%diagnostics)
+         if (.not. a%is_lost) then
+            call add_diagnostics(told, found)
+         else if (any(told%kind == diagnostic_limit)) then
+            call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
+               t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
+         end if
+      end associate
       a%is_lost = .true.
    end subroutine pass_over
 
