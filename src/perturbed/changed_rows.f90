@@ -37,7 +37,6 @@ module changed_rows
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
-      real(wp) :: tolerance = 0.0_wp             !< a correction (rad, unit of the block) no larger ends a search
       !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -167,7 +166,7 @@ contains
             if (place%only_driven .and. .not. block%direct) lack = missing_all
             if (lack < missing_all) then
                c = convergence_t()
-               call solve_block(e%blocks, i, place%tolerance, e%work, e%state, c)
+               call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
                place%ratio = max(place%ratio, c%kantorovich_ratio)
                place%change = max(place%change, c%change)
                place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open
@@ -196,27 +195,21 @@ contains
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: i
       real(wp), allocatable :: jacobian(:, :)
-      integer :: order, k, info
+      integer :: order, info
 
-      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => e%work)
+      associate (shape => e%blocks%list(i)%shape, w => e%work, &
+         own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
          call assemble_block(e%blocks, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)
          if (info > 0) return
          do order = 1, 2
             call right_hand_side(e%blocks, i, order, e%state, w%r)
-            do k = 1, shape%n
-               associate (u => e%state%u(e%blocks%unknown(block%first + k - 1)))
-                  w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
-               end associate
-            end do
+            w%r(:shape%rows) = w%r(:shape%rows) &
+               - matmul(jacobian, merge(e%state%u(own)%rate, e%state%u(own)%acceleration, order == 1))
             call solve_again(shape, w%a, w%pivots, w%work, w%r)
-            do k = 1, shape%n
-               associate (u => e%state%u(e%blocks%unknown(block%first + k - 1)))
-                  if (order == 1) u%rate = u%rate + w%r(k)
-                  if (order == 2) u%acceleration = u%acceleration + w%r(k)
-               end associate
-            end do
+            if (order == 1) e%state%u(own)%rate = e%state%u(own)%rate + w%r(:shape%n)
+            if (order == 2) e%state%u(own)%acceleration = e%state%u(own)%acceleration + w%r(:shape%n)
          end do
       end associate
    end subroutine refine_rates

@@ -11,7 +11,7 @@ module digits_in_doubt
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, growth_of_roundings, growth_of_angles, safe_growth
+   public :: sizes_t, sizes_of, find_growth, find_growths, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
@@ -70,7 +70,7 @@ contains
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
       type(block_engine_t), intent(in), optional :: e
-      real(wp) :: law, angle, size_of, usual, x(2, 0:2)
+      real(wp) :: law, angle, size_of, usual, of_angles, x(2, 0:2)
 
       law = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
@@ -89,10 +89,11 @@ contains
       if (size_of > safe_size) return
       if (present(e)) then
          usual = max(size_of, min(angle, usual_angle))
-         growth = usual*growth_of_roundings(e)
+         call find_growths(e, growth, of_angles)
+         growth = usual*growth
          in_doubt = max(usual, growth) > safe_growth
          if (.not. angle > usual_angle) return
-         in_doubt = in_doubt .or. angle*size_of*growth_of_angles(e) > safe_angle
+         in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
          growth = growth*max(1.0_wp, angle/usual)
       else
          growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
@@ -100,49 +101,30 @@ contains
       end if
    end subroutine find_growth
 
-   !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones. Where a block knows
-   !> much larger vectors than its own, their roundings count.
-   pure real(wp) function growth_of_roundings(e) result(growth)
+   !> By how much roundings grow at most in a block of `e`, whose numbers are the characteristic ones. With 1/p for the
+   !> inverse of the Jacobian, whose least pivot is p, 1 at most, and L for its Lipschitz constant, a rounding of its
+   !> numbers grows by L/p^2, and by 1/p and L/p^2 those of much larger vectors that it knows. `angles`: those of angles
+   !> grow by 1/p in positions and, over `rate_digits`, by L^2/p^3 in accelerations.
+   pure subroutine find_growths(e, numbers, angles)
       type(block_engine_t), intent(in) :: e
+      real(wp), intent(out) :: numbers, angles
       real(wp) :: inverse
       integer :: k
 
-      growth = 0.0_wp
+      numbers = 0.0_wp
+      angles = 1.0_wp
       do k = 1, size(e%needed)
          associate (block => e%blocks%numbers%blocks(e%needed(k)))
             if (e%blocks%list(e%needed(k))%direct) cycle
-            inverse = 1.0_wp/pivot_of(e, e%needed(k))
-            growth = max(growth, block%lipschitz*inverse**2)
-            if (block%coarse > usual_coarse) &
-               growth = max(growth, block%coarse*inverse*max(1.0_wp, block%lipschitz*inverse))
+            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
+            associate (turned => block%lipschitz*inverse)
+               numbers = max(numbers, turned*inverse)
+               if (block%coarse > usual_coarse) numbers = max(numbers, block%coarse*inverse*max(1.0_wp, turned))
+               angles = max(angles, block%coarse*inverse*max(1.0_wp, turned**2/rate_digits))
+            end associate
          end associate
       end do
-   end function growth_of_roundings
-
-   !> The same of an angle's rounding, in positions or, over `rate_digits`, in accelerations: with 1/p for the inverse
-   !> of the Jacobian and L for its Lipschitz constant 1/p, L/p^2 and L^2/p^3.
-   pure real(wp) function growth_of_angles(e) result(growth)
-      type(block_engine_t), intent(in) :: e
-      real(wp) :: inverse
-      integer :: k
-
-      growth = 1.0_wp
-      do k = 1, size(e%needed)
-         associate (block => e%blocks%numbers%blocks(e%needed(k)))
-            if (e%blocks%list(e%needed(k))%direct) cycle
-            inverse = 1.0_wp/pivot_of(e, e%needed(k))
-            growth = max(growth, block%coarse*inverse*max(1.0_wp, (block%lipschitz*inverse)**2/rate_digits))
-         end associate
-      end do
-   end function growth_of_angles
-
-   !> The least pivot of block `i`, 1 at most; roundings do not grow by less.
-   pure real(wp) function pivot_of(e, i) result(pivot)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-
-      pivot = max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)
-   end function pivot_of
+   end subroutine find_growths
 
    !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
    pure subroutine find_largest(n, x, largest)

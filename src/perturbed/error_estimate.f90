@@ -10,7 +10,7 @@ module error_estimate
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
    use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
-   use rounded_numbers, only: directions, caution, put_off, put_loops_off, part_off
+   use rounded_numbers, only: directions, caution, put_off, part_off
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
@@ -33,7 +33,8 @@ module error_estimate
       !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
       real(wp), allocatable :: changes(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
-      !> (3, 0:2, requests) What the roundings of the calculation change, where errors are asked for.
+      !> (3, 0:2, requests) The same by changes of one rounding, where errors are asked for. By as much as these are
+      !> larger the calculation rounds: in the rates of links that turn as one there is nothing else.
       real(wp), allocatable :: own(:, :, :)
    end type error_estimate_t
 
@@ -42,7 +43,7 @@ module error_estimate
       type(sizes_t) :: sizes
       type(at_hand_t) :: place
       !> (0:2*directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in each direction
-      !> by their roundings; by those of the calculation.
+      !> by many roundings; by one.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
@@ -84,33 +85,36 @@ contains
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
          found%solved(size(m%requests)))
       found%sizes = s%sizes
-      found%of_sums = errors_of_sums(m, q, s%sizes%length)
       found%taken = .true.
       call find_place(engine, q, s%place)
       s%place%stays = s%place%is_singular
       call find_changed(0, many, found%solved)
+      found%of_sums = errors_of_sums(q, s%sizes%length, found%solved)
       s%place%stays = .false.
-      call find_changes(many, s%place%is_singular, is_small)
-      if (.not. is_small) call find_changes(few, .true., is_small)
-      if (always .and. .not. found%without_own) call find_own()
+      call find_changes(many, s%place%is_singular, found%changes, is_small)
+      if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
+      if (.not. always .or. found%without_own) return
+      if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
+      found%own = 0.0_wp
+      if (.not. s%place%is_singular) call find_changes(1.0_wp, .true., found%own, is_small)
 
    contains
 
       !> The `rows` of `m` near the motion `q` with all numbers off by so many `roundings` in direction `k`; 0: with
-      !> none off; beyond the directions: with those of the calculation off.
+      !> none off.
       subroutine find_changed(k, roundings, rows)
          integer, intent(in) :: k
          real(wp), intent(in) :: roundings
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
-         call make_ready(s%perturbed, k, m, engine, i)
+         call make_ready(s%perturbed, merge(k, k + directions, roundings > 1.0_wp), m, engine, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
-               call put_off(m, merge(k, 0, k <= directions), roundings, p%m)
+               call put_off(m, k, roundings, p%m)
                call put_changes(p, by_roundings=.true.)
-               if (k > directions) call put_loops_off(k - directions, p%engine%blocks%numbers)
-               p%time_off = merge(roundings*part_off(k), 0.0_wp, k >= 1 .and. k <= directions)
+               p%time_off = 0.0_wp
+               if (k > 0) p%time_off = roundings*part_off(k)
                p%direction = k
                p%roundings = roundings
             end if
@@ -118,11 +122,12 @@ contains
          end associate
       end subroutine find_changed
 
-      !> The changes of the rows by a rounding, from those by so many `roundings`. `is_small`: they are so
-      !> small that they are of first order, if not all of them are asked for `anyway`.
-      subroutine find_changes(roundings, anyway, is_small)
+      !> The `changes` (3, 0:2, requests) of the rows by a rounding, from those by so many `roundings`. `is_small`: they
+      !> are so small that they are of first order, if not all of them are asked for `anyway`.
+      subroutine find_changes(roundings, anyway, changes, is_small)
          real(wp), intent(in) :: roundings
          logical, intent(in) :: anyway
+         real(wp), intent(out) :: changes(:, 0:, :)
          logical, intent(out) :: is_small
          type(row_t), dimension(size(found%solved)) :: rows, other
          real(wp) :: part, x(3, 0:2)
@@ -130,7 +135,7 @@ contains
 
          ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
          part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
-         found%changes = 0.0_wp
+         changes = 0.0_wp
          do k = 1, directions
             call find_changed(k, roundings, rows)
             is_small = anyway .or. s%place%ratio <= small_ratio
@@ -141,41 +146,18 @@ contains
                where (rows%known < 0) rows = other
             end if
             do i = 1, size(rows)
-               associate (one => rows(i), middle => found%solved(i), largest => found%changes(:, :, i))
+               associate (one => rows(i), middle => found%solved(i))
                   x = part*difference(one, middle)
                   if (one%kind < request_pole) then
                      x(:, one%known + 1:) = nothing_known
                   else
                      x = merge(nothing_known, x, lost_numbers(one, middle))
                   end if
-                  largest = max(largest, x)
+                  changes(:, :, i) = max(changes(:, :, i), x)
                end associate
             end do
          end do
       end subroutine find_changes
-
-      !> The changes of the rows by a rounding of each vector in each loop: those of the calculation, which
-      !> count by themselves where no number of the deck does, as in the rates of links that turn as one. One correction
-      !> of the position is made: after more, all sums would be of the same vectors, and would cancel as they should.
-      subroutine find_own()
-         type(row_t) :: rows(size(found%solved))
-         integer :: k, i
-
-         if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
-         found%own = 0.0_wp
-         if (s%place%is_singular) return
-         s%place%stays = .true.
-         s%place%tolerance = 1.0_wp
-         do k = directions + 1, 2*directions
-            call find_changed(k, 1.0_wp, rows)
-            do i = 1, size(rows)
-               if (min(rows(i)%known, found%solved(i)%known) < 0) cycle
-               found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
-            end do
-         end do
-         s%place%stays = .false.
-         s%place%tolerance = 0.0_wp
-      end subroutine find_own
    end subroutine estimate_errors
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.
@@ -225,7 +207,7 @@ contains
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
       ! A rate that is zero may be a sum that cancels; a coordinate that is zero without a sum stays so.
-      least = max(caution*s%own(:, :, i), error_of_sums(s%of_sums, m%requests(i), row))
+      least = max(caution*(s%own(:, :, i) - s%changes(:, :, i)), error_of_sums(s%of_sums, m%requests(i), row))
       where (error(:, 0) <= 0.0_wp) least(:, 0) = 0.0_wp
       where (error < nothing_known) error = max(error, least) + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
@@ -246,15 +228,11 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind >= request_pole) cycle
          error = row_error(m, s, q, i)
-         unit = [length, length, 1.0_wp]
          row = row_of(m, q, m%requests(i))
-         if (row%angular) unit(1) = 1.0_wp
+         unit = [merge(1.0_wp, length, row%angular), length, 1.0_wp]
          do k = 0, 2
-            if (any(error(:, k) >= nothing_known)) then
-               largest(k) = nothing_known
-            else
-               largest(k) = max(largest(k), maxval(error(:, k)/(unit*rate**k)))
-            end if
+            largest(k) = max(largest(k), maxval(merge(nothing_known, error(:, k)/(unit*rate**k), &
+               error(:, k) >= nothing_known)))
          end do
       end do
    end function largest_errors

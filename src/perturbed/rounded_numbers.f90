@@ -19,11 +19,9 @@ module rounded_numbers
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number
    use links_tree, only: tree_t, axes_t, new_tree, axes_of
-   use number_types, only: vector_t
-   use blocks, only: numbers_t
    implicit none
    private
-   public :: directions, caution, put_off, put_loops_off, part_off
+   public :: directions, caution, put_off, part_off
 
    integer, parameter :: directions = 8
    real(wp), parameter :: caution = 2.35_wp
@@ -32,8 +30,6 @@ module rounded_numbers
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
    !> Guides are parallel, or at right angles, where their directions differ by less than this part of a quarter turn.
    integer, parameter :: quarter = 2**20
-   !> In the addresses of vectors of loops, where those of numbers have their kind.
-   integer, parameter :: of_loop = 0
 
 contains
 
@@ -50,7 +46,7 @@ contains
 
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
-         do j = 1, 3
+         do j = 1, 2
             call put(card_number_t(number_link, i, 0, j), abs(m%links(i)%position(j)))
          end do
       end do
@@ -68,7 +64,6 @@ contains
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind /= pair_prismatic) cycle
          call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
-         call put(card_number_t(number_pair, i, 0, 3), abs(m%pairs(i)%beta))
       end do
       if (any(m%pairs%kind == pair_prismatic)) call put_guides()
       do i = 1, size(m%drives)
@@ -86,22 +81,16 @@ contains
 
    contains
 
-      !> By how much a number that is rounded by its size is off, over eps.
-      pure real(wp) function by(number, size_of)
-         type(card_number_t), intent(in) :: number
-         real(wp), intent(in) :: size_of
-
-         by = 0.0_wp
-         if (k > 0 .and. size_of > 0.0_wp) by = size_of*deviate(number, k)
-      end function by
-
       !> Puts a number off that is rounded by its size.
       subroutine put(number, size_of)
          type(card_number_t), intent(in) :: number
          real(wp), intent(in) :: size_of
+         real(wp) :: by
 
-         if (size_of > 0.0_wp) call put_number(off, number, number_value(m, number) &
-            + roundings*epsilon(1.0_wp)*by(number, size_of))
+         if (.not. size_of > 0.0_wp) return
+         by = 0.0_wp
+         if (k > 0) by = roundings*epsilon(1.0_wp)*size_of*deviate(number, k)
+         call put_number(off, number, number_value(m, number) + by)
       end subroutine put
 
       !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
@@ -129,70 +118,27 @@ contains
 
       !> Puts the directions of guides off. Those that are parallel or at right angles by the cards of links that turn
       !> as one stay so: they are off by the same part of a radian, whatever the angles are of which their directions
-      !> are sums.
+      !> are sums. The angles of ground links and between guides are as they stand: the arms that they turn are off.
       subroutine put_guides()
-         type(mechanism_t) :: turns
          type(tree_t) :: t
-         type(axes_t) :: axes, turned
-         real(wp) :: largest
+         type(axes_t) :: axes
          integer :: i, quarters
 
          t = new_tree(m)
          axes = axes_of(m, t)
-         ! The angles of the axes are sums of angles of cards, and so are their changes.
-         turns = m
-         do i = 1, size(m%links)
-            turns%links(i)%position(3) = by(card_number_t(number_link, i, 0, 3), &
-               merge(abs(m%links(i)%position(3)), 0.0_wp, m%links(i)%ground))
-         end do
-         do i = 1, size(m%pairs)
-            turns%pairs(i)%beta = by(card_number_t(number_pair, i, 0, 3), &
-               merge(abs(m%pairs(i)%beta), 0.0_wp, m%pairs(i)%kind == pair_prismatic))
-         end do
-         turned = axes_of(turns, t)
-         largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
          do i = 1, size(m%pairs)
             if (m%pairs(i)%kind /= pair_prismatic) cycle
             associate (link => m%points(m%pairs(i)%point_i)%link)
                quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
                   int(quarter, int64)))
-               off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*(by(card_number_t(number_pair, &
-                  t%orientation(link), quarters, 1), largest) - turned%angle_offset(link))
+               off%pairs(i)%alpha = m%pairs(i)%alpha
+               if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp) &
+                  *max(1.0_wp, maxval(abs(m%pairs%alpha)))*deviate(card_number_t(number_pair, t%orientation(link), &
+                  quarters, 1), k)
             end associate
          end do
       end subroutine put_guides
    end subroutine put_off
-
-   !> Puts the vectors and guides of each vector loop in `x` off in direction `k` by a rounding. So much the products
-   !> may be off of which its sums are made, whatever the numbers of the deck are.
-   subroutine put_loops_off(k, x)
-      integer, intent(in) :: k
-      type(numbers_t), intent(inout) :: x
-      integer :: i
-
-      do i = 1, size(x%loops)
-         call round(x%loops(i)%ground, 1, i)
-      end do
-      do i = 1, size(x%d)
-         call round(x%d(i), 2, i)
-      end do
-      do i = 1, size(x%e)
-         call round(x%e(i), 3, i)
-      end do
-
-   contains
-
-      !> Puts vector number `i` of a list off.
-      subroutine round(vector, list, i)
-         type(vector_t), intent(inout) :: vector
-         integer, intent(in) :: list, i
-         real(wp) :: rounding
-
-         rounding = epsilon(1.0_wp)*hypot(vector%x, vector%y)
-         vector%x = vector%x + rounding*deviate(card_number_t(of_loop, i, list, 1), k)
-         vector%y = vector%y + rounding*deviate(card_number_t(of_loop, i, list, 2), k)
-      end subroutine round
-   end subroutine put_loops_off
 
    !> By which part of it the instant is off in direction `k` by a rounding.
    pure real(wp) function part_off(k)

@@ -209,25 +209,23 @@ contains
       type(request_t), intent(in) :: request
       real(wp), allocatable :: s(:, :, :)
       type(mechanism_t) :: off
-      type(row_t) :: up, down
+      type(row_t) :: row
       type(motion_t) :: rest
-      type(sizes_t) :: sizes
       real(wp) :: step
-      integer :: d
+      integer :: d, k
 
-      allocate (s(3, 0:2, size(m%tolerances)))
+      allocate (s(3, 0:2, size(m%tolerances)), source=0.0_wp)
       rest = new_motion(size(m%links))
-      sizes = sizes_of(m)
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
-            step = ground_step*natural_unit(one, sizes)
-            off = m
-            call set_number(off, one%card_number_t, number_value(m, one%card_number_t) + step)
-            up = row_of(off, rest, request)
-            off = m
-            call set_number(off, one%card_number_t, number_value(m, one%card_number_t) - step)
-            down = row_of(off, rest, request)
-            s(:, :, d) = (up%value - down%value)*(one%unit/(2.0_wp*step))
+            do k = -1, 1, 2
+               step = k*ground_step*natural_unit(one, sizes_of(m))
+               off = m
+               call set_number(off, one%card_number_t, number_value(m, one%card_number_t) + step)
+               row = row_of(off, rest, request)
+               s(:, :, d) = s(:, :, d) + k*row%value
+            end do
+            s(:, :, d) = s(:, :, d)*(one%unit/(2.0_wp*step))
          end associate
       end do
    end function ground_sensitivities

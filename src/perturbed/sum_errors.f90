@@ -1,10 +1,10 @@
 !> What the roundings of sums leave open of rows, and how they grow in instant centres and centres of curvature.
 module sum_errors
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole, request_curve
+   use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole
    use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
-   use points, only: row_t, row_of, note_known, set_values
+   use points, only: row_t, row_of
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
@@ -16,54 +16,31 @@ module sum_errors
 contains
 
    !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the links
-   !> of the motion `q` and of the rows asked for; `length`: the characteristic one. What is summed up to a velocity is
-   !> no smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
+   !> of the motion `q` and of its `rows`; `length`: the characteristic one. What is summed up to a velocity is no
+   !> smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
    !> slide is a difference of places, which are counted from a ground link, and so are the arms of its derivatives.
-   pure function errors_of_sums(m, q, length) result(size_of)
-      type(mechanism_t), intent(in) :: m
+   pure function errors_of_sums(q, length, rows) result(size_of)
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: length
-      real(wp) :: size_of(3, 0:2), reach
-      type(row_t) :: row
+      type(row_t), intent(in) :: rows(:)
+      real(wp) :: size_of(3, 0:2)
       integer :: i
 
       size_of = 0.0_wp
-      size_of(1, 0) = max(abs(q%origin(1)), abs(q%origin(2)))
-      do i = 1, size(m%links)
+      size_of(1, 0) = maxval(abs(q%origin))
+      do i = 1, size(q%position, 2)
          if (known_of(q, i) < 0) cycle
          associate (p => q%position(:, i), v => q%velocity(:, i), a => q%acceleration(:, i))
-            size_of(1, 0) = max(size_of(1, 0), abs(p(1) + q%origin(1)), abs(p(2) + q%origin(2)))
-            size_of(1, 1) = max(size_of(1, 1), abs(v(1)), abs(v(2)))
-            size_of(1, 2) = max(size_of(1, 2), abs(a(1)), abs(a(2)))
+            size_of(1, :) = max(size_of(1, :), [maxval(abs(p(:2) + q%origin)), maxval(abs(v(:2))), maxval(abs(a(:2)))])
             size_of(2, :) = max(size_of(2, :), abs([p(3), v(3), a(3)]))
-            size_of(3, 0) = max(size_of(3, 0), abs(p(1)), abs(p(2)))
+            size_of(3, 0) = max(size_of(3, 0), maxval(abs(p(:2))))
          end associate
       end do
-      do i = 1, size(m%requests)
-         associate (request => m%requests(i))
-            select case (request%kind)
-            case (request_point, request_curve)
-               ! A bound of what a point adds up, which needs no direction.
-               associate (k => m%points(request%subject)%link)
-                  reach = norm2(m%points(request%subject)%offset)
-                  if (m%links(k)%ground) then
-                     size_of(1, 0) = max(size_of(1, 0), maxval(abs(m%links(k)%position(:2))) + reach)
-                  else if (known_of(q, k) >= 0) then
-                     size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, k) + q%origin)) + reach, &
-                        maxval(abs(q%velocity(:2, k))) + abs(q%velocity(3, k))*reach, &
-                        maxval(abs(q%acceleration(:2, k))) + (abs(q%acceleration(3, k)) + q%velocity(3, k)**2)*reach])
-                  end if
-               end associate
-            case (request_pair)
-               ! The row without its name.
-               row%kind = request%kind
-               call note_known(m, q, request, row)
-               if (row%known < 0) cycle
-               call set_values(m, q, request, row)
-               associate (unit => merge(2, 1, row%angular))
-                  size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)))
-               end associate
-            end select
+      do i = 1, size(rows)
+         if (rows(i)%known < 0 .or. rows(i)%kind >= request_pole) cycle
+         associate (value => abs(rows(i)%value), unit => merge(2, 1, rows(i)%angular))
+            size_of(unit, :) = max(size_of(unit, :), value(1, :))
+            if (rows(i)%kind /= request_pair) size_of(:2, :) = max(size_of(:2, :), value(2:, :))
          end associate
       end do
       associate (x => size_of)

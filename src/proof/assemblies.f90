@@ -74,7 +74,6 @@ contains
       call set_drive_values(e, t)
       call name_blocks(m, e, a)
       call search(m, e, t, a)
-      call sort(a)
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
 
@@ -261,7 +260,8 @@ contains
       end do
    end subroutine count_paths
 
-   !> Adds the assembly that `e` has now.
+   !> Puts the assembly that `e` has now among the others, the nearest first; of those that are alike in the order in
+   !> which they were found.
    subroutine note_assembly(e, found, chosen, is_proved, a)
       type(block_engine_t), intent(in) :: e
       type(block_positions_t), intent(in) :: found(:)
@@ -271,7 +271,7 @@ contains
       type(assembly_t) :: one
       type(motion_t) :: q
       logical :: finite
-      integer :: i
+      integer :: i, k
 
       q = new_motion(size(e%estimate, 2))
       call move_links(e%whole, e%state, e%length, q, finite)
@@ -279,22 +279,7 @@ contains
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved
       one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%span)))
-      a%list = [a%list, one]
+      k = count(a%list%distance <= one%distance*(1.0_wp + alike))
+      a%list = [a%list(:k), one, a%list(k + 1:)]
    end subroutine note_assembly
-
-   !> Puts the nearest assembly first; of those that are alike, in the order in which they were found.
-   pure subroutine sort(a)
-      type(assemblies_t), intent(inout) :: a
-      type(assembly_t) :: one
-      integer :: i, k
-
-      do i = 2, size(a%list)
-         one = a%list(i)
-         do k = i - 1, 1, -1
-            if (a%list(k)%distance <= one%distance*(1.0_wp + alike)) exit
-            a%list(k + 1) = a%list(k)
-         end do
-         a%list(k + 1) = one
-      end do
-   end subroutine sort
 end module assemblies
