@@ -11,7 +11,7 @@ module digits_in_doubt
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, find_growths, safe_growth
+   public :: sizes_t, sizes_of, find_growth, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))

@@ -4,8 +4,6 @@
 !>    bench sines COUNT                  errors of the lanes' sines, no clock; exit status 1 if any is large
 !>    bench lanes DECKS                  time a step of a variant in lanes
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS
-!>    bench reading [DECK]               time to read and analyse a deck, and memory; the table's head
-!>    bench process DECKS KINMAT         time of the whole command
 !>    bench scene NAME [N DECKS]         a line for another program: the time of a step of input/NAME.deck, or of a chain,
 !>                                       by the closed form and by the blocks, in ns; characteristic length and rate
 !>    bench results DECKS STEPS DECK...  results compared, no clock; exit status 1 if any differ
@@ -13,7 +11,6 @@ program bench
    use bench_results, only: judge_all
    use bench_tables, only: steps_table, coarse_table, chains_table, scene_line
    use bench_lanes, only: lanes_table, judge_sines
-   use bench_whole, only: reading_head, reading_row, process_table
    implicit none
    character(200), allocatable :: arguments(:)
    integer :: i, steps, count, failed
@@ -34,11 +31,6 @@ program bench
       call lanes_table(trim(arguments(2)))
    case ('chains')
       call chains_table(trim(arguments(2)))
-   case ('reading')
-      if (arguments(2) == '') call reading_head()
-      if (arguments(2) /= '') call reading_row(trim(arguments(2)))
-   case ('process')
-      call process_table(trim(arguments(2)), trim(arguments(3)))
    case ('scene')
       call scene_line(trim(arguments(2)), trim(arguments(3)), trim(arguments(4)))
    case ('results')

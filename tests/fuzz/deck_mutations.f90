@@ -7,7 +7,7 @@ module deck_mutations
       find_cards, add_note
    use deck_changes, only: pick, near, put_real, is_degrees
    use drive_mutations, only: change_drive, add_term, change_time, change_at, change_method, exchange_drive
-   use deck_surplus, only: double_pair, weld_link, double_drive, extra_drive, far_rough, round_drive
+   use deck_surplus, only: double_pair, double_drive, extra_drive, far_rough, round_drive
    implicit none
    private
    public :: prepare, change_gently, max_steps
@@ -78,10 +78,8 @@ contains
          call swap_ends(d, r)
       case (23)
          call make_prism(d, r)
-      case (24:26)
+      case (24:27)
          call double_pair(d, r)
-      case (27)
-         call weld_link(d, r)
       case (28:29)
          call double_drive(d, r)
       case (30)

@@ -1,14 +1,15 @@
-!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice, guides
-!> side by side, links held at two points; and rough positions from far, drives that stop at round angles.
+!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice (those
+!> of `random_schemes` are guides side by side, whose motion is known); and rough positions from far, drives that stop at
+!> round angles.
 module deck_surplus
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between
-   use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
+   use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_full, insert_line, &
       find_cards, add_note
    use deck_changes, only: pick, is_degrees
    implicit none
    private
-   public :: double_pair, weld_link, double_drive, extra_drive, far_rough, round_drive
+   public :: double_pair, double_drive, extra_drive, far_rough, round_drive
 
    real(wp), parameter :: pi = 3.141592653589793_wp
 
@@ -32,16 +33,6 @@ contains
       end do
    end function line_after
 
-   !> Line of the POINT card of `name`, 0 for none.
-   integer function point_line(d, name)
-      type(draft_t), intent(in) :: d
-      character(*), intent(in) :: name
-
-      do point_line = size(d%line), 1, -1
-         if (name_of(d%line(point_line)) == 'POINT' .and. label(d%line(point_line), 1) == name) return
-      end do
-   end function point_line
-
    !> A second card like card `i`, of the pair `name`, before line `at`.
    subroutine copy_card(d, i, at)
       type(draft_t), intent(inout) :: d
@@ -55,8 +46,7 @@ contains
       end do
    end subroutine copy_card
 
-   !> A pair once more: between the same points, or between others, a prismatic one so that both agree, a revolute one
-   !> so that they agree where the links have their rough angles; or a prismatic one with another number.
+   !> A pair once more between the same points, or a prismatic one with another number.
    subroutine double_pair(d, r)
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
@@ -79,130 +69,7 @@ contains
             15.0_wp)))
       end if
       call add_note(d, 'PAIR '//label(d%line(i), 3)//' TWICE')
-      ! Cards come in above.
-      if (chance(r, 0.5_wp)) call move_ends(d, r, at)
    end subroutine double_pair
-
-   !> Pair card `i` between two other points of its links.
-   subroutine move_ends(d, r, i)
-      type(draft_t), intent(inout) :: d
-      type(dice_t), intent(inout) :: r
-      integer, intent(in) :: i
-      real(wp) :: p(2), q(2), turn, alpha, normal(2), unit
-      integer :: k
-      character(8) :: names(2), old(2)
-
-      old = [label(d%line(i), 1), label(d%line(i), 2)]
-      if (point_line(d, old(1)) == 0 .or. point_line(d, old(2)) == 0) return
-      unit = merge(pi/180.0_wp, 1.0_wp, is_degrees(d))
-      p = [between(r, -1.0_wp, 1.0_wp), between(r, -1.0_wp, 1.0_wp)]
-      if (name_of(d%line(i)) == 'PRISM') then
-         q = [between(r, -1.0_wp, 1.0_wp), between(r, -1.0_wp, 1.0_wp)]
-         turn = unit*real_field(d, i, 3)
-         alpha = unit*real_field(d, i, 1)
-         normal = [-sin(alpha), cos(alpha)]
-         call set_full(d, i, 2, real_field(d, i, 2) + dot_product(normal, p - turned(q, turn)))
-      else
-         turn = unit*(estimated_angle(d, link_of(d, old(2))) - estimated_angle(d, link_of(d, old(1))))
-         q = turned(p, -turn)
-      end if
-      names = new_name(d)
-      names(2)(2:2) = 'Y'
-      do k = 1, 2
-         call set_label(d%line(i), k, names(k))
-      end do
-      call new_point(d, old(1), names(1), p)
-      call new_point(d, old(2), names(2), q)
-   end subroutine move_ends
-
-   !> A point `name` on the link of the point `old`, away from it by `offset`.
-   subroutine new_point(d, old, name, offset)
-      type(draft_t), intent(inout) :: d
-      character(*), intent(in) :: old, name
-      real(wp), intent(in) :: offset(2)
-      integer :: at
-
-      at = point_line(d, old)
-      call copy_card(d, at, line_after(d, at))
-      call set_label(d%line(at), 1, name)
-      call set_full(d, at, 1, real_field(d, at, 1) + offset(1))
-      call set_full(d, at, 2, real_field(d, at, 2) + offset(2))
-   end subroutine new_point
-
-   function link_of(d, point) result(link)
-      type(draft_t), intent(in) :: d
-      character(*), intent(in) :: point
-      character(8) :: link
-
-      link = label(d%line(point_line(d, point)), 2)
-   end function link_of
-
-   pure function turned(v, angle) result(w)
-      real(wp), intent(in) :: v(2), angle
-      real(wp) :: w(2)
-
-      w = [v(1)*cos(angle) - v(2)*sin(angle), v(1)*sin(angle) + v(2)*cos(angle)]
-   end function turned
-
-   real(wp) function estimated_angle(d, name)
-      type(draft_t), intent(in) :: d
-      character(*), intent(in) :: name
-      integer :: i
-
-      estimated_angle = 0.0_wp
-      do i = 1, size(d%line)
-         if (all(name_of(d%line(i)) /= ['LINK    ', 'GROUND  ']) .or. label(d%line(i), 1) /= name) cycle
-         estimated_angle = real_field(d, i, 3)
-      end do
-   end function estimated_angle
-
-   !> A new link held at two points of another: one equation too many, and the lengths agree to 16 digits, or to fewer.
-   subroutine weld_link(d, r)
-      type(draft_t), intent(inout) :: d
-      type(dice_t), intent(inout) :: r
-      integer :: i, j, at, tries
-      real(wp) :: body_vector(2), length, angle
-      character(8) :: names(2), link
-
-      i = pick(r, find_cards(d, ['POINT   ']))
-      at = pick(r, find_cards(d, ['LINK    ']))
-      if (i == 0 .or. at == 0) return
-      do tries = 1, 10
-         j = pick(r, find_cards(d, ['POINT   ']))
-         if (i /= j .and. label(d%line(i), 2) == label(d%line(j), 2)) exit
-      end do
-      if (i == j .or. label(d%line(i), 2) /= label(d%line(j), 2)) return
-      names = [label(d%line(i), 1), label(d%line(j), 1)]
-      body_vector = [real_field(d, j, 1), real_field(d, j, 2)] - [real_field(d, i, 1), real_field(d, i, 2)]
-      length = norm2(body_vector)
-      if (chance(r, 0.3_wp)) length = length*(1.0_wp + 10.0_wp**(-between(r, 2.0_wp, 15.0_wp)))
-      angle = estimated_angle(d, label(d%line(i), 2)) + atan2(body_vector(2), body_vector(1))*merge(180.0_wp/pi, &
-         1.0_wp, is_degrees(d))
-      link = new_name(d)
-      call insert_line(d, at, 'LINK    '//link)
-      call set_real(d, at, 3, angle)
-      call hold(d, link, names, length)
-      call add_note(d, 'LINK HELD AT TWO POINTS')
-   end subroutine weld_link
-
-   !> Revolute pairs of the new `link`, at its origin and at the end of its `length`, with the points `names`.
-   subroutine hold(d, link, names, length)
-      type(draft_t), intent(inout) :: d
-      character(8), intent(in) :: link, names(2)
-      real(wp), intent(in) :: length
-      integer :: at
-      character(6) :: number
-
-      number = link(3:)
-      do at = 1, size(d%line) - 1
-         if (any(name_of(d%line(at)) == ['REVOLUTE', 'PRISM   '])) exit
-      end do
-      call insert_line(d, at, 'REVOLUTEZO'//number//names(1)//'ZP'//number)
-      call insert_line(d, at, 'REVOLUTE'//names(2)//'ZE'//number//'ZQ'//number)
-      call insert_line(d, at, 'POINT   ZE'//number//link)
-      call set_full(d, at, 1, length)
-      call insert_line(d, at, 'POINT   ZO'//number//link)
-   end subroutine hold
 
    !> A drive once more, in its own words or by the angle to a ground link, sometimes with another number.
    subroutine double_drive(d, r)

@@ -7,7 +7,7 @@ module draft_drives
    use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, &
       double, &
       link_at
-   use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table, term_rise
+   use drive_laws, only: law_t, law_jet, term_harmonic, term_power, term_table, term_rise
    use rise_laws, only: rise_words
    use scheme_draft, only: draft_t, number, world, add_point, anywhere
    implicit none
@@ -133,7 +133,6 @@ contains
             if (k > 1 .and. k < n) law%time(k) = double(law%time(k) + 0.3_qp*span/(n - 1)*number(d, -1.0_qp, 1.0_qp))
          end do
       end associate
-      call set_spline(law)
    end subroutine make_table
 
    !> A rise somewhere among the instants, at times from the first on or up to the last.

@@ -20,16 +20,12 @@ program fuzz
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
    use deck_damage, only: deck_of_seed
    use csv_closure, only: verdict_t, check_csv
-   use csv_twice, only: compare_steps
    use listing_check, only: check_listing, check_protocol
    implicit none
 
    !> Seconds that one deck may take, of a clock on the wall: the slowest known take 15 on a busy machine.
    integer(c_int), parameter :: patience = 60
    integer(c_int), parameter :: signal_alarm = 14
-   !> Every so many-th deck that is solved is solved in twice as many steps too.
-   integer, parameter :: twice_every = 3
-
    !> Every so many-th deck has all outputs: these, some of which are of one set each, and in these files.
    integer, parameter :: others_every = 25
    integer, parameter :: each_set(*) = [out_table, out_plot_table, out_plot_script]
@@ -151,7 +147,6 @@ contains
                call check_protocol(options%files(other_outputs(k))%text, &
                any(other_outputs(k) == [out_table, out_plot_table]), wrong)
          end do
-         if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
       case (1)
          if (index(message, ' *** E') == 0) wrong = 'REFUSED WITHOUT A WORD: '//message
       case default
@@ -187,36 +182,6 @@ contains
          options%files(other_outputs(k))%text = directory//'/'//trim(others(k))
       end do
    end subroutine ask_for_others
-
-   !> Runs the deck `d` in twice as many steps and compares.
-   subroutine run_twice(d, directory, wrong)
-      type(draft_t), intent(in) :: d
-      character(*), intent(in) :: directory
-      character(:), allocatable, intent(inout) :: wrong
-      type(draft_t) :: twice
-      type(options_t) :: options
-      type(mechanism_t), allocatable :: one(:)
-      type(failure_t), allocatable :: failure
-      character(:), allocatable :: message, found
-      integer, allocatable :: cards(:)
-      integer :: n, status
-
-      cards = find_cards(d, ['TIME    '])
-      if (size(cards) /= 1) return
-      options = options_in(directory)
-      call read_deck(options%deck, one, message, failure)
-      if (size(one) /= 1) return
-      if (one(1)%tolerance > 0.0_wp .or. one(1)%variants > 0) return
-      twice = d
-      read (d%line(cards(1))(9:16), *) n
-      write (twice%line(cards(1))(9:16), '(i0)') 2*n
-      options%deck = directory//'/deck2'
-      options%files(out_csv)%text = directory//'/csv2'
-      call write_draft(twice, options%deck)
-      call run_trapped(options, status, message)
-      if (status == 0) call compare_steps(one(1), directory//'/csv', options%files(out_csv)%text, found)
-      if (allocated(found)) wrong = found
-   end subroutine run_twice
 
    !> The job with the traps of the debug build.
    subroutine run_trapped(options, status, message)

@@ -1,4 +1,4 @@
-!> Tests. `hard short|full DECKS INPUT...`: accuracy on everything that is hard to compute, in what its condition
+!> Tests. `hard short|full INPUT...`: accuracy on everything that is hard to compute, in what its condition
 !> allows. One line a scene; ends non-zero where a number without a mark is wrong by more than `bound` times that.
 !>
 !> A unit of the last three columns is eps times the sum, over all numbers of the deck, of what each of them rounded
@@ -15,9 +15,7 @@ program hard
    use analysis, only: analysis_t, make_analysis, advance
    use jet_closure, only: body_jet_t
    use hard_condition, only: condition_t, measure
-   use hard_chain, only: scissor_condition
-   use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, &
-      scissor_scene, exact_links
+   use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, exact_links
    implicit none
 
    !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own
@@ -32,18 +30,16 @@ program hard
       integer :: flagged = 0
       real(qp) :: condition = 0.0_qp, worst(0:2) = 0.0_qp
    end type certificate_counts_t
-   integer, parameter :: scissor_links(3) = [50, 200, 1000]
    integer :: passed = 0, failed = 0
    logical :: short
-   character(500) :: argument, decks
+   character(500) :: argument
    integer :: i
 
    call get_command_argument(1, argument)
    short = argument == 'short'
-   call get_command_argument(2, decks)
    print '(a)', ' ERRORS OVER EPS TIMES THE SUM OF WHAT EACH NUMBER OF THE DECK DOES; CONDITION: THE LARGEST SUM OF A POSITION', &
       '', ' SCENE                        LINKS  INSTANTS  FLAGGED  CONDITION  POSITION  VELOCITY    ACCEL.'
-   do i = 3, command_argument_count()
+   do i = 2, command_argument_count()
       call get_command_argument(i, argument)
       call judge_deck(trim(argument))
    end do
@@ -51,9 +47,6 @@ program hard
    call judge_change_points()
    call judge_angles()
    call judge_sizes()
-   do i = 1, merge(2, 3, short)
-      call judge(scissor_scene(trim(decks), scissor_links(i)))
-   end do
    print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
    if (failed > 0) stop 1, quiet=.true.
 
@@ -225,14 +218,9 @@ contains
       logical, intent(out) :: exists
       type(condition_t) :: c
 
-      if (allocated(s%rods%length)) then
-         exists = .true.
-         allowed = scissor_condition(s%m, s%rods, real(t, qp))
-      else
-         c = measure(s%m, exact, real(t, qp))
-         exists = c%exists
-         allowed = c%of
-      end if
+      c = measure(s%m, exact, real(t, qp))
+      exists = c%exists
+      allowed = c%of
       allowed(1, :, :) = max(allowed(1, :, :), allowed(2, :, :))
       allowed(2, :, :) = allowed(1, :, :)
       call allow_for_constants(characteristic_length(s%m), exact, allowed)

@@ -12,12 +12,11 @@ module hard_scenes
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
    use closed_forms, only: closed_form
    use sample_mechanisms, only: four_bar, crank_slider, magnified
-   use hard_chain, only: rods_t, rods_of, scissor_form
    implicit none
    private
-   public :: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, scissor_scene, exact_links
+   public :: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, exact_links
 
-   integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3, by_scissor = 4
+   integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3
 
    type :: scene_t
       character(:), allocatable :: name
@@ -27,7 +26,6 @@ module hard_scenes
       character(:), allocatable :: deck          !< base name
       integer :: set = 1
       real(wp) :: far(2) = 0.0_wp                !< by how much all ground stands elsewhere than in the deck
-      type(rods_t) :: rods                       !< of a scissor
    end type scene_t
 
 contains
@@ -121,23 +119,6 @@ contains
       call place_roughly(s)
    end function slider_scene
 
-   !> The lift of `n` links whose deck stands in the directory `decks`.
-   function scissor_scene(decks, n) result(s)
-      character(*), intent(in) :: decks
-      integer, intent(in) :: n
-      type(scene_t) :: s
-      type(scene_t), allocatable :: list(:)
-      character(8) :: number
-
-      write (number, '(i0)') n
-      list = deck_scenes(decks//'/scissor_'//trim(number)//'.deck', 1)
-      s = list(1)
-      s%name = 'SCISSOR LIFT '//trim(number)
-      s%form = by_scissor
-      s%rods = rods_of(s%m)
-      s%at = [0.0_wp, 0.25_wp, 0.75_wp]
-   end function scissor_scene
-
    !> The links of `s` at `t` in the order of its mechanism.
    function exact_links(s, t) result(b)
       type(scene_t), intent(in) :: s
@@ -151,10 +132,8 @@ contains
          form = closed_form(s%deck, s%set, real(t, qp))
       case (by_four_bar)
          form = four_bar_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
-      case (by_slider)
-         form = slider_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
       case default
-         form = scissor_form(s%rods, drive_jet(s%m%drives(1), real(t, qp)))
+         form = slider_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
       end select
       if (size(form) /= size(b)) error stop 'A SCENE WITHOUT A CLOSED FORM'
       do i = 1, size(form)

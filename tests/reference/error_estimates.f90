@@ -12,14 +12,13 @@ program error_estimates
    use deck, only: read_deck
    use analysis, only: analysis_t, make_analysis, advance
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_error
-   use quad_jet, only: qp, pi_q
+   use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
+   use motion_errors, only: away
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form
    implicit none
    real(wp), parameter :: max_above = 30.0_wp
-   !> The closed forms are rounded as well.
-   real(wp), parameter :: reference_rounding = 1.0e-30_wp
    !> One in so many of the largest errors may be told too large.
    integer, parameter :: seldom = 5
 
@@ -129,22 +128,6 @@ contains
             k) > 0.0_wp)
       end do
    end subroutine weigh_instant
-
-   !> By how much link `i` of `q` is off; angles but for whole turns.
-   pure function away(q, i, exact) result(d)
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
-      type(body_t), intent(in) :: exact
-      real(wp) :: d(3, 0:2)
-      real(qp) :: turn
-
-      turn = real(q%position(3, i), qp) - exact%phi%v
-      turn = turn - 2.0_qp*pi_q*anint(turn/(2.0_qp*pi_q))
-      d(:, 0) = real(abs([(q%position(:2, i) + q%origin) - [exact%x%v, exact%y%v], turn]), wp)
-      d(:, 1) = real(abs(q%velocity(:, i) - [exact%x%d, exact%y%d, exact%phi%d]), wp)
-      d(:, 2) = real(abs(q%acceleration(:, i) - [exact%x%dd, exact%y%dd, exact%phi%dd]), wp)
-      where (d < reference_rounding) d = 0.0_wp
-   end function away
 
    subroutine get_motion_of(name, t)
       character(*), intent(in) :: name

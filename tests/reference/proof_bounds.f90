@@ -11,8 +11,9 @@ program proof_bounds
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
    use link_bounds, only: row_bound
-   use quad_jet, only: qp, pi_q
+   use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
+   use motion_errors, only: away
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    implicit none
@@ -42,9 +43,6 @@ program proof_bounds
    enum, bind(c)
       enumerator :: is_proved = 0, at_change, passes_change, other_reason
    end enum
-
-   !> The closed forms are rounded as well.
-   real(qp), parameter :: reference_rounding = 1.0e-30_qp
 
    type(certificate_counts_t) :: tally
    character(500) :: path
@@ -159,22 +157,4 @@ contains
          end do
       end do
    end subroutine weigh
-
-   !> How far (3, 0:2) link `i` of the motion `q` is from the truth, as it is printed.
-   function away(q, i, exact) result(off)
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
-      type(body_t), intent(in) :: exact
-      real(wp) :: off(3, 0:2)
-      real(qp) :: x(3, 0:2), right(3, 0:2)
-
-      x(:, 0) = [q%position(:2, i) + q%origin, q%position(3, i)]
-      x(:, 1) = q%velocity(:, i)
-      x(:, 2) = q%acceleration(:, i)
-      right(1, :) = [exact%x%v, exact%x%d, exact%x%dd]
-      right(2, :) = [exact%y%v, exact%y%d, exact%y%dd]
-      right(3, :) = [exact%phi%v, exact%phi%d, exact%phi%dd]
-      right(3, 0) = right(3, 0) + 2.0_qp*pi_q*anint((x(3, 0) - right(3, 0))/(2.0_qp*pi_q))
-      off = real(max(0.0_qp, abs(x - right) - reference_rounding), wp)
-   end function away
 end program proof_bounds
