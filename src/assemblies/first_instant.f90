@@ -117,7 +117,7 @@ contains
          end associate
       end do
       q = new_motion(size(places, 2))
-      call move_links(e%whole, e%state, e%length, q, finite)
+      call move_links(e%chain, e%state, e%length, q, finite, .true.)
       guess(:2, :) = e%estimate(:2, :)
       guess(3, :) = q%position(3, :)
       is_given_up = .false.
@@ -225,7 +225,7 @@ contains
          end associate
          call set_values(e%blocks, i, y, e%state)
          q = new_motion(size(places, 2))
-         call move_links(e%whole, e%state, e%length, q, finite)
+         call move_links(e%chain, e%state, e%length, q, finite, .true.)
          square = squared_distances(q%position, guess, e%span)
          distance = sqrt(sum(square, mask=places == i))
          do k = 1, size(found%distance)
@@ -273,8 +273,8 @@ contains
       block_of(0) = 0
       block_of(1:) = e%blocks%block_of
       places = 0
-      do k = 1, size(e%whole%links)
-         associate (h => e%whole%links(k))
+      do k = 1, size(e%chain%links)
+         associate (h => e%chain%links(k))
             places(1, h%link) = block_of(h%orientation)
             places(2, h%link) = max(block_of(h%orientation), block_of(h%slide))
             if (h%parent > 0) places(2, h%link) = max(places(2, h%link), places(2, h%parent))

@@ -113,7 +113,7 @@ contains
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
       end associate
-      do k = 1, size(e%chain%links)
+      do k = 1, e%chain%wanted
          associate (h => e%chain%links(k))
             if (h%parent > 0) moved(h%link) = moved(h%link) .or. moved(h%parent)
          end associate
@@ -140,8 +140,8 @@ contains
       associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
          chosen = links_with(e, unknowns)
          if (any(chosen)) return
-         do k = 1, size(e%whole%links)
-            if (any(unknowns == e%whole%links(k)%slide)) chosen(e%whole%links(k)%link) = .true.
+         do k = 1, size(e%chain%links)
+            if (any(unknowns == e%chain%links(k)%slide)) chosen(e%chain%links(k)%link) = .true.
          end do
       end associate
    end function links_of

@@ -70,8 +70,7 @@ module block_engine
       real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
-      type(chain_t) :: chain                            !< of the links that are asked for
-      type(chain_t) :: whole                            !< of all links
+      type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
       type(law_t), allocatable :: laws(:)               !< (drives)
       type(law_t), allocatable :: timed(:)              !< (drives) the deck's, while others are followed; then
       real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
@@ -120,7 +119,6 @@ contains
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
-         e%whole = new_chain(m, t, axes, spread(.true., 1, size(m%links)), e%blocks%orientations, unit)
       end associate
       e%orientation_of = t%orientation
       e%is_found = wanted_links(m) .and. t%orientation > 0
@@ -152,7 +150,6 @@ contains
       e%length = e%blocks%numbers%equations%length
       associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)
          call put_chain(m, b%tree, axes, b%orientations, e%chain, b%numbers%unit)
-         call put_chain(m, b%tree, axes, b%orientations, e%whole, b%numbers%unit)
       end associate
       call put_laws(e, m)
    end subroutine put_mechanism

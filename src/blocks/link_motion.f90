@@ -29,10 +29,11 @@ module link_motion
       type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
    end type chain_link_t
 
-   !> The links to be moved, parents first, and those that stay.
+   !> The links to be moved and those that stay: the wanted ones first, parents before their children.
    type :: chain_t
       type(chain_link_t), allocatable :: links(:)
       integer, allocatable :: ground(:)                 !< numbers of the ground links
+      integer :: wanted = 0, wanted_ground = 0          !< so many of them are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t
@@ -42,7 +43,7 @@ module link_motion
 
 contains
 
-   !> The chain of those links of `m` that are `wanted` (links) and of all their parents, in the deck's unit of length.
+   !> The chain of the links of `m`, in the deck's unit of length; first those `wanted` (links), and their parents.
    !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides, 1
    !> where it is not given.
    function new_chain(m, t, a, wanted, first_slide, unit) result(c)
@@ -61,11 +62,14 @@ contains
       do i = size(t%order), 1, -1
          if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
-      links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
-      allocate (c%links(size(links)))
+      associate (moves => .not. m%links(t%order)%ground, numbers => [(i, i=1, size(wanted))])
+         links = [pack(t%order, moves .and. needed(t%order)), pack(t%order, moves .and. .not. needed(t%order))]
+         c%wanted = count(moves .and. needed(t%order))
+         c%ground = [pack(numbers, m%links%ground .and. wanted), pack(numbers, m%links%ground .and. .not. wanted)]
+         c%wanted_ground = count(m%links%ground .and. wanted)
+      end associate
+      allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
-      c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
-      allocate (c%ground_position(3, size(c%ground)))
       call put_chain(m, t, a, first_slide, c, unit)
    end function new_chain
 
@@ -117,21 +121,30 @@ contains
       h%is_plain = h%slide == 0 .and. .not. h%has_body_vector
    end function new_chain_link
 
-   !> Puts the motion of the chain's links at state `s` into `q`; `length`: the unit of the slides in the deck's unit.
-   !> `finite`: no number of theirs is out of range; false may be said of sums alone.
-   pure subroutine move_links(c, s, length, q, finite)
+   !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the unit of the
+   !> slides in the deck's unit. `finite`: no number of theirs is out of range; false may be said of sums alone.
+   pure subroutine move_links(c, s, length, q, finite, all_links)
       type(chain_t), intent(in) :: c
       type(state_t), intent(in) :: s
       real(wp), intent(in) :: length
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
+      logical, intent(in), optional :: all_links
+      integer :: links, ground
 
+      links = c%wanted
+      ground = c%wanted_ground
+      if (present(all_links)) then
+         if (all_links) links = size(c%links)
+         if (all_links) ground = size(c%ground)
+      end if
       q%origin = c%origin
-      call put_ground(size(c%ground), c%ground, c%ground_position, q%position)
-      call move_chain(size(c%links), c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
+      call put_ground(ground, c%ground, c%ground_position, q%position)
+      call move_chain(links, c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> The same of links that are not `lost` (links): what the state has of the others need not be a number.
+   !> Puts the motion of the wanted links that are not `lost` (links) into `q`, as `move_links` does. The state of the
+   !> others need not be a number.
    pure subroutine move_found_links(c, lost, s, length, q, finite)
       type(chain_t), intent(in) :: c
       logical, intent(in) :: lost(:)
@@ -142,7 +155,8 @@ contains
       type(chain_t) :: part
 
       part = c
-      part%links = pack(part%links, .not. lost(part%links%link))
+      part%links = pack(c%links(:c%wanted), .not. lost(c%links(:c%wanted)%link))
+      part%wanted = size(part%links)
       call move_links(part, s, length, q, finite)
    end subroutine move_found_links
 
@@ -273,7 +287,7 @@ contains
    end subroutine add_slide
 
    !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
-   !> unknowns by which it and its parents move; links outside the chain count as known.
+   !> unknowns by which it and its parents move; links that are not wanted count as known.
    subroutine mark_links(c, missing, found)
       type(chain_t), intent(in) :: c
       integer, intent(in) :: missing(0:)
@@ -281,7 +295,7 @@ contains
       integer :: of_link(0:size(found%position, 2)), k
 
       of_link = missing_nothing
-      do k = 1, size(c%links)
+      do k = 1, c%wanted
          associate (h => c%links(k))
             of_link(h%link) = max(missing(h%orientation), missing(h%slide), of_link(h%parent))
             if (h%root > 0) of_link(h%link) = max(of_link(h%link), missing(h%root), missing(h%root + 1))

@@ -100,7 +100,7 @@ contains
       ! at the deck's estimate.
       call followed_state(e, s)
       before = new_motion(size(there, 2))
-      call move_links(e%whole, s, e%length, before, finite)
+      call move_links(e%chain, s, e%length, before, finite, .true.)
       w = 0.0_wp
       if (e%history%filled > 0) w = order_weights(d%order, found%t - e%history%t(0), 0.0_wp)
       start = before%position + w(1)*before%velocity + w(2)*before%acceleration
@@ -147,7 +147,7 @@ contains
 
       q = d%pose%q
       q(:2, :) = d%system%length*q(:2, :)
-      call find_values(e%whole, q, e%length, value)
+      call find_values(e%chain, q, e%length, value)
       is = .true.
       do k = 1, size(e%needed)
          associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))

@@ -94,7 +94,7 @@ contains
       call solve_first(e, t, c)
       if (is_solved(c)) then
          q = new_motion(size(m%links))
-         call move_links(e%whole, e%state, e%length, q, unused)
+         call move_links(e%chain, e%state, e%length, q, unused, .true.)
          a%chosen = number_of(q%position, a%list, e%span)
       end if
       if (is_nearer_one()) call begin_in_nearest()
@@ -274,7 +274,7 @@ contains
       integer :: i, k
 
       q = new_motion(size(e%estimate, 2))
-      call move_links(e%whole, e%state, e%length, q, finite)
+      call move_links(e%chain, e%state, e%length, q, finite, .true.)
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved

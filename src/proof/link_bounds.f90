@@ -28,7 +28,7 @@ contains
    function link_vectors(m, e) result(l)
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
-      type(link_vectors_t) :: l(size(e%chain%links))
+      type(link_vectors_t) :: l(e%chain%wanted)
       real(wp) :: angle(0:e%blocks%tree%orientations), terms(2), slide(2)
       integer :: i
 

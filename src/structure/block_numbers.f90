@@ -13,7 +13,7 @@ module block_numbers
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes
-   use loop_equations, only: equation_numbers_t, put_equation_numbers, fit_equations
+   use loop_equations, only: put_equation_numbers, fit_equations
    use blocks, only: blocks_t, block_t, block_loop_t, numbers_t, loop_numbers_t, loop_angles, loop_components, &
       loop_projection
    implicit none
@@ -24,15 +24,12 @@ module block_numbers
 
 contains
 
-   !> Gives the blocks `b`, made of equations with the numbers `equations` of a mechanism of this `span`, its numbers.
-   subroutine add_numbers(span, equations, b)
-      real(wp), intent(in) :: span
-      type(equation_numbers_t), intent(in) :: equations
+   !> Gives the blocks `b` the `numbers` of the mechanism, which hold its span and those of the equations of `b`.
+   subroutine add_numbers(numbers, b)
+      type(numbers_t), allocatable, intent(inout) :: numbers
       type(blocks_t), intent(inout) :: b
 
-      allocate (b%numbers)
-      b%numbers%span = span
-      b%numbers%equations = equations
+      call move_alloc(numbers, b%numbers)
       if (.not. b%solvable) return
       associate (x => b%numbers)
          allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), x%d(size(b%body_vectors)), &

@@ -10,9 +10,9 @@ module block_structure
    use block_matrix, only: shape_t, is_sparse_better
    use links_tree, only: tree_t, new_tree
    use matching, only: incidence_t, match, find_blocks, overdetermined
-   use loop_equations, only: equations_t, equation_t, new_equations, equation_numbers_t, new_equation_numbers, &
+   use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
       incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
-   use blocks, only: blocks_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, loop_angles
+   use blocks, only: blocks_t, numbers_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, loop_angles
    use block_numbers, only: add_numbers
    implicit none
    private
@@ -32,16 +32,15 @@ contains
       type(structure_t), intent(out) :: s
       type(tree_t) :: t
       type(equations_t) :: e
-      type(equation_numbers_t) :: numbers
-      real(wp) :: span
+      type(numbers_t), allocatable :: x
 
-      span = solver_length(m)
+      allocate (s%blocks, x)
+      x%span = solver_length(m)
       t = new_tree(m)
       e = new_equations(m, t)
-      numbers = new_equation_numbers(m, t, power_of_two(span), e)
-      allocate (s%blocks)
+      x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)
       s%blocks = new_blocks(t, e)
-      call add_numbers(span, numbers, s%blocks)
+      call add_numbers(x, s%blocks)
    end subroutine make_structure
 
    !> The blocks of the equations `e` on the tree `t`, without numbers.

@@ -33,13 +33,14 @@ contains
       real(wp), intent(in) :: length
       type(blocks_t) :: b
       type(equations_t) :: e
-      type(equation_numbers_t) :: x
       type(numbers_t), allocatable :: numbers
       integer :: i
 
-      call make_equations(m, length, e, x)
+      allocate (numbers)
+      numbers%span = length
+      call make_equations(m, length, e, numbers%equations)
       b = new_blocks(new_tree(m), e)
-      call add_numbers(length, x, b)
+      call add_numbers(numbers, b)
       if (.not. b%solvable) return
       call move_alloc(b%numbers, numbers)
       call fill_numbers(b, numbers)
