@@ -49,7 +49,7 @@ contains
          moves = .true.
          request = request_of(s, x%asked(q))
          d = l%own(x%part(q))
-         call put_heads(o, d, request%kind, table)
+         call put_heads(o, l, x%part(q), request%kind, table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
          if (drive > size(l%drives)) drive = 0

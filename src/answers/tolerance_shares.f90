@@ -8,7 +8,7 @@ module tolerance_shares
    use names, only: subject_name
    use set_motion, only: set_motion_t, spread_t, spread_in_set
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use listing_layout, only: layout_t, digits_t, dimension_of, name_length, unit_of, column_text
+   use listing_layout, only: layout_t, digits_t, dimension_of, unit_of
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole
@@ -143,11 +143,9 @@ contains
       size_of = merge(l%angle, 1.0_wp, what == 2)
       decimals = d%decimals(what, k) + l%more_decimals
       if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
-      unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column) &
-         //column_text(l%units(2, request%kind), column))
-      call put(o, ' '//trim(l%names(request%kind)(2:name_length))//' ' &
-         //trim(subject_name(m, request%kind, request%subject))//'  ' &
-         //column_text(l%names(request%kind), column)//'   T = '//time_text(l, share%t)//l%behind_time &
+      unit = unit_of(d%power(what, k), trim(l%unit(column, request%kind))//trim(l%per(column, request%kind)))
+      call put(o, ' '//trim(l%word(request%kind))//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
+         //trim(l%name(column, request%kind))//'   T = '//time_text(l, share%t)//l%behind_time &
          //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
          //value_text(share%worst)//' '//unit)
 

@@ -10,7 +10,7 @@ module variant_rows
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
    use set_motion, only: is_flagged
-   use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
+   use listing_layout, only: layout_t, digits_t, dimension_of, choose_digits, angle_unit
    use csv, only: marks, table_t, new_table, drive_columns, dotted
    use extremes, only: extremes_t, extreme_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, &
       column_of, strokes_of, ratio_decimals
@@ -180,10 +180,10 @@ contains
                request = request_of(set, column%request)
                place = column_of(request, column%angular, column%coordinate)
                over = l%column(place, column%order, request%kind)
-               word = column_text(l%names(request%kind), over)
+               word = trim(l%name(over, request%kind))
                c = summary_column_t(printed=.true., angular=column%angular, &
                   above=subject_name(set%parts(part), request%kind, request%subject), &
-                  unit=column_text(l%units(1, request%kind), over)//column_text(l%units(2, request%kind), over), &
+                  unit=trim(l%unit(over, request%kind))//l%per(over, request%kind), &
                   decimals=l%own(part)%decimals(dimension_of(place), column%order), &
                   power=l%own(part)%power(dimension_of(place), column%order))
                do which = least, greatest

@@ -130,7 +130,7 @@ contains
          begun = .true.
          call find_row_in_set(s, i, row)
          associate (part => s%rows(i)%part)
-            call put_heads(o, l%own(part), merge(l%links_table, row%kind, row%kind == request_link), table)
+            call put_heads(o, l, part, merge(l%links_table, row%kind, row%kind == request_link), table)
             call put_row(o, l, l%own(part), s%polish, row, request%angle_alone, doubt_in_set(row, s, i), table)
             if (.not. has_tolerances(s%parts(part), request)) cycle
 

@@ -20,7 +20,7 @@ module listing_layout
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
    public :: line_length, name_length, names_length, row_length, links_turning, dimension_of, angle_unit, power_text, &
-      unit_of, choose_digits, choose_time_digits, column_text, put_folded, right
+      unit_of, choose_digits, choose_time_digits, put_folded, right
 
    integer, parameter :: digits_after_first = 6
    !> An order that is a whole number but for rounding counts as one.
@@ -33,10 +33,6 @@ module listing_layout
    integer, parameter :: links_turning = 0
    !> Whether x, y, phi are lengths (1) or angles (2). The slide of a pair counts as x, its angle as phi.
    integer, parameter :: dimension_of(3) = [1, 1, 2]
-   !> In which of nine columns a table has x, y, phi and their derivatives (3, 0:2); 0: not at all.
-   integer, parameter :: link_columns(3, 0:2) = reshape([1, 2, 3, 4, 5, 6, 7, 8, 9], [3, 3]), &
-      point_columns(3, 0:2) = reshape([1, 2, 0, 4, 5, 0, 7, 8, 0], [3, 3]), &
-      angle_columns(3, 0:2) = reshape([0, 0, 3, 0, 0, 6, 0, 0, 9], [3, 3])
    !> The columns of the value, velocity and acceleration of the first kind of pairs in a table, and of the second.
    integer, parameter :: pair_columns(0:2, 2) = reshape([1, 2, 4, 5, 6, 8], [3, 2])
    !> Characters of the name of a column at most: those of PRZYSPIESZENIE, which begins over the column before.
@@ -48,12 +44,8 @@ module listing_layout
    type :: digits_t
       integer :: decimals(2, 0:2) = digits_after_first   !< digits after the point
       integer :: power(2, 0:2) = 0                       !< printed is the value over 10**power
-      !> By the kind of a table: the powers of its columns, 0 where it has none; the first part that has the same; its
-      !> heads, joined by new_line('a').
-      integer :: column_power(9, links_turning:request_curve) = 0
-      integer :: same_as(links_turning:request_curve) = 0
+      !> By the kind of a table: the lines over its rows, joined by new_line('a').
       character(4*(row_length + 1)) :: heads(links_turning:request_curve)
-      integer :: head_length(links_turning:request_curve) = 0
    end type digits_t
 
    !> A drive at the head of an instant: what stands before and behind its value, and its form.
@@ -73,11 +65,13 @@ module listing_layout
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
       integer :: links_table = request_link   !< the kind of the tables of links
-      !> Of x, y, phi and their derivatives, or of the numbers of a pole or curve, by the kind of a table.
+      ! By the kind of a table: which of nine columns x, y, phi and their derivatives have, or the numbers of a pole or
+      ! curve; 0: none. What the rows are of. Of each column its name, its unit, and where units are long what they are
+      ! divided by.
       integer :: column(3, 0:2, links_turning:request_curve) = 0
-      ! By the kind of a table:
-      character(row_length) :: names(links_turning:request_curve)      !< of the columns
-      character(row_length) :: units(2, links_turning:request_curve)   !< under them; the second line only where long
+      character(name_length) :: word(links_turning:request_curve)
+      character(name_room) :: name(9, links_turning:request_curve) = ''
+      character(2*label_length + 4), dimension(9, links_turning:request_curve) :: unit = '', per = ''
       character(numeral_length) :: none    !< in the place of a number that does not exist
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
@@ -113,27 +107,10 @@ contains
             turns = turns .or. .not. is_slide
          end associate
       end do
-      l%column(:, :, links_turning) = angle_columns
-      l%column(:, :, request_link) = link_columns
-      l%column(:, :, request_point) = point_columns
-      ! Slides and angles of pairs have columns only if such pairs are asked for.
-      if (slides) l%column(1, :, request_pair) = pair_columns(:, 1)
-      if (turns) l%column(3, :, request_pair) = pair_columns(:, merge(2, 1, slides))
-      do k = request_pole, request_curve
-         do i = 1, size(centre_numbers, 2)
-            l%column(centre_numbers(1, i, k), centre_numbers(2, i, k), k) = i
-         end do
-      end do
-      ! A pole has its direction behind its numbers.
-      l%column(3, 0, request_pole) = size(centre_numbers, 2) + 1
       do k = links_turning, request_curve
-         call take_columns(k)
+         call choose_columns(k)
          do i = 0, s%count
             call take_heads(l%own(i), k)
-            do n = 0, i
-               if (all(l%own(n)%column_power(:, k) == l%own(i)%column_power(:, k))) exit
-            end do
-            l%own(i)%same_as(k) = n
          end do
       end do
       l%none = phrase(say_none, s%polish)
@@ -191,87 +168,91 @@ contains
          if (.not. mixed .and. all(largest%decimals - l%decimals <= 1)) l%own = l%own(0)
       end subroutine choose_own_digits
 
-      !> The names and the units of the columns over rows of one `kind`; where a unit is too long for its column, all
-      !> that they are divided by stands in a second line.
-      subroutine take_columns(kind)
+      !> The columns of rows of one `kind`: slides and angles of pairs only if such pairs are asked for.
+      subroutine choose_columns(kind)
          integer, intent(in) :: kind
-         character(1), parameter :: prefix(0:2) = [' ', 'V', 'A'], place(3) = ['X', 'Y', ' ']
+         character(1), parameter :: prefix(0:2) = [' ', 'V', 'A'], place(2) = ['X', 'Y']
          type(phrase_t), parameter :: kind_words(links_turning:request_curve) = &
             [say_link, say_link, say_point, say_pair, say_pole, say_curve], &
-            pair_words(0:2) = [phrase_t(), say_velocity, say_acceleration]
-         character(name_room) :: words(9), word
+            slide_words(0:2) = [say_slide, say_velocity, say_acceleration], &
+            angle_words(0:2) = [say_angle, say_velocity, say_acceleration]
+         character(name_room) :: names(6)
+         character(:), allocatable :: word
+         integer :: c, k
+
+         l%word(kind) = phrase(kind_words(kind), s%polish)
+         select case (kind)
+         case (request_pair)
+            do k = 0, 2
+               if (slides) call add_column(1, k, pair_columns(k, 1), phrase(slide_words(k), s%polish), kind)
+               if (turns) &
+                  call add_column(3, k, pair_columns(k, merge(2, 1, slides)), phrase(angle_words(k), s%polish), kind)
+            end do
+         case (request_pole, request_curve)
+            word = phrase(say_xi, s%polish)
+            names = [character(name_room) :: 'X', 'Y', word//'-I', 'ETA-I', word//'-J', 'ETA-J']
+            word = phrase(say_centre, s%polish)
+            if (kind == request_curve) names = [character(name_room) :: 'X', 'Y', phrase(say_tangent, s%polish), &
+               phrase(say_radius, s%polish), 'X-'//word, 'Y-'//word]
+            do k = 1, size(names)
+               call add_column(centre_numbers(1, k, kind), centre_numbers(2, k, kind), k, trim(names(k)), kind)
+            end do
+            ! A pole has its direction behind its numbers.
+            if (kind == request_pole) call add_column(3, 0, size(names) + 1, phrase(say_direction, s%polish), kind)
+         case default
+            do k = 0, 2
+               do c = merge(3, 1, kind == links_turning), merge(2, 3, kind == request_point)
+                  word = phrase(say_phi, s%polish)
+                  if (c < 3) word = place(c)
+                  call add_column(c, k, 3*k + c, trim(prefix(k))//word, kind)
+               end do
+            end do
+         end select
+      end subroutine choose_columns
+
+      !> Gives the number (c, k) of the tables of one `kind` the `column` with this `name`. Where a unit is too long for
+      !> its column, all that they are divided by stands in a second line.
+      subroutine add_column(c, k, column, name, kind)
+         integer, intent(in) :: c, k, column, kind
+         character(*), intent(in) :: name
          character(label_length) :: unit(3)
          character(label_length + 4) :: per(0:2)
-         character(2*label_length + 4), dimension(9) :: first, second
-         integer :: c, k
 
          unit = [character(label_length) :: s%length_unit, s%length_unit, angle_unit(s)]
          per = [character(label_length + 4) :: '', '/'//s%time_unit, '/'//trim(s%time_unit)//'**2']
-         words = ''
-         first = ''
-         second = ''
-         if (kind == request_pole) then
-            word = phrase(say_xi, s%polish)
-            words(:7) = [character(name_room) :: 'X', 'Y', trim(word)//'-I', 'ETA-I', trim(word)//'-J', 'ETA-J', &
-               phrase(say_direction, s%polish)]
-         else if (kind == request_curve) then
-            word = phrase(say_centre, s%polish)
-            words(:6) = [character(name_room) :: 'X', 'Y', phrase(say_tangent, s%polish), &
-               phrase(say_radius, s%polish), 'X-'//trim(word), 'Y-'//trim(word)]
-         end if
-         do k = 0, 2
-            do c = 1, 3
-               associate (column => l%column(c, k, kind), of_rate => per(order_of(kind, k)))
-                  if (column == 0) cycle
-                  first(column) = unit(c)
-                  if (maxval(len_trim(unit)) + len_trim(per(2)) < numeral_length) then
-                     first(column) = trim(unit(c))//of_rate
-                  else
-                     second(column) = of_rate
-                  end if
-                  if (kind > request_pair) cycle
-                  if (kind == request_pair) then
-                     word = phrase(pair_words(k), s%polish)
-                     if (k == 0) word = phrase(merge(say_slide, say_angle, c == 1), s%polish)
-                  else if (c == 3) then
-                     word = trim(prefix(k))//phrase(say_phi, s%polish)
-                  else
-                     word = trim(prefix(k))//place(c)
-                  end if
-                  words(column) = word
-               end associate
-            end do
-         end do
-         l%names(kind) = in_columns(words, kind)
-         l%names(kind)(:names_length(kind)) = ' '//phrase(kind_words(kind), s%polish)
-         l%units(1, kind) = in_columns(first, kind)
-         l%units(2, kind) = in_columns(second, kind)
-      end subroutine take_columns
+         l%column(c, k, kind) = column
+         l%name(column, kind) = name
+         l%unit(column, kind) = unit(c)
+         l%per(column, kind) = per(order_of(kind, k))
+         if (maxval(len_trim(unit)) + len_trim(per(2)) >= numeral_length) return
+         l%unit(column, kind) = trim(unit(c))//l%per(column, kind)
+         l%per(column, kind) = ''
+      end subroutine add_column
 
       !> The lines over rows of one `kind` with the digits `d`: names, powers of ten where there are any, units.
       subroutine take_heads(d, kind)
          type(digits_t), intent(inout) :: d
          integer, intent(in) :: kind
+         character(row_length) :: names
          character(:), allocatable :: text
-         character(numeral_length) :: words(9)
+         character(numeral_length) :: powers(9)
          integer :: c, k
 
-         words = ''
+         powers = ''
          do k = 0, 2
             do c = 1, 3
                associate (column => l%column(c, k, kind), power => d%power(dimension_of(c), order_of(kind, k)))
-                  if (column == 0 .or. power == 0) cycle
-                  d%column_power(column, kind) = power
-                  words(column) = power_text(power)
+                  if (column > 0 .and. power /= 0) powers(column) = power_text(power)
                end associate
             end do
          end do
-         text = trim(l%names(kind))
-         if (any(words /= '')) text = text//new_line('a')//trim(in_columns(words, kind))
-         text = text//new_line('a')//trim(l%units(1, kind))
-         if (l%units(2, kind) /= '') text = text//new_line('a')//trim(l%units(2, kind))
+         names = in_columns(l%name(:, kind), kind)
+         names(:names_length(kind)) = ' '//l%word(kind)
+         text = trim(names)
+         if (any(powers /= '')) text = text//new_line('a')//trim(in_columns(powers, kind))
+         text = text//new_line('a')//trim(in_columns(l%unit(:, kind), kind))
+         if (any(l%per(:, kind) /= '')) text = text//new_line('a')//trim(in_columns(l%per(:, kind), kind))
          d%heads(kind) = text
-         d%head_length(kind) = len(text)
       end subroutine take_heads
    end function new_layout
 
@@ -342,17 +323,6 @@ contains
          end associate
       end do
    end function in_columns
-
-   !> The word that ends over `column` of the head `line` of a table.
-   pure function column_text(line, column) result(text)
-      character(*), intent(in) :: line
-      integer, intent(in) :: column
-      character(:), allocatable :: text
-
-      associate (before => line(:name_length + numeral_length*column))
-         text = before(index(before, ' ', back=.true.) + 1:)
-      end associate
-   end function column_text
 
    !> The deck's unit of angles.
    pure character(label_length) function angle_unit(m)

@@ -25,7 +25,7 @@ module listing_tables
    !> What a reader of the listing sees above the next row: the heads that hold for it, and how far above they are.
    type :: listing_state_t
       integer :: kind = no_table           !< of the rows below the heads: request_link, ..., or links_turning
-      integer :: part = 0                  !< the first one whose powers of ten are those in the heads
+      integer :: part = 0                  !< of the last of them
       integer :: lines = 0                 !< since the heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
    end type listing_state_t
@@ -163,18 +163,21 @@ contains
       text = trim(adjustl(field))
    end function known_text
 
-   !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
-   !> are any, units.
-   subroutine put_heads(o, d, kind, table)
+   !> The heads over rows of this `kind` and `part`, unless they stand there: names, powers of ten where there are any,
+   !> units.
+   subroutine put_heads(o, l, part, kind, table)
       type(output_t), intent(inout) :: o
-      type(digits_t), intent(in) :: d
-      integer, intent(in) :: kind
+      type(layout_t), intent(in) :: l
+      integer, intent(in) :: part, kind
       type(listing_state_t), intent(inout) :: table
+      logical :: stand
 
-      if (kind == table%kind .and. d%same_as(kind) == table%part) return
-      call put(o, d%heads(kind)(:d%head_length(kind)))
+      stand = kind == table%kind
+      if (stand .and. part /= table%part) stand = l%own(part)%heads(kind) == l%own(table%part)%heads(kind)
       table%kind = kind
-      table%part = d%same_as(kind)
+      table%part = part
+      if (stand) return
+      call put(o, trim(l%own(part)%heads(kind)))
       table%lines = 0
    end subroutine put_heads
 
