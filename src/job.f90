@@ -16,10 +16,10 @@ module job
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
    use text_output, only: put, turn_lost
-   use processes, only: processor_count, report, end_process, write_in_turn
+   use processes, only: processor_count, report, end_process
    use command_line
    use outputs, only: outputs_t, open_outputs, flush_files, close_outputs, is_over, set_suffix
-   use shares, only: share_of_job_t, run_shares, next_part
+   use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use plot_script, only: put_script
@@ -79,7 +79,6 @@ contains
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
       type(job_share_t) :: share
-      type(share_of_job_t) :: own
       real :: work
       integer :: i, processes
 
@@ -117,19 +116,19 @@ contains
       end if
       if (.not. allocated(failure)) then
          call watch_signals
-         own%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
-         own%first = share%first
-         own%last = share%last
-         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) own%unit = width
+         o%share%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
+         o%share%first = share%first
+         o%share%last = share%last
+         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) o%share%unit = width
          ! One process where sets take no time, or are to be drawn on one page.
          processes = options%jobs
          work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
          if (processes == 0) processes = merge(processor_count(), 1, work > least_work)
          if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits]))) processes = 1
          processes = min(processes, variants_before(sets, size(sets) + 1))
-         if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
-         if (own%is_child) o%progress%shown = .false.
-         do while (next_part(o, own))
+         if (processes > 1) call run_shares(o, processes, o%progress, status, message)
+         if (o%share%is_child) o%progress%shown = .false.
+         do while (next_part(o))
             call run_sets(sets, findings, o)
          end do
          call end_progress(o%progress)
@@ -139,7 +138,7 @@ contains
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
-      else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. own%is_child)) then
+      else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. o%share%is_child)) then
          message = said()
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
@@ -154,7 +153,7 @@ contains
             if (count(o%asked) == 1) message = ''
          end if
       end if
-      if (.not. own%is_child) return
+      if (.not. o%share%is_child) return
       ! A child ends here: its parent takes over the status and the message, unless its turn has never come.
       if (any(o%files%error == turn_lost)) call end_process(status_solved)
       if (len(message) > 0) call report(message)
@@ -410,7 +409,7 @@ contains
 
          if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
          if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
-         call write_in_turn(o%turns, o%files(:, 0))
+         call write_in_turn(o)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
          if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
       end subroutine write_row
@@ -472,7 +471,7 @@ contains
             if (o%options%errors) errors = set_errors(a)
             call log_instant(o%files(out_log, 0), k, instant(a%now, k), record, branch, errors)
          end if
-         call write_in_turn(o%turns, o%files(:, 0))
+         call write_in_turn(o)
 
          call take_instant(asked, a, k, due)
          if (o%progress%shown .and. a%now%variants == 0) &

@@ -1,17 +1,33 @@
 !> The files that a job writes: those that all sets share, and those of which each set has its own.
 module outputs
-   use, intrinsic :: iso_c_binding, only: c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed
-   use processes, only: turns_t
    use system_calls, only: identity_t, identity_of, make_directory, rmdir, last_error, reason_of, &
       signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
    implicit none
    private
-   public :: outputs_t, open_outputs, flush_files, forget_files, close_outputs, is_over, set_suffix
+   public :: outputs_t, share_of_job_t, open_outputs, flush_files, forget_files, close_outputs, is_over, set_suffix
+
+   !> What this process computes of a job in several processes: see `shares`.
+   type :: share_of_job_t
+      character(:), allocatable :: kind         !< SETS or VARIANTS
+      integer :: first = 1, last = 0            !< all of them
+      integer :: length = huge(1)               !< so many of them are a part
+      integer :: unit = 1                       !< so many variants are solved together
+      logical :: is_child = .false., is_parent = .false.
+      !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
+      !> lock of a part is that of a byte of the first.
+      integer(c_int) :: taken = -1, done = -1
+      integer :: part = 0                       !< the one at hand
+      logical :: held = .false.                 !< its text is held
+      integer :: look = 0                       !< it is looked for the turn where an output holds so much
+      integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
+      integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
+   end type share_of_job_t
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
@@ -19,7 +35,7 @@ module outputs
       !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
-      type(turns_t) :: turns                                !< of a job in several processes: see `shares`
+      type(share_of_job_t) :: share
       !> The sets that this process computes now; where the deck has VARY cards, numbers of variants, counted through
       !> all sets.
       integer :: own_first = 1, own_last = 0

@@ -1,157 +1,237 @@
-!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another; whoever
-!> is free takes the next one, and parts are written in their order (`processes`). One that dies or is broken off leaves
-!> its part undone, and nothing after that is written.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. Whoever is
+!> free takes the next one; its text stays in memory until all parts before are written. Meanwhile the process goes on
+!> with further parts, as long as no output holds too much. One that dies or is broken off leaves its part undone, and
+!> nothing after that is written.
+!>
+!> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
+!> each part at hand: who waits for a part waits for its lock, which the system opens as well if its process dies.
+!>
+!> Rejected: a pipe from process to process. A part then belongs to a process before it begins, so that unequal parts
+!> leave one idle.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
 module shares
-   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_system
    use numerals, only: whole
-   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, killed, end_of_message, &
-      make_turns, close_turns, begin_part, end_part, write_rest, parts_taken, parts_done
+   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, end_of_message, memfd_create, lseek, &
+      from_here, change_lock, locked, unlocked
    use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
-   use text_output, only: has_failed
+   use text_output, only: held_length, write_held, release_output, has_failed, turn_lost
    use progress, only: progress_t, show_progress
-   use outputs, only: outputs_t, flush_files, forget_files
+   use outputs, only: outputs_t, share_of_job_t, flush_files, forget_files
    implicit none
    private
-   public :: share_of_job_t, run_shares, next_part
+   public :: run_shares, next_part, write_in_turn
 
    !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
    !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
    integer, parameter :: parts_a_process = 1024, parts_together = 32
    !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
-   integer, parameter :: look_time = 200
+   integer(c_int), parameter :: look_time = 200
 
-   !> What this process computes.
-   type :: share_of_job_t
-      character(:), allocatable :: kind             !< SETS or VARIANTS
-      integer :: first = 1, last = 0                !< all of them
-      integer :: length = huge(1)                   !< so many of them are a part
-      integer :: unit = 1                           !< so many variants are solved together
-      logical :: is_child = .false., is_parent = .false.
-   end type share_of_job_t
+   !> An output that holds more characters than these waits for its turn after the instant. Its buffer, twice as large
+   !> at most, is 128 MB unless the text of an instant is longer.
+   integer, parameter :: max_held = 2**26
+   !> An output that holds more than these begins no further part.
+   integer, parameter :: max_ahead = 2**24
+   !> After so many characters it is looked whether the turn has come: in a block's time it may.
+   integer, parameter :: look_length = 65536
+   !> The lock of who takes a part: parts are counted from 1.
+   integer, parameter :: taking = 0
 
 contains
 
-   !> Computes the sets or variants of `s` in `processes` processes. It returns more than once: in each child, to
-   !> compute the parts that `next_part` gives and to end then; in the parent when all is done. `status`: then
+   !> Computes the sets or variants of the share `o%share` in `processes` processes. It returns more than once: in each
+   !> child, to compute the parts that `next_part` gives and to end then; in the parent when all is done. `status`: then
    !> the exit status; `message`: what to say of an error.
-   subroutine run_shares(o, s, processes, progress, status, message)
+   subroutine run_shares(o, processes, progress, status, message)
       class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(inout) :: s
       integer, intent(in) :: processes
       type(progress_t), intent(inout) :: progress
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
       character(4096) :: block
       character(:), allocatable :: said
-      integer :: list(processes), started, taken, ended, k, n
-      integer(c_int) :: reads, writes
+      type(poll_t) :: list(1)
+      integer :: children(processes), started, taken, k, n
+      integer(c_int) :: ends(2), ended, ignored
       logical :: closed
 
-      associate (count => s%last - s%first + 1)
+      associate (s => o%share, count => o%share%last - o%share%first + 1)
          s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
          if (count < processes*s%length) s%length = (count - 1)/processes + 1
-      end associate
-      s%is_parent = .true.
+         s%is_parent = .true.
 
-      started = 0
-      call make_pipe(reads, writes)
-      if (reads >= 0) then
-         if (make_turns(o%turns)) started = processes
-      end if
-      do k = 1, started
-         list(k) = fork_process(writes)
-         s%is_child = list(k) == 0
-         if (s%is_child) then
-            s%is_parent = .false.
-            ! Files that it computes no part of are left as they are.
-            o%files(:, 0)%emptied = .true.
-            return
-         end if
-         if (list(k) < 0) started = k - 1
-         if (list(k) < 0) exit
-      end do
-      if (started < processes) then
-         status = status_system
-         message = ' *** CANNOT START A PROCESS FOR'//text_of(started + 1)//' ('//capitals(reason_of(last_error()))//')'
-         call interrupt_child(list(:started))
-      end if
-      if (reads >= 0) then
-         closed = close_descriptor(writes)
-         ! The children end; their first message is that of the whole, and so is the worst status.
-         said = ''
-         do
-            if (signal_received() > 0) call interrupt_child(list(:started))
-            if (has_input(reads, look_time)) then
-               n = read_bytes(reads, block)
-               if (n <= 0) exit
-               said = said//block(:n)
-            end if
-            call show_progress(progress, s%kind//': NUMBER', first_of(s, parts_done(o%turns) + 1) - 1, s%last)
-         end do
-         if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
-
+         started = 0
+         if (pipe(ends) /= 0) ends = -1
+         if (ends(1) >= 0) s%taken = memfd_create('taken'//c_null_char, 0_c_int)
+         if (s%taken >= 0) s%done = memfd_create('done'//c_null_char, 0_c_int)
+         if (s%done >= 0) started = processes
          do k = 1, started
-            call wait_for_child(list(k), ended)
-            if (ended >= killed .and. status < status_system) then
-               ! All parts before its own are done.
-               message = ' *** THE PROCESS FOR'//text_of(min(parts_done(o%turns) + 1, part_count(s))) &
-                  //' WAS ENDED BY SIGNAL '//whole(ended - killed)
-               status = status_system
-            else if (ended < killed) then
-               status = max(status, ended)
+            children(k) = fork_process(ends(2))
+            s%is_child = children(k) == 0
+            if (s%is_child) then
+               s%is_parent = .false.
+               ! Files that it computes no part of are left as they are.
+               o%files(:, 0)%emptied = .true.
+               allocate (s%waiting(0), s%lengths(size(o%files, 1), 0))
+               return
             end if
+            if (children(k) < 0) started = k - 1
+            if (children(k) < 0) exit
          end do
-         closed = close_descriptor(reads)
-      end if
+         if (started < processes) then
+            status = status_system
+            message = ' *** CANNOT START A PROCESS FOR'//text_of(s, started + 1)//' (' &
+               //capitals(reason_of(last_error()))//')'
+            call interrupt_child(children(:started))
+         end if
+         if (ends(1) >= 0) then
+            closed = close_descriptor(ends(2))
+            ! The children end; their first message is that of the whole, and so is the worst status.
+            said = ''
+            do
+               if (signal_received() > 0) call interrupt_child(children(:started))
+               list%descriptor = ends(1)
+               if (poll(list, 1_c_long, look_time) > 0) then
+                  n = read_bytes(ends(1), block)
+                  if (n <= 0) exit
+                  said = said//block(:n)
+               end if
+               call show_progress(progress, s%kind//': NUMBER', first_of(s, count_of(s%done) + 1) - 1, s%last)
+            end do
+            if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
 
-      ! The children have written these files.
-      taken = min(parts_taken(o%turns), part_count(s))
-      if (taken > 0) o%files(:, 0)%emptied = .true.
-      call forget_files(o, s%first, first_of(s, taken + 1) - 1)
-      call close_turns(o%turns)
+            do k = 1, started
+               ended = 0
+               ignored = waitpid(int(children(k), c_int), ended, 0_c_int)
+               if (iand(ended, 127) == 0) then
+                  status = max(status, ishft(iand(ended, 65535), -8))
+               else if (status < status_system) then
+                  ! All parts before its own are done.
+                  message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s))) &
+                     //' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
+                  status = status_system
+               end if
+            end do
+            closed = close_descriptor(ends(1))
+         end if
 
-   contains
-
-      !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
-      pure function text_of(p) result(text)
-         integer, intent(in) :: p
-         character(:), allocatable :: text
-
-         text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
-      end function text_of
+         ! The children have written these files.
+         taken = min(count_of(s%taken), part_count(s))
+         if (taken > 0) o%files(:, 0)%emptied = .true.
+         call forget_files(o, s%first, first_of(s, taken + 1) - 1)
+         if (s%taken >= 0) closed = close_descriptor(s%taken)
+         if (s%done >= 0) closed = close_descriptor(s%done)
+      end associate
    end subroutine run_shares
 
    !> Ends the part at hand, if there is one, and begins the next, of which o%own_first to o%own_last are the sets or
    !> variants. False where there is none, or the job is over; then all is written.
-   logical function next_part(o, s)
+   logical function next_part(o)
       class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(in) :: s
-      integer :: before
+      integer :: before, k
 
-      next_part = .not. s%is_parent
-      if (s%is_parent) return
-      before = merge(o%own_last, s%first - 1, o%turns%part > 0)
-      if (s%is_child .and. o%turns%part > 0) then
-         call flush_files(o, o%own_first, o%own_last)
-         call end_part(o%turns, o%files(:, 0), goes_on(o))
-      end if
+      next_part = .not. o%share%is_parent
+      if (o%share%is_parent) return
+      associate (s => o%share, files => o%files(:, 0))
+         before = merge(o%own_last, s%first - 1, s%part > 0)
+         if (s%is_child .and. s%part > 0) then
+            call flush_files(o, o%own_first, o%own_last)
+            if (goes_on(o)) then
+               s%lengths = reshape([s%lengths, held_length(files) - sum(s%lengths, 2)], &
+                  [size(files), size(s%waiting) + 1])
+               s%waiting = [s%waiting, s%part]
+               s%held = .false.
+               call write_what_may_be(o, max_ahead)
+            else
+               ! What is not complete is written in its turn, and no part after it.
+               call write_what_may_be(o, -1)
+            end if
+         end if
 
-      next_part = goes_on(o)
-      if (.not. s%is_child) o%turns%part = o%turns%part + 1
-      if (s%is_child .and. next_part) call begin_part(o%turns, part_count(s), o%files(:, 0))
-      next_part = next_part .and. o%turns%part <= part_count(s)
-      o%own_first = first_of(s, o%turns%part)
-      o%own_last = first_of(s, o%turns%part + 1) - 1
+         next_part = goes_on(o)
+         if (.not. s%is_child) then
+            s%part = s%part + 1
+         else if (next_part) then
+            ! Nobody takes the one after it before it is locked.
+            call change_lock(s%taken, taking, locked)
+            s%part = int(lseek(s%taken, 1_c_long, from_here))
+            call change_lock(s%taken, s%part, locked)
+            call change_lock(s%taken, taking, unlocked)
+            s%held = s%part <= part_count(s)
+            if (s%held) then
+               files%held = .true.
+               do k = 1, size(files)
+                  ! What the first part has emptied is not emptied again.
+                  if (allocated(files(k)%buffer)) files(k)%emptied = s%part > 1 .or. len(files(k)%path) == 0
+               end do
+               call write_what_may_be(o, max_held)
+            end if
+         end if
+         next_part = next_part .and. s%part <= part_count(s)
+         o%own_first = first_of(s, s%part)
+         o%own_last = first_of(s, s%part + 1) - 1
 
-      if (.not. s%is_child) return
-      ! The sets between are those of other processes.
-      call forget_files(o, before + 1, merge(o%own_first - 1, s%last, next_part))
-      if (.not. next_part) call write_rest(o%turns, o%files(:, 0))
+         if (.not. s%is_child) return
+         ! The sets between are those of other processes.
+         call forget_files(o, before + 1, merge(o%own_first - 1, s%last, next_part))
+         if (.not. next_part) call write_what_may_be(o, -1)
+      end associate
    end function next_part
+
+   !> Writes what may be written, if there is much; waits where an output holds too much.
+   subroutine write_in_turn(o)
+      class(outputs_t), intent(inout) :: o
+
+      if (.not. o%share%held) return
+      if (maxval(held_length(o%files(:, 0))) >= o%share%look) call write_what_may_be(o, max_held)
+   end subroutine write_in_turn
+
+   !> Writes the parts whose turn has come; waits for it as long as an output holds more than `most` characters. An
+   !> error, or a turn that never comes, is that of the shared files, and what is held is dropped.
+   subroutine write_what_may_be(o, most)
+      class(outputs_t), intent(inout) :: o
+      integer, intent(in) :: most
+      integer(c_long) :: done
+      integer :: part, k
+
+      associate (s => o%share, files => o%files(:, 0))
+         do while (size(s%waiting) > 0 .or. s%held)
+            if (any(has_failed(files))) exit
+            part = s%part
+            if (size(s%waiting) > 0) part = s%waiting(1)
+
+            if (count_of(s%done) < part - 1) then
+               s%look = maxval(held_length(files)) + look_length
+               if (s%look - look_length <= most) return
+               ! The part before is done, or will never be, when its lock is open.
+               call change_lock(s%taken, part - 1, locked)
+               call change_lock(s%taken, part - 1, unlocked)
+               if (count_of(s%done) < part - 1) files%error = turn_lost
+               cycle
+            end if
+
+            do k = 1, size(files)
+               if (.not. allocated(files(k)%buffer)) cycle
+               if (size(s%waiting) > 0) call write_held(files(k), s%lengths(k, 1))
+               ! Further text of the part at hand is not held.
+               if (size(s%waiting) == 0) call release_output(files(k))
+            end do
+            if (size(s%waiting) == 0) s%held = .false.
+            if (size(s%waiting) == 0 .or. any(has_failed(files))) cycle
+            done = lseek(s%done, 1_c_long, from_here)
+            call change_lock(s%taken, part, unlocked)
+            s%waiting = s%waiting(2:)
+            s%lengths = s%lengths(:, 2:)
+         end do
+         if (size(s%waiting) == 0 .and. .not. s%held) return
+         files%written = 0
+         files%used = 0
+      end associate
+   end subroutine write_what_may_be
 
    !> The run has not ended before its time, and no write has failed.
    logical function goes_on(o)
@@ -179,4 +259,20 @@ contains
       first_of = s%last + 1
       if (p <= part_count(s)) first_of = s%first + (p - 1)*s%length
    end function first_of
+
+   !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
+   pure function text_of(s, p) result(text)
+      type(share_of_job_t), intent(in) :: s
+      integer, intent(in) :: p
+      character(:), allocatable :: text
+
+      text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
+   end function text_of
+
+   !> How often a part was taken, by all processes, or is done: the position in the file `descriptor`; 0 without it.
+   integer function count_of(descriptor)
+      integer(c_int), intent(in) :: descriptor
+
+      count_of = max(0, int(lseek(descriptor, 0_c_long, from_here)))
+   end function count_of
 end module shares

@@ -14,7 +14,7 @@ module numerals
    implicit none
    private
    public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length, significant
-   public :: put_whole, put_with_point, put_minus, put_digits, put_leading, put_exponent, max_decimals
+   public :: put_whole, put_with_point, put_minus, put_exponent, max_decimals
    public :: nearest_whole, decide_whole, first_digits, leading_digits, tens
 
    !> Digits that tell any two reals apart: 17 for 53 bits.

@@ -1,6 +1,6 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
 !> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
-!> in memory until the turn has come (`processes`).
+!> in memory until the turn has come (`shares`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -9,7 +9,7 @@ module text_output
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: held_length, write_held, release_output, drop_held, has_failed, turn_lost
+   public :: held_length, write_held, release_output, has_failed, turn_lost
 
    integer, parameter :: block_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
@@ -155,14 +155,6 @@ contains
       deallocate (o%buffer)
       allocate (character(block_length) :: o%buffer)
    end subroutine release_output
-
-   !> Drops all that is held.
-   elemental subroutine drop_held(o)
-      type(output_t), intent(inout) :: o
-
-      o%written = 0
-      o%used = 0
-   end subroutine drop_held
 
    !> Writes the buffer at once, unless it is held: a reader that waits has its lines, and a write error shows.
    subroutine flush_output(o)

@@ -322,27 +322,27 @@ contains
       type(truth_t), intent(out) :: truth
       type(set_analysis_t) :: a
       type(row_t) :: r
+      logical :: is_there
       integer :: i, k, count
 
       call make_set_analysis(m, a)
       if (reference /= 0) allocate (truth%value(3, 0:2, max_rows))
       count = 0
-      do k = 0, merge(last, -1, reference /= 0)
+      instants: do k = 0, merge(last, -1, reference /= 0)
          if (count + size(a%now%rows) > max_rows) exit
          do i = 1, size(a%now%rows)
             if (.not. is_compared(a, i, k)) cycle
             count = count + 1
             call find_row_in_set(a%now, i, r)
-            call read_reference(reference, m%set_number, k, r%name, truth%value(:, :, count))
-            if (truth%value(1, 0, count) < no_number) truth%compared = k + 1
+            call read_reference(reference, [m%set_number, k], r%name, truth%value(:, :, count), is_there)
+            if (.not. is_there) exit instants
             if (.not. m%degrees) cycle
             associate (value => truth%value(merge(1, 3, r%angular):, :, count))
                where (value < no_number) value = value/radian
             end associate
          end do
-         ! The reference ends here, if it misses two instants.
-         if (k > truth%compared) exit
-      end do
+         truth%compared = k + 1
+      end do instants
       truth%is_reference = truth%compared > 0
       if (.not. truth%is_reference) truth%compared = min(last + 1, max(1, max_rows/max(1, size(a%now%rows))))
    end subroutine read_truth
@@ -420,31 +420,28 @@ contains
       closed = close_descriptor(descriptor)
    end subroutine open_reference
 
-   !> Reads from `unit` the next row of a link, point or pair if it is of set number `set` and instant number `step`,
-   !> and has this `name`. `value` (3, 0:2): its numbers, angles as the deck has them; `no_number` for one that is
-   !> missing, and for all if there is no such row.
-   subroutine read_reference(unit, set, step, name, value)
-      integer, intent(in) :: unit, set, step
+   !> Reads from `unit` the next row of a link, point or pair from set and instant number `place` (2) on. `value` (3, 0:2):
+   !> its numbers, angles as the deck has them; `no_number` for one that is missing. `is_there`: there is one, it is of
+   !> that set and instant, and has this `name`.
+   subroutine read_reference(unit, place, name, value, is_there)
+      integer, intent(in) :: unit, place(2)
       character(*), intent(in) :: name
       real(qp), intent(out) :: value(3, 0:2)
+      logical, intent(out) :: is_there
       character(row_length) :: row
       character(len(name)) :: words(3)        ! the beginning of the time, the kind of row, and its name
-      integer :: place(2), status, comma, i
+      integer :: here(2), status, comma, i
 
       value = no_number
+      is_there = .false.
       do
          read (unit, '(a)', iostat=status) row
          if (status /= 0) return
-         read (row, *, iostat=status) place, words
-         if (status /= 0) cycle
-         if (any(place /= [set, step])) then
-            if (place(1) < set .or. (place(1) == set .and. place(2) < step)) cycle
-            backspace (unit)
-            return
-         end if
+         read (row, *, iostat=status) here, words
+         if (status /= 0 .or. here(1) < place(1) .or. (here(1) == place(1) .and. here(2) < place(2))) cycle
          if (any(words(2) == ['LINK ', 'POINT', 'PAIR '])) exit
       end do
-      if (words(3) /= name) return
+      is_there = all(here == place) .and. words(3) == name
       ! The nine numbers stand before the mark, which is the last cell. An empty cell leaves its number as it is.
       comma = len_trim(row) + 1
       do i = 1, 10
