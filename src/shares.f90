@@ -1,7 +1,7 @@
-!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. Whoever is
-!> free takes the next one; its text stays in memory until all parts before are written. Meanwhile the process goes on
-!> with further parts, as long as no output holds too much. One that dies or is broken off leaves its part undone, and
-!> nothing after that is written.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. Whoever
+!> is free takes the next one; its text stays in memory until all parts before are written. Meanwhile the process goes
+!> on with further parts, as long as no output holds too much. One that dies or is broken off leaves its part undone,
+!> and nothing after that is written.
 !>
 !> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
 !> each part at hand: who waits for a part waits for its lock, which the system opens as well if its process dies.
@@ -15,8 +15,8 @@ module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_system
    use numerals, only: whole
-   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, end_of_message, memfd_create, lseek, &
-      from_here, change_lock, locked, unlocked
+   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, end_of_message, memfd_create, &
+      lseek, from_here, change_lock, locked, unlocked
    use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
    use text_output, only: held_length, write_held, release_output, has_failed, turn_lost
    use progress, only: progress_t, show_progress

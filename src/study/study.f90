@@ -420,9 +420,9 @@ contains
       closed = close_descriptor(descriptor)
    end subroutine open_reference
 
-   !> Reads from `unit` the next row of a link, point or pair from set and instant number `place` (2) on. `value` (3, 0:2):
-   !> its numbers, angles as the deck has them; `no_number` for one that is missing. `is_there`: there is one, it is of
-   !> that set and instant, and has this `name`.
+   !> Reads from `unit` the next row of a link, point or pair from set and instant number `place` (2) on. `value`
+   !> (3, 0:2): its numbers, angles as the deck has them; `no_number` for one that is missing. `is_there`: there is one,
+   !> it is of that set and instant, and has this `name`.
    subroutine read_reference(unit, place, name, value, is_there)
       integer, intent(in) :: unit, place(2)
       character(*), intent(in) :: name
