@@ -15,7 +15,7 @@ module block_assemblies
    use block_bilinear, only: block_form_t, make_form, solves_all, real_values
    implicit none
    private
-   public :: block_positions_t, find_positions, max_group
+   public :: block_positions_t, find_positions, add_turns, max_group
 
    !> Unknowns of a group at most: C(12, 6) = 924 paths.
    integer, parameter :: max_group = 6
@@ -116,8 +116,7 @@ contains
          ! The digits of a position do not show from which start its path came.
          x = anint(grid*x)/grid
          call set_values(b, i, x, s)
-         call add_turns(x)
-         call set_values(b, i, x, s)
+         call add_turns(b, i, s, x)
          ! At a singular solution Newton's method would lose the way.
          do k = 1, merge(singular_steps, 0, e%is_singular)
             call gauss_newton_step(b, i, s, residual)
@@ -141,26 +140,6 @@ contains
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
       end subroutine take_end
 
-      !> Adds the whole turns to the angles `x`, which `s` has, that drives ask for between two of them.
-      subroutine add_turns(x)
-         real(wp), intent(inout) :: x(:)
-         real(wp) :: off
-         integer :: m
-
-         do m = b%list(i)%first_loop, b%list(i)%last_loop
-            associate (g => b%loops(m))
-               if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
-               off = given(b, i, g%row_x, s) - s%u(g%orientation)%value + s%u(g%less)%value
-               off = off - without_turns(off)
-               if (g%orientation_column > 0) then
-                  x(g%orientation_column) = x(g%orientation_column) + off
-               else if (g%less_column > 0) then
-                  x(g%less_column) = x(g%less_column) - off
-               end if
-            end associate
-         end do
-      end subroutine add_turns
-
       !> The last of the finite ends belongs to those that `number` counts.
       subroutine leave_out(number)
          integer, intent(inout) :: number
@@ -177,4 +156,40 @@ contains
             b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
       end function apart
    end subroutine find_positions
+
+   !> Adds the whole turns that drives ask for between two angles of block `i` to these angles, in `x` and in `s`, which
+   !> has them. Angles that are joined by such drives turn together.
+   subroutine add_turns(b, i, s, x)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: x(:)
+      real(wp) :: turns(0:size(x)), off
+      integer :: group(0:size(x)), joins, to, m, k
+
+      ! By column; those of column 0 are known, and of group 0 what is joined to these.
+      turns = 0.0_wp
+      group = [(k, k=0, size(x))]
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
+            off = given(b, i, g%row_x, s) - s%u(g%orientation)%value - turns(g%orientation_column) &
+               + s%u(g%less)%value + turns(g%less_column)
+            joins = group(g%orientation_column)
+            to = group(g%less_column)
+         end associate
+         if (joins == 0) then
+            off = -off
+            joins = to
+            to = 0
+         end if
+         if (joins == to) cycle
+         where (group == joins)
+            turns = turns + (off - without_turns(off))
+            group = to
+         end where
+      end do
+      x = x + turns(1:)
+      call set_values(b, i, x, s)
+   end subroutine add_turns
 end module block_assemblies

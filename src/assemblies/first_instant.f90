@@ -16,7 +16,7 @@ module first_instant
    use levenberg_marquardt, only: levenberg_marquardt_solve
    use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, is_certain
    use block_branches, only: is_short_and_right
-   use block_assemblies, only: block_positions_t, find_positions
+   use block_assemblies, only: block_positions_t, find_positions, add_turns
    implicit none
    private
    public :: solve_first, solve_instant, measure_closure_error, places_of, squared_distances
@@ -224,6 +224,7 @@ contains
             y = merge(start + without_turns(x - start), x, own <= e%blocks%orientations)
          end associate
          call set_values(e%blocks, i, y, e%state)
+         call add_turns(e%blocks, i, e%state, y)
          q = new_motion(size(places, 2))
          call move_links(e%chain, e%state, e%length, q, finite, .true.)
          square = squared_distances(q%position, guess, e%span)

@@ -252,4 +252,21 @@ with four_bar "$(card LANG PL)" "$(card ASSEMBLY)" > "$w/polish.deck"
 equal 'in Polish' 'MONTAZE WYBRANY' "$("$kinmat" "$w/polish.deck" | grep -oE 'MONTAZE  |WYBRANY' | head -n 2 | tr -s ' \n' ' ' | sed 's/ $//')"
 with four_bar "$(card ASSEMBLY)" "$(card ASSEMBLY)" > "$w/twice.deck"
 equal 'two cards, in each of two sets' 2 "$("$kinmat" "$w/twice.deck" 2>&1 | grep -c E013)"
+# A chain of four links on two pivots; two drives hold the first three of them at angles to one another, of 7 and of -13 rad
+# or the other way round. Without the whole turns in these the positions are the same ones.
+# held FROM-1 FROM-2: the deck; at_rest: the sines and cosines of the angles of its links, and how many assemblies it has
+held() { card GROUND BASE; card LINK A '' '' 0.0 0.0 0.5; card LINK B '' '' 1.0 0.5 1.2; card LINK C '' '' 2.0 1.0 0.2; card LINK D '' '' 4.0 0.0 1.5
+   card POINT O BASE; card POINT O1 A; card REVOLUTE O O1 PO; card POINT P A '' 2.0; card POINT P1 B; card POINT Q B '' 1.5; card POINT Q1 C; card POINT R C '' 1.0
+   card POINT R1 D '' 3.0; card POINT S D; card POINT S1 BASE '' 4.0; card REVOLUTE P P1 PP; card REVOLUTE Q Q1 PQ; card REVOLUTE R R1 PR
+   card REVOLUTE S S1 PS; card DRIVE RELANGLE A B "$1"; card DRIVE RELANGLE B C "$2"; card AT '' '' '' 0.0; card ASSEMBLY; card END; }
+at_rest() { "$kinmat" --csv - -o "$w/out" "$w/deck" | awk -F, 'NR > 1 && $5 ~ /^[A-D]$/ { printf "%.8f %.8f ", sin($8), cos($8) }'
+   sed -n 's/.* REAL \([0-9]*\).*/\1/p' "$w/out"; }
+held 0.716814692820 -0.433629385641 > "$w/deck"
+nearest=$(at_rest)
+held 7.0 -13.0 > "$w/deck"
+equal 'whole turns of two drives on one link' "$nearest" "$(at_rest)"
+held -0.433629385641 0.716814692820 > "$w/deck"
+nearest=$(at_rest)
+held -13.0 7.0 > "$w/deck"
+equal 'whole turns of two drives on one link, the other way round' "$nearest" "$(at_rest)"
 conclude
