@@ -6,7 +6,7 @@ module deck
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, append_card, set_apart, read_small_letters, build_bodies
-   use deck_variants, only: variation_t, build_tolerances, build_variation, take_values, change_numbers
+   use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_end
    use deck_drives, only: build_drives, check_terms
@@ -222,12 +222,9 @@ contains
       character(:), allocatable, intent(out) :: message
       logical :: is_done
 
-      if (m%variant > 0) then
-         message = ''
-         call change_numbers(v, n, m, is_done)
-         if (is_done) return
-      end if
-      call take_values(v, n)
+      message = ''
+      call take_values(v, n, m, is_done)
+      if (is_done) return
       call build_mechanism(v%set)
       if (v%set%errors%count == 0) then
          call check_terms(v%set)

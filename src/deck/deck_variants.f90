@@ -21,7 +21,7 @@ module deck_variants
    use numerals, only: whole
    implicit none
    private
-   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, take_values, change_numbers, &
+   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, take_values, &
       values_of_variant
 
    !> The largest number of variants of a set.
@@ -276,15 +276,29 @@ contains
       end select
    end function stands_alone
 
-   !> Gives the cards of `v` the numbers of variant `n`, ready to be built.
-   subroutine take_values(v, n)
+   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: it is that variant now. Where
+   !> more than these numbers may depend on the cards, or `m` is new, the cards of `v` have these numbers, ready to be
+   !> built.
+   subroutine take_values(v, n, m, is_done)
       type(variation_t), intent(inout) :: v
       integer, intent(in) :: n
+      type(mechanism_t), intent(inout) :: m
+      logical, intent(out) :: is_done
       type(input_errors_t) :: none
       real(wp) :: values(size(v%numbers))
       integer :: i
 
       values = values_of_variant(v, n)
+      is_done = m%variant > 0 .and. all(v%numbers%stands_alone)
+      if (is_done) then
+         do i = 1, size(values)
+            call put_number(m, v%numbers(i)%number, values(i)*v%numbers(i)%factor)
+         end do
+         m%variant = n
+         ! A TIME card of one time is an error.
+         is_done = m%steps < 0 .or. abs(m%t1 - m%t0) > 0.0_wp
+      end if
+      if (is_done) return
       do i = 1, size(values)
          associate (card => v%set%cards(v%numbers(i)%card), place => v%numbers(i)%place)
             card%real(place) = values(i)
@@ -294,27 +308,6 @@ contains
       v%set%errors = none
       call begin_mechanism(v%set, v%set%mechanism%set_number)
    end subroutine take_values
-
-   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: it is that variant now; where
-   !> more than these numbers may depend on the cards it is not, and must be built.
-   subroutine change_numbers(v, n, m, is_done)
-      type(variation_t), intent(in) :: v
-      integer, intent(in) :: n
-      type(mechanism_t), intent(inout) :: m
-      logical, intent(out) :: is_done
-      real(wp) :: values(size(v%numbers))
-      integer :: i
-
-      is_done = all(v%numbers%stands_alone)
-      if (.not. is_done) return
-      values = values_of_variant(v, n)*v%numbers%factor
-      do i = 1, size(values)
-         call put_number(m, v%numbers(i)%number, values(i))
-      end do
-      m%variant = n
-      ! A TIME card of one time is an error.
-      is_done = m%steps < 0 .or. abs(m%t1 - m%t0) > 0.0_wp
-   end subroutine change_numbers
 
    !> The values (numbers) of variant `n` (1 to v%total), in the deck's units. The last of a range is exact.
    pure function values_of_variant(v, n) result(values)

@@ -106,7 +106,7 @@ contains
          c = text(place:place)
          if (c >= '0' .and. c <= '9') then
             if (n > 0 .or. c > '0') n = n + 1
-            if (n <= exact_digits) mantissa = 10_int64*mantissa + digit(c)
+            if (n <= exact_digits) mantissa = 10_int64*mantissa + iachar(c) - iachar('0')
          else if (c == '.' .and. point == 0) then
             point = place
          else
@@ -124,7 +124,7 @@ contains
          exponent = 0
          do place = first, len(text)
             if (text(place:place) < '0' .or. text(place:place) > '9') exit
-            exponent = min(10*exponent + digit(text(place:place)), exponent_cap)
+            exponent = min(10*exponent + iachar(text(place:place)) - iachar('0'), exponent_cap)
          end do
          if (place == first) error = number_exponent
          power = power + merge(-exponent, exponent, text(first - 1:first - 1) == '-')
@@ -160,11 +160,4 @@ contains
       if (word == 'NAN') error = number_nan
       if (word == 'INF') error = number_inf
    end function error_at
-
-   !> The value of the digit `c`.
-   pure integer function digit(c)
-      character(1), intent(in) :: c
-
-      digit = iachar(c) - iachar('0')
-   end function digit
 end module numbers
