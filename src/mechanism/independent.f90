@@ -6,7 +6,7 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, tolerance_t, pair_links, drive_links, request_links, &
       drive_relangle, driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, &
-      number_link, number_pair
+      number_link, number_knot
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
@@ -18,10 +18,22 @@ module independent
       integer :: part = 1, number = 0
    end type member_t
 
-   !> The numbers in the deck of what a part has, increasing; the place in the list is the number in the part.
+   !> The numbers in the deck of the links of a part, increasing; the place in the list is the number in the part.
    type :: part_t
-      integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), branch_requests(:)
+      integer, allocatable :: links(:)
    end type part_t
+
+   !> Numbers of links, points, pairs and drives (`of_drives`) by kind: those in the deck of what a part has, as above;
+   !> or those in the part of what the deck has.
+   type :: places_t
+      integer, allocatable :: of(:)
+   end type places_t
+   integer, parameter :: of_drives = 4
+   !> The kinds of the subjects of requests, and of numbers on cards.
+   integer, parameter :: of_requests(request_link:request_curve) = &
+      [request_link, request_point, request_pair, request_link, request_point]
+   integer, parameter :: of_numbers(number_link:number_knot) = &
+      [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
    !> A set, divided. Of several mechanisms the ground is a part too, number 0, with the rows that are about it alone.
    type, extends(settings_t) :: set_t
@@ -40,8 +52,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
       type(sorted_t) :: links, points, pairs, drives, rows
-      type(part_t) :: place, part
-      integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
+      type(places_t) :: place(of_drives), part(of_drives)
+      integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:)
       integer :: link_part(size(m%links)), ground, i, c, k
 
       s%settings_t = m%settings_t
@@ -73,23 +85,23 @@ contains
          allocate (s%parts(first:s%count), s%cards(first:s%count))
       end associate
       allocate (s%rows(size(m%requests)), s%drives(size(m%drives)))
-      allocate (place%links(size(m%links)), place%points(size(m%points)), place%pairs(size(m%pairs)), &
-         place%drives(size(m%drives)), source=0)
+      place = [places_t(spread(0, 1, size(m%links))), places_t(spread(0, 1, size(m%points))), &
+         places_t(spread(0, 1, size(m%pairs))), places_t(spread(0, 1, size(m%drives)))]
       do c = 1, size(s%parts)
          k = modulo(c, ground)
-         part%links = once(members(links, c))
-         part%points = once(members(points, c))
-         part%pairs = members(pairs, c)
-         part%drives = members(drives, c)
-         part%requests = members(rows, c)
-         part%branch_requests = [integer ::]
-         if (allocated(m%branch_requests)) part%branch_requests = pack([(i, i=1, size(m%branch_requests))], &
+         part(request_link)%of = once(members(links, c))
+         part(request_point)%of = once(members(points, c))
+         part(request_pair)%of = members(pairs, c)
+         part(of_drives)%of = members(drives, c)
+         own_rows = members(rows, c)
+         branches = [integer ::]
+         if (allocated(m%branch_requests)) branches = pack([(i, i=1, size(m%branch_requests))], &
             [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == c, &
             i=1, size(m%branch_requests))])
-         s%rows(part%requests) = [(member_t(k, i), i=1, size(part%requests))]
-         s%drives(part%drives) = [(member_t(k, i), i=1, size(part%drives))]
-         call take_mechanism(m, part, place, s%parts(k))
-         call move_alloc(part%links, s%cards(k)%links)
+         s%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
+         s%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
+         call take_mechanism(m, part, own_rows, branches, place, s%parts(k))
+         call move_alloc(part(request_link)%of, s%cards(k)%links)
       end do
 
    contains
@@ -115,48 +127,48 @@ contains
       end associate
    end function part_of_links
 
-   !> Takes the `part` of `m` as a mechanism of its own, without its cards: `own`. `place`: zeros, one for each link,
-   !> point, pair and drive of `m`, before and after. Reason: of many parts each takes the time of its own size alone.
-   subroutine take_mechanism(m, part, place, own)
+   !> Takes the `part` of `m`, with its requests `rows` and its BRANCH cards `branches`, as a mechanism of its own:
+   !> `own`. `place`: zeros, one for each link, point, pair and drive of `m`, before and after. Reason: of many parts
+   !> each takes the time of its own size alone.
+   subroutine take_mechanism(m, part, rows, branches, place, own)
       type(mechanism_t), intent(in) :: m
-      type(part_t), intent(in) :: part
-      type(part_t), intent(inout) :: place
+      type(places_t), intent(in) :: part(:)
+      integer, intent(in) :: rows(:), branches(:)
+      type(places_t), intent(inout) :: place(:)
       type(mechanism_t), intent(out) :: own
-      integer, parameter :: kinds(number_link:number_pair) = [request_link, request_point, request_point, request_pair]
-      integer :: i
+      integer :: i, kind
 
-      place%links(part%links) = [(i, i=1, size(part%links))]
-      place%points(part%points) = [(i, i=1, size(part%points))]
-      place%pairs(part%pairs) = [(i, i=1, size(part%pairs))]
-      place%drives(part%drives) = [(i, i=1, size(part%drives))]
+      do kind = 1, size(part)
+         place(kind)%of(part(kind)%of) = [(i, i=1, size(part(kind)%of))]
+      end do
       own%settings_t = m%settings_t
-      own%links = m%links(part%links)
-      own%points = m%points(part%points)
-      own%points%link = place%links(own%points%link)
-      own%pairs = m%pairs(part%pairs)
-      own%pairs%point_i = place%points(own%pairs%point_i)
-      own%pairs%point_j = place%points(own%pairs%point_j)
+      own%links = m%links(part(request_link)%of)
+      own%points = m%points(part(request_point)%of)
+      own%points%link = place(request_link)%of(own%points%link)
+      own%pairs = m%pairs(part(request_pair)%of)
+      own%pairs%point_i = place(request_point)%of(own%pairs%point_i)
+      own%pairs%point_j = place(request_point)%of(own%pairs%point_j)
 
-      own%drives = m%drives(part%drives)
+      own%drives = m%drives(part(of_drives)%of)
       do i = 1, size(own%drives)
          associate (d => own%drives(i))
-            d%subject = place_of(driven_kinds(d%kind), d%subject)
-            if (d%kind == drive_relangle) d%second = place%links(d%second)
+            d%subject = place(driven_kinds(d%kind))%of(d%subject)
+            if (d%kind == drive_relangle) d%second = place(request_link)%of(d%second)
          end associate
       end do
-      own%requests = m%requests(part%requests)
+      own%requests = m%requests(rows)
       do i = 1, size(own%requests)
          associate (request => own%requests(i))
-            request%subject = place_of(request%kind, request%subject)
-            if (request%second > 0) request%second = place%links(request%second)
+            request%subject = place(of_requests(request%kind))%of(request%subject)
+            if (request%second > 0) request%second = place(request_link)%of(request%second)
          end associate
       end do
-      allocate (own%branch_requests(size(part%branch_requests)))
-      do i = 1, size(part%branch_requests)
+      allocate (own%branch_requests(size(branches)))
+      do i = 1, size(branches)
          associate (request => own%branch_requests(i))
-            request = m%branch_requests(part%branch_requests(i))
-            request%card = part%branch_requests(i)
-            if (request%link > 0) request%link = place%links(request%link)
+            request = m%branch_requests(branches(i))
+            request%card = branches(i)
+            if (request%link > 0) request%link = place(request_link)%of(request%link)
          end associate
       end do
 
@@ -164,11 +176,7 @@ contains
          own%tolerances = m%tolerances
          do i = 1, size(own%tolerances)
             associate (one => own%tolerances(i))
-               if (one%kind > number_pair) then
-                  one%subject = place%drives(one%subject)
-               else
-                  one%subject = place_of(kinds(one%kind), one%subject)
-               end if
+               one%subject = place(of_numbers(one%kind))%of(one%subject)
             end associate
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
@@ -177,26 +185,9 @@ contains
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
       end if
-      place%links(part%links) = 0
-      place%points(part%points) = 0
-      place%pairs(part%pairs) = 0
-      place%drives(part%drives) = 0
-
-   contains
-
-      !> The number in the part of the link, point or pair (`kind`: request_link, ...) number `i` of the deck.
-      pure integer function place_of(kind, i)
-         integer, intent(in) :: kind, i
-
-         select case (kind)
-         case (request_link, request_pole)
-            place_of = place%links(i)
-         case (request_point, request_curve)
-            place_of = place%points(i)
-         case default
-            place_of = place%pairs(i)
-         end select
-      end function place_of
+      do kind = 1, size(part)
+         place(kind)%of(part(kind)%of) = 0
+      end do
    end subroutine take_mechanism
 
    !> What row number `i` of `s` is asked for.
