@@ -18,26 +18,11 @@ module block_numbers
       loop_projection
    implicit none
    private
-   public :: add_numbers, put_numbers, fill_numbers, find_units, lipschitz_of
+   public :: put_numbers, fill_numbers, find_units, lipschitz_of
 
    real(wp), parameter :: much_smaller = 0.0625_wp
 
 contains
-
-   !> Gives the blocks `b` the `numbers` of the mechanism, which hold its span and those of the equations of `b`.
-   subroutine add_numbers(numbers, b)
-      type(numbers_t), allocatable, intent(inout) :: numbers
-      type(blocks_t), intent(inout) :: b
-
-      call move_alloc(numbers, b%numbers)
-      if (.not. b%solvable) return
-      associate (x => b%numbers)
-         allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), x%d(size(b%body_vectors)), &
-            x%e(size(b%slides)), x%unit(0:b%unknowns))
-         call fill_numbers(b, x)
-         call find_units(b, x)
-      end associate
-   end subroutine add_numbers
 
    !> Gives `x` the numbers of `m`, a mechanism with the links, points, pairs and drives of that of which the blocks `b`
    !> were made; `x`: a copy of those of `b`, which stay as they are. `fits`: each equation has the unknowns, and each
@@ -57,12 +42,14 @@ contains
       call find_units(b, x)
    end subroutine put_numbers
 
-   !> Fills `x` from the numbers of the equations, in their unit of length.
+   !> Fills `x` from the numbers of its equations, in their unit of length; `x` may have these alone.
    pure subroutine fill_numbers(b, x)
       type(blocks_t), intent(in) :: b
       type(numbers_t), intent(inout) :: x
       integer :: i, m, k
 
+      if (.not. allocated(x%unit)) allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), &
+         x%d(size(b%body_vectors)), x%e(size(b%slides)), x%unit(0:b%unknowns))
       x%unit = 1.0_wp
       x%rows%unit = 1.0_wp
       x%rows%constant = x%equations%constant(b%equation)

@@ -13,7 +13,7 @@ module block_structure
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
       incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
    use blocks, only: blocks_t, numbers_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, loop_angles
-   use block_numbers, only: add_numbers
+   use block_numbers, only: fill_numbers, find_units
    implicit none
    private
    public :: structure_t, make_structure, new_blocks
@@ -40,7 +40,11 @@ contains
       e = new_equations(m, t)
       x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)
       s%blocks = new_blocks(t, e)
-      call add_numbers(x, s%blocks)
+      if (s%blocks%solvable) then
+         call fill_numbers(s%blocks, x)
+         call find_units(s%blocks, x)
+      end if
+      call move_alloc(x, s%blocks%numbers)
    end subroutine make_structure
 
    !> The blocks of the equations `e` on the tree `t`, without numbers.

@@ -12,7 +12,7 @@ module loop_equations
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
    use vector_loops, only: search_t, new_search, find_path, find_path_down, vector_loops_t, &
-      new_vector_loops, add_vector_loop, loop_sums_t, put_sums, vanishes
+      add_vector_loop, loop_sums_t, put_sums, vanishes
    use matching, only: incidence_t
    implicit none
    private
@@ -62,10 +62,16 @@ contains
       type(equations_t) :: e
       type(search_t) :: s
       type(sorted_t) :: closing
-      integer :: depth(size(m%pairs)), i, k
+      integer :: depth(size(m%pairs)), most, i, k
 
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
-      e%vector_loops = new_vector_loops(m, t)
+      most = size(m%pairs) + size(m%drives) + 1
+      associate (p => e%vector_loops)
+         allocate (p%first_vector(0:most), p%first_slide(0:most), p%first_term(0:most), source=1)
+         allocate (p%vector_orientation(most), p%slide_orientation(most), p%slide_number(most), p%slide_pair(most), &
+            p%terms(2, 4*most), p%term_vector(4*most))
+         allocate (p%vector_of(0:t%orientations), source=0)
+      end associate
       s = new_search(m, t)
 
       ! The pairs that are not in the tree, those near the ground first: each closes a loop.

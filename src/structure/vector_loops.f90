@@ -17,7 +17,7 @@ module vector_loops
    use links_tree, only: tree_t, axes_t, offset_in_drawing, ground_place, guide, other_link
    implicit none
    private
-   public :: vector_loops_t, new_vector_loops, add_vector_loop, loop_sums_t, put_sums, vanishes
+   public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
    public :: search_t, new_search, find_path, find_path_down
 
    !> What a search needs; links are nodes, all ground links one, node 0.
@@ -55,20 +55,6 @@ module vector_loops
    end type loop_sums_t
 
 contains
-
-   !> No loop yet, and room for those of `m` on its tree `t`.
-   function new_vector_loops(m, t) result(p)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(vector_loops_t) :: p
-      integer :: most
-
-      most = size(m%pairs) + size(m%drives) + 1
-      allocate (p%first_vector(0:most), p%first_slide(0:most), p%first_term(0:most), source=1)
-      allocate (p%vector_orientation(most), p%slide_orientation(most), p%slide_number(most), p%slide_pair(most), &
-         p%terms(2, 4*most), p%term_vector(4*most))
-      allocate (p%vector_of(0:t%orientations), source=0)
-   end function new_vector_loops
 
    !> Adds to `loops` the one from point `q` to point `p` by the path that `s` found last from p's link to q's; `q` = 0
    !> is the origin of all places, and the path then leads to the ground or to a root. Points are added from the origins

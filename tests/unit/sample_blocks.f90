@@ -7,7 +7,7 @@ module sample_blocks
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, numbers_t
    use block_structure, only: new_blocks
-   use block_numbers, only: add_numbers, fill_numbers, lipschitz_of
+   use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
    public :: plain_blocks, make_equations, xy
@@ -33,22 +33,20 @@ contains
       real(wp), intent(in) :: length
       type(blocks_t) :: b
       type(equations_t) :: e
-      type(numbers_t), allocatable :: numbers
+      type(numbers_t) :: x
       integer :: i
 
-      allocate (numbers)
-      numbers%span = length
-      call make_equations(m, length, e, numbers%equations)
+      x%span = length
+      call make_equations(m, length, e, x%equations)
       b = new_blocks(new_tree(m), e)
-      call add_numbers(numbers, b)
+      b%numbers = x
       if (.not. b%solvable) return
-      call move_alloc(b%numbers, numbers)
-      call fill_numbers(b, numbers)
+      call fill_numbers(b, x)
+      x%blocks%coarse = 1.0_wp
       do i = 1, size(b%list)
-         numbers%blocks(i)%coarse = 1.0_wp
-         numbers%blocks(i)%lipschitz = lipschitz_of(b, numbers, b%list(i))
+         x%blocks(i)%lipschitz = lipschitz_of(b, x, b%list(i))
       end do
-      call move_alloc(numbers, b%numbers)
+      b%numbers = x
    end function plain_blocks
 
    !> (2) `v` as an array.
