@@ -11,7 +11,7 @@ module column_search
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, find_node, move_node, is_known, beside_joint
-   use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
+   use zero_search, only: sample_t, column_t, find_zero, find_turn, look, differ_in_sign, noise_part
    use extremes, only: extremes_t, offer, note_velocity, note_interval, alike
    implicit none
    private
@@ -260,7 +260,7 @@ contains
       length = abs(points(3)%t - points(1)%t)
       open = errors_by_rates*(c%noise(1)/length + c%noise(2))/length
       if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk)) > open) &
-         call find_zero(s, c, 3, 0.0_wp, points(1), points(3), turn, jerk)
+         call find_turn(s, c, points, jerk, turn)
       if (.not. turn%exists) call turn_by_ends(s, c, points, jerk, open, turn)
       if (turn%exists) then
          turn%error = max(turn%error, points(1)%error, points(3)%error)

@@ -6,22 +6,25 @@ module zero_search
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: sample_t, column_t, look, find_zero, differ_in_sign, slope_in, noise_part
+   public :: sample_t, column_t, look, find_zero, find_turn, differ_in_sign, slope_in, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_iterations = 100
-   !> A stencil that is too long is shortened by this.
-   real(wp), parameter :: shorter = 0.25_wp
-   !> So often where it has derivatives of one sign at both ends.
-   integer, parameter :: max_shortenings = 3
+   !> Five times at which the fourth difference is more than this part of the second are brought nearer by this factor;
+   !> so many of them at most.
+   real(wp), parameter :: fine = 1.0e-5_wp, shorter = 0.5_wp
+   integer, parameter :: max_stencils = 16
+   !> Steps of Newton's method on their polynomial.
+   integer, parameter :: newton_steps = 6
    !> A bracket as narrow as so many roundings of the time is closed.
    real(wp), parameter :: closed = 4.0_wp
    !> The slope at a zero is that to the nearest value that is so many times the noise.
    real(wp), parameter :: above_noise = 3.0_wp
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
-   !> A time that is known to this part of it, by a bound of what rounding leaves open, needs no estimate of errors.
+   !> A time that is known to this part of the largest of the run, by a bound of what rounding leaves open, needs no
+   !> estimate of errors.
    real(wp), parameter :: well_known = 65536.0_wp*epsilon(1.0_wp)
 
    !> A number of a row at one time, in the deck's units and rad.
@@ -68,175 +71,139 @@ contains
       sample%f = row(1)%value(c%column, :)
    end subroutine look
 
-   !> Where between `a` and `b` the derivative number `order` (0 to 3) of column `c`, less `level`, is zero: it has
+   !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
    !> opposite signs there. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
    !> 1971). Where a time between has no motion, the nearest known one is the zero. `zero`%exists is false where the
-   !> signs were the same. Its time is off by the error of what is zero over its slope.
-   !>
-   !> The third derivative is that of the polynomial of degree four through accelerations at five times between `a` and
-   !> `b`. A stencil whose derivative at the zero differs from that of a shorter one by more than rounding is too long.
-   !> `ends` (2): the third derivative at `a` and `b`, where it is known.
-   subroutine find_zero(s, c, order, level, a, b, zero, ends)
+   !> signs were the same.
+   subroutine find_zero(s, c, order, level, a, b, zero)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
       integer, intent(in) :: order
       real(wp), intent(in) :: level
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
-      real(wp), intent(in), optional :: ends(2)
-      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope, open, nearest
+      type(sample_t) :: at
+      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
-      logical :: is_found, estimated
 
-      step = sign(c%step, b%t - a%t)
-      do i = 1, max_shortenings
-         call close_in(t, width, is_found)
-         if (is_found .or. order < 3) exit
-         step = shorter*step
+      if (.not. (a%exists .and. b%exists)) return
+      t1 = a%t
+      t2 = b%t
+      g1 = a%f(order) - level
+      g2 = b%f(order) - level
+      if (.not. differ_in_sign(g1, g2)) return
+      width = 0.0_wp
+      times(:2) = [t1, t2]
+      values(:2) = [g1, g2]
+      last = t2
+      do n = 2, max_iterations + 1
+         t = t2 - g2*((t2 - t1)/(g2 - g1))
+         if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
+         if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
+         last = t
+         call look(s, c, t, at)
+         if (.not. at%exists) then
+            width = abs(t2 - t1)
+            t = t2
+            exit
+         end if
+         g = at%f(order) - level
+         ! What is left is rounding: further steps only follow it.
+         if (abs(g) <= rounding_part*c%noise(order)) exit
+         times(n + 1) = t
+         values(n + 1) = g
+         if (differ_in_sign(g, g2)) then
+            t1 = t2
+            g1 = g2
+         else
+            g1 = 0.5_wp*g1
+         end if
+         t2 = t
+         g2 = g
       end do
-      if (.not. is_found) return
-      last_g = huge(1.0_wp)
-      do while (order == 3)
-         step = shorter*step
-         call evaluate(t, g, is_found)
-         ! What does not get less with the stencil is rounding.
-         if (is_found) is_found = abs(g) < shorter*last_g
-         last_g = abs(g)
-         if (is_found) is_found = abs(g) > noise_of_stencil() .and. abs(step) > noise_part*max(abs(a%t), abs(b%t))
-         if (is_found) call close_in(t_shorter, width, is_found)
-         if (.not. is_found) exit
-         t = t_shorter
-      end do
-      if (order == 3) step = step/shorter
-      noise = c%noise(min(order, 2))
-      if (order == 3) noise = noise_of_stencil()
+      n = min(n, size(times))
       ! The slope from the zero to the nearest value that is more than noise.
+      i = minloc(abs(times(:n) - t), dim=1, mask=abs(values(:n)) > above_noise*c%noise(order) &
+         .and. abs(times(:n) - t) > 0.0_wp)
       slope = 0.0_wp
-      nearest = huge(1.0_wp)
-      do i = 1, n
-         if (abs(values(i)) <= above_noise*noise .or. abs(times(i) - t) >= nearest) cycle
-         if (abs(times(i) - t) <= 0.0_wp) cycle
-         nearest = abs(times(i) - t)
-         slope = abs(values(i))/nearest
-      end do
+      if (i > 0) slope = abs(values(i)/(times(i) - t))
+      call settle(s, c, order, [a%t, b%t], t, slope, 1.0_wp, c%noise(order), width, zero)
+   end subroutine find_zero
+
+   !> The extreme `turn` of the acceleration of column `c` between the first and the last of three `points`, at which
+   !> its derivative `jerk` (2) has different signs: that of the polynomial through accelerations at five times about
+   !> it, beginning where the parabola of the derivative with the change of the accelerations is zero. Where the fourth
+   !> difference counts, the times are too far apart. `turn`%exists is false where it is not found.
+   subroutine find_turn(s, c, points, jerk, turn)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      type(sample_t), intent(in) :: points(3)
+      real(wp), intent(in) :: jerk(2)
+      type(sample_t), intent(out) :: turn
+      type(sample_t) :: at
+      real(wp) :: f(0:4), d(2:4), t, before, step, first, length, bend, steep, u, noise
+      integer :: i, k
+
+      associate (a => points(1), b => points(3))
+         length = b%t - a%t
+         bend = 3.0_wp*(2.0_wp*(b%f(2) - a%f(2))/length - jerk(1) - jerk(2))
+         steep = jerk(2) - jerk(1) + bend
+         t = a%t - 2.0_wp*length*jerk(1)/(steep + sign(sqrt(max(0.0_wp, steep**2 + 4.0_wp*bend*jerk(1))), jerk(2)))
+         step = sign(c%step, length)
+         do i = 1, max_stencils
+            first = t - 2.0_wp*step
+            if ((first - a%t)*step < 0.0_wp) first = a%t
+            if ((b%t - 4.0_wp*step - first)*step < 0.0_wp) first = b%t - 4.0_wp*step
+            do k = 0, 4
+               call look(s, c, first + k*step, at)
+               if (.not. at%exists) return
+               f(k) = at%f(2)
+            end do
+            d = [f(2) - 2.0_wp*f(1) + f(0), f(3) - 3.0_wp*(f(2) - f(1)) - f(0), f(4) - 4.0_wp*(f(3) + f(1)) &
+               + 6.0_wp*f(2) + f(0)]
+            noise = max(c%noise(2), noise_part*maxval(abs(f)))
+            before = t
+            u = (t - first)/step
+            do k = 1, newton_steps
+               u = u - slope_in(f, u)/(d(2) + (u - 1.0_wp)*d(3) + (0.5_wp*u**2 - 1.5_wp*u + 11.0_wp/12.0_wp)*d(4))
+               u = min(max(u, (a%t - first)/step), (b%t - first)/step)
+            end do
+            t = first + u*step
+            if (abs(d(4)) > max(fine*abs(d(2)), noise)) then
+               step = shorter*step
+            else if (abs(t - before) <= abs(step)) then
+               call settle(s, c, 2, [a%t, b%t], t, abs(d(2))/step**2, abs(step), noise/abs(step), 0.0_wp, turn)
+               return
+            end if
+         end do
+      end associate
+   end subroutine find_turn
+
+   !> The column `c` at the time `t` between the `ends` (2) at which a derivative that has this `slope` is zero: it is
+   !> open by the error of derivative number `order` over the `step` of a difference, by `noise`, and by `width`.
+   subroutine settle(s, c, order, ends, t, slope, step, noise, width, zero)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: order
+      real(wp), intent(in) :: ends(2), t, slope, step, noise, width
+      type(sample_t), intent(out) :: zero
+      real(wp) :: open
+      integer :: i
+      logical :: estimated
+
       do i = 1, 2
          ! An estimate takes nine solutions. A level that a coordinate passes has its error.
          estimated = order == 0 .or. i == 2
          call look(s, c, t, zero, estimated)
-         associate (k => min(order, 2))
-            open = zero%error(k)
-            if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(k)
-         end associate
-         zero%t_error = width + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))
-         if (slope > 0.0_wp) then
-            zero%t_error = zero%t_error + (open/merge(abs(step), 1.0_wp, order == 3) + rounding_part*noise)/slope
-         else
-            zero%t_error = abs(b%t - a%t)
-         end if
-         if (estimated .or. zero%t_error <= well_known*max(abs(a%t), abs(b%t))) exit
+         open = zero%error(order)
+         if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(order)
+         zero%t_error = abs(ends(2) - ends(1))
+         if (slope > 0.0_wp) zero%t_error = width + epsilon(1.0_wp)*maxval(abs(ends)) &
+            + (open/step + rounding_part*noise)/slope
+         if (estimated .or. zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
       end do
-
-   contains
-
-      !> The zero `t`, if it is found; it is open by `width`.
-      subroutine close_in(t, width, is_found)
-         real(wp), intent(out) :: t, width
-         logical, intent(out) :: is_found
-         real(wp) :: t1, t2, g1, g2, g, last
-         integer :: i
-         logical :: known
-
-         t = a%t
-         t1 = a%t
-         t2 = b%t
-         width = 0.0_wp
-         n = 0
-         is_found = present(ends)
-         if (is_found) then
-            g1 = ends(1)
-            g2 = ends(2)
-         else
-            call evaluate(t1, g1, is_found)
-            if (is_found) call evaluate(t2, g2, is_found)
-         end if
-         if (is_found) is_found = differ_in_sign(g1, g2)
-         if (.not. is_found) return
-         call note(t1, g1)
-         call note(t2, g2)
-         last = t2
-         do i = 1, max_iterations
-            t = t2 - g2*((t2 - t1)/(g2 - g1))
-            if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
-            if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
-            last = t
-            call evaluate(t, g, known)
-            if (.not. known) then
-               width = abs(t2 - t1)
-               t = t2
-               exit
-            end if
-            ! What is left is rounding: further steps only follow it.
-            if (order == 3) then
-               if (abs(g) <= noise_of_stencil()) exit
-            else if (abs(g) <= rounding_part*c%noise(order)) then
-               exit
-            end if
-            call note(t, g)
-            if (differ_in_sign(g, g2)) then
-               t1 = t2
-               g1 = g2
-            else
-               g1 = 0.5_wp*g1
-            end if
-            t2 = t
-            g2 = g
-         end do
-      end subroutine close_in
-
-      !> The rounding error of a derivative by the stencil.
-      real(wp) function noise_of_stencil()
-         noise_of_stencil = max(c%noise(2), noise_part*max(abs(a%f(2)), abs(b%f(2))))/abs(step)
-      end function noise_of_stencil
-
-      !> Notes the value `g` at a `time`.
-      subroutine note(time, g)
-         real(wp), intent(in) :: time, g
-
-         n = n + 1
-         times(n) = time
-         values(n) = g
-      end subroutine note
-
-      !> The function `g` at a `time`.
-      subroutine evaluate(time, g, known)
-         real(wp), intent(in) :: time
-         real(wp), intent(out) :: g
-         logical, intent(out) :: known
-         type(sample_t) :: at
-         real(wp) :: first, f(0:4)
-         integer :: k
-
-         known = .true.
-         if (order < 3) then
-            at = a
-            if (abs(time - a%t) > 0.0_wp) at = b
-            if (abs(time - at%t) > 0.0_wp) call look(s, c, time, at)
-            g = at%f(order) - level
-            known = at%exists
-            return
-         end if
-         first = time - 2.0_wp*step
-         if ((first - a%t)*step < 0.0_wp) first = a%t
-         if ((b%t - 4.0_wp*step - first)*step < 0.0_wp) first = b%t - 4.0_wp*step
-         do k = 0, 4
-            call look(s, c, first + k*step, at)
-            known = known .and. at%exists
-            f(k) = at%f(2)
-         end do
-         g = slope_in(f, (time - first)/step)/step
-      end subroutine evaluate
-   end subroutine find_zero
+   end subroutine settle
 
    !> The derivative at `u` of the polynomial of degree four that has the values `f` at 0, 1, 2, 3 and 4: Newton's
    !> formula of forward differences.

@@ -48,7 +48,7 @@ contains
 
       steps = 0
       do q = 1, size(rows)
-         do c = 1, 3
+         do c = 1, x%columns(q)
             do k = 1, 2
                now = 0
                if (abs(rows(q)%value(c, k)) > noise_part*x%size_of(c, k, q)) &
