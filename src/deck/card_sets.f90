@@ -19,7 +19,7 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, begin_mechanism, append_card, set_apart
+   public :: card_set_t, begin_set, begin_mechanism, set_apart
    public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
    public :: add_card_error, add_card_remark, real_text
 
@@ -41,7 +41,6 @@ module card_sets
       type(input_errors_t) :: errors                !< all errors of the deck so far
    end type card_set_t
 
-   integer, parameter :: first_room = 64
    !> Characters of the longest text of a real, on a `*` card.
    integer, parameter :: real_length = wide_fields(1)%last - wide_fields(1)%first + 1
    !> A form of the cards that define links, points or pairs, and the label that has their name.
@@ -64,6 +63,7 @@ contains
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: number
 
+      if (.not. allocated(set%cards)) allocate (set%cards(64))
       set%count = 0
       set%apart = 0
       set%number_of = 0
@@ -84,24 +84,6 @@ contains
       end do
       set%mechanism = mechanism_t(set_number=number)
    end subroutine begin_mechanism
-
-   !> Appends a card.
-   subroutine append_card(set, card)
-      type(card_set_t), intent(inout) :: set
-      type(parsed_card_t), intent(in) :: card
-      type(parsed_card_t), allocatable :: larger(:)
-
-      if (.not. allocated(set%cards)) allocate (set%cards(first_room))
-      if (set%count == size(set%cards)) then
-         allocate (larger(2*set%count))
-         larger(1:set%count) = set%cards
-         call move_alloc(larger, set%cards)
-      end if
-      set%count = set%count + 1
-      set%cards(set%count) = card
-      set%number_of(card%form) = set%number_of(card%form) + 1
-      set%names_certain = set%names_certain .and. card%names_certain
-   end subroutine append_card
 
    !> Puts the TOLER and VARY cards of `set` behind its other cards, so that these are what they would be without them.
    subroutine set_apart(set)

@@ -5,7 +5,7 @@ module deck
    use kinds, only: label_length
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
-   use card_sets, only: card_set_t, begin_set, append_card, set_apart, read_small_letters, build_bodies
+   use card_sets, only: card_set_t, begin_set, set_apart, read_small_letters, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_end
@@ -133,6 +133,7 @@ contains
       type(card_t), intent(in) :: card
       type(reading_t), intent(inout) :: progress
       type(parsed_card_t) :: parsed
+      type(parsed_card_t), allocatable :: larger(:)
 
       associate (set => progress%set)
          if (card%text(1:1) == '*') then
@@ -148,7 +149,15 @@ contains
             if (small_field(card) > 0) set%small = card
          end if
          if (parsed%form /= form_end) then
-            call append_card(set, parsed)
+            if (set%count == size(set%cards)) then
+               allocate (larger(2*set%count))
+               larger(1:set%count) = set%cards
+               call move_alloc(larger, set%cards)
+            end if
+            set%count = set%count + 1
+            set%cards(set%count) = parsed
+            set%number_of(parsed%form) = set%number_of(parsed%form) + 1
+            set%names_certain = set%names_certain .and. parsed%names_certain
          else if (set%count == 0) then
             call add_field_error(set%errors, set_empty, card, card_fields(card_name))
          else
