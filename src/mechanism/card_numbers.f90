@@ -7,7 +7,7 @@ module card_numbers
    use planar, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
       number_drive, number_knot, number_time, pair_prismatic, term_harmonic, term_power, term_table, term_words, &
-      rise_words, term_cycloid, driven_kinds, request_link
+      rise_words, term_parabola, driven_kinds, request_link
    use drawn_values, only: take_drawn, drawn_drive
    use names, only: drive_name
    use numerals, only: whole
@@ -31,10 +31,12 @@ module card_numbers
    !> What the cards call their numbers R1 to R3, by the kind of the number.
    character(12), parameter :: number_words(3, number_link:number_drive) = reshape([character(12) :: &
       'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
-   !> The same of the terms of a drive.
-   character(9), parameter :: harmonic_words(3) = ['AMPLITUDE', 'FREQUENCY', 'PHASE    ']
-   character(8), parameter :: power_words(2) = ['FACTOR  ', 'EXPONENT']
-   character(8), parameter :: rise_numbers(3) = ['START   ', 'DURATION', 'LIFT    ']
+   !> The same of the terms of a drive, but for the rows of a table; and the words of the terms.
+   character(9), parameter :: rise_numbers(3) = ['START    ', 'DURATION ', 'LIFT     ']
+   character(9), parameter :: term_numbers(3, term_harmonic:term_parabola) = reshape([character(9) :: 'AMPLITUDE', &
+      'FREQUENCY', 'PHASE', 'FACTOR', 'EXPONENT', '', '', '', '', rise_numbers, rise_numbers, rise_numbers, &
+      rise_numbers], [3, 7])
+   character(label_length), parameter :: all_words(term_harmonic:term_parabola) = [term_words, rise_words]
 
 contains
 
@@ -95,18 +97,12 @@ contains
       end associate
       ! The word and the number of the term, and what its card calls the number.
       associate (kind => m%drives(n%subject)%terms(n%term)%kind)
-         if (kind < term_cycloid) name = name//' '//trim(term_words(kind))//' '//whole(n%term)
-         if (kind >= term_cycloid) name = name//' '//trim(rise_words(kind))//' '//whole(n%term)
-         select case (kind)
-         case (term_table)
-            name = name//' '//trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
-         case (term_harmonic)
-            name = name//' '//trim(harmonic_words(n%place))
-         case (term_power)
-            name = name//' '//trim(power_words(n%place))
-         case default
-            name = name//' '//trim(rise_numbers(n%place))
-         end select
+         name = name//' '//trim(all_words(kind))//' '//whole(n%term)//' '
+         if (kind == term_table) then
+            name = name//trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
+         else
+            name = name//trim(term_numbers(n%place, kind))
+         end if
       end associate
    end function number_name
 
