@@ -11,7 +11,7 @@ module loop_equations
    use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
-   use vector_loops, only: search_t, new_search, find_path, find_path_down, vector_loops_t, &
+   use vector_loops, only: search_t, find_path, find_path_down, vector_loops_t, &
       add_vector_loop, loop_sums_t, put_sums, vanishes
    use matching, only: incidence_t
    implicit none
@@ -72,7 +72,10 @@ contains
             p%terms(2, 4*most), p%term_vector(4*most))
          allocate (p%vector_of(0:t%orientations), source=0)
       end associate
-      s = new_search(m, t)
+      allocate (s%open(size(m%pairs)), source=.false.)
+      s%open(pack(t%parent_joint, t%parent_joint > 0)) = .true.
+      allocate (s%via(0:2*size(m%links) + 1), s%seen(0:2*size(m%links) + 1), source=0)
+      allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
 
       ! The pairs that are not in the tree, those near the ground first: each closes a loop.
       do k = 1, size(m%pairs)

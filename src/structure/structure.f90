@@ -46,7 +46,6 @@ module structure
       ! Of the independent mechanisms, where nothing is lacking:
       type(set_t), allocatable :: set                   !< divided, where it is several
       type(structure_t), allocatable :: structures(:)   !< (parts)
-      type(closure_t), allocatable :: closure           !< where it is solvable: which coordinate is in which equation
    end type findings_t
 
    !> So many parts are named; of more, the number is given.
@@ -103,9 +102,7 @@ contains
          end do
       end if
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
-      if (f%solvable) then
-         f%closure = c
-      else
+      if (.not. f%solvable) then
          call make_structure(m, whole)
          f%lacking = parts_on_tree(whole%blocks%tree, whole%blocks%free)
       end if
@@ -203,7 +200,7 @@ contains
       type(findings_t), intent(inout) :: f
 
       if (.not. allocated(f%groups)) allocate (f%groups(0))
-      if (allocated(f%closure)) f%groups = groups_of(m, f%closure)
+      if (f%solvable) f%groups = groups_of(m, new_closure(m))
    end subroutine find_groups
 
    !> Every link of every set can be found: `findings` (sets).

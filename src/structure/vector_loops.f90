@@ -18,7 +18,7 @@ module vector_loops
    implicit none
    private
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
-   public :: search_t, new_search, find_path, find_path_down
+   public :: search_t, find_path, find_path_down
 
    !> What a search needs; links are nodes, all ground links one, node 0.
    type :: search_t
@@ -191,18 +191,6 @@ contains
 
       vanishes = all(abs(x%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*x%largest(k))
    end function vanishes
-
-   !> Before any loop is closed.
-   function new_search(m, t) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(search_t) :: s
-
-      allocate (s%open(size(m%pairs)), source=.false.)
-      s%open(pack(t%parent_joint, t%parent_joint > 0)) = .true.
-      allocate (s%via(0:2*size(m%links) + 1), s%seen(0:2*size(m%links) + 1), source=0)
-      allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
-   end function new_search
 
    !> `s%pairs`: the pairs down the tree from `link` to a ground link or a root.
    subroutine find_path_down(t, link, s)
