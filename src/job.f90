@@ -176,7 +176,7 @@ contains
    !> The sets of this share, one after another: shares put together in their order are the whole.
    subroutine run_sets(sets, findings, o)
       type(writers_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: sets(o%first:)
+      type(mechanism_t), intent(inout) :: sets(o%first:)
       type(findings_t), intent(inout) :: findings(o%first:)
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
@@ -253,7 +253,7 @@ contains
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    subroutine run_set(m, i, first, last, findings, o)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
@@ -267,6 +267,8 @@ contains
          call find_groups(m, findings)
          call listing_head(o%files(out_listing, 0), m, findings)
       end if
+      ! It is as large as the deck, and only the head of the listing has it.
+      if (allocated(m%echo)) deallocate (m%echo)
       if (o%options%check) return
       if (first <= 1) then
          if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, o%options%errors)

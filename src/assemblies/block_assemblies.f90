@@ -52,7 +52,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       integer, intent(in) :: largest_group
-      type(path_start_t), intent(inout) :: start
+      type(path_start_t), allocatable, intent(inout) :: start
       type(block_positions_t), intent(out) :: found
       type(convergence_t) :: c
       type(block_form_t) :: f

@@ -182,7 +182,7 @@ contains
       if (is_solved(c)) call note_position(values_of(e%blocks, i, e%state), c%singular)
       if (e%blocks%list(i)%direct .or. is_certain(c)) return
 
-      call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i), every)
+      call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i)%paths, every)
       do k = 1, size(every%sign_of)
          call note_position(every%x(:, k), every%sign_of(k) == 0)
       end do

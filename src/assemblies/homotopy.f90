@@ -54,15 +54,18 @@ contains
    !> system are short.
    subroutine follow_paths(f, start, ends, moves)
       type(bilinear_t), intent(in) :: f
-      type(path_start_t), intent(inout) :: start
+      type(path_start_t), allocatable, intent(inout) :: start
       type(ends_t), intent(out) :: ends
       logical, intent(out) :: moves
       type(path_start_t) :: own
       type(ends_t) :: found
+      logical :: is_near
       integer :: round
 
+      is_near = .false.
+      if (allocated(start)) is_near = start%p == f%p
       do round = 1, max_rounds
-         if (round == 1 .and. start%p == f%p) then
+         if (round == 1 .and. is_near) then
             call follow_all(f, 1.0_dp, start, found)
          else
             call make_start(f%p, round, own)
@@ -182,7 +185,7 @@ contains
       real(dp), intent(in) :: careful
       type(path_start_t), intent(in) :: start
       type(ends_t), intent(out) :: ends
-      type(path_start_t), intent(inout), optional :: near
+      type(path_start_t), allocatable, intent(inout), optional :: near
       type(paths_t) :: h
       complex(dp) :: z(2*f%p, size(start%z, 2))
       type(path_end_t) :: list(size(start%z, 2))

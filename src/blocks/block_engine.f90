@@ -9,7 +9,7 @@ module block_engine
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
-   use bilinear, only: path_start_t
+   use bilinear, only: kept_start_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use planar, only: without_turns
    use blocks, only: blocks_t, numbers_t, loop_angles, moving_blocks, needed_blocks, iterated_unknowns, largest_known
@@ -82,7 +82,7 @@ module block_engine
       real(wp), allocatable :: estimated(:)             !< (0:unknowns) from the deck's positions
       real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
       type(choice_t), allocatable :: choice(:)          !< (blocks) of their positions at the first instant
-      type(path_start_t), allocatable :: starts(:)      !< (blocks) near which the paths to all positions begin
+      type(kept_start_t), allocatable :: starts(:)      !< (blocks) near which the paths to all positions begin
       type(workspace_t) :: work
    end type block_engine_t
 
@@ -172,18 +172,17 @@ contains
    subroutine begin_state(e, m)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
-      type(engine_state_t) :: s
 
-      s%state = new_state(e%blocks, size(m%drives))
-      s%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
-      s%history%order = m%predictor
+      e%engine_state_t = engine_state_t()
+      e%state = new_state(e%blocks, size(m%drives))
+      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
+      e%history%order = m%predictor
       associate (n => size(e%blocks%list))
-         allocate (s%found(n), s%followed(n))
-         allocate (s%crossed(n), s%is_singular(n), source=.false.)
+         allocate (e%found(n), e%followed(n))
+         allocate (e%crossed(n), e%is_singular(n), source=.false.)
          if (.not. allocated(e%choice)) allocate (e%choice(n), e%starts(n))
       end associate
       e%choice = choice_t()
-      e%engine_state_t = s
       ! Pivots of another variant would leave other roundings.
       if (.not. allocated(e%work%a) .or. size(e%blocks%patterns) > 0) e%work = new_workspace(e%blocks)
    end subroutine begin_state

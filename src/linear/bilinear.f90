@@ -6,7 +6,7 @@ module bilinear
    use kinds, only: wp
    implicit none
    private
-   public :: bilinear_t, path_start_t, path_end_t, ends_t, solve_quadratic, path_count, finiteness, &
+   public :: bilinear_t, path_start_t, kept_start_t, path_end_t, ends_t, solve_quadratic, path_count, finiteness, &
       infinity_level, rounding
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
@@ -18,11 +18,16 @@ module bilinear
 
    !> A system of the same form with its solutions, in the chart x_0 = 1 + sum(chart_k x_k).
    type :: path_start_t
-      integer :: p = 0                                !< 0: there is none
+      integer :: p = 0
       complex(dp), allocatable :: chart(:, :)         !< (p, 2) of x and of y
       complex(dp), allocatable :: c(:, :, :)          !< (0:p, 0:p, 2p) of 1 and the other coordinates
       complex(dp), allocatable :: z(:, :)             !< (2p, paths) the solutions: x and y without their first one
    end type path_start_t
+
+   !> The start of a block's paths, once they have been followed: small for the many blocks that have none.
+   type :: kept_start_t
+      type(path_start_t), allocatable :: paths
+   end type kept_start_t
 
    !> A solution, up to a factor of x and one of y.
    type :: path_end_t

@@ -220,7 +220,7 @@ contains
             cycle
          end if
          if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
-            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i), found(i))
+            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i)%paths, found(i))
             seen(i) = choice
             call count_paths(i, found(i), a)
          end if
