@@ -227,7 +227,7 @@ contains
          call add_turns(e%blocks, i, e%state, y)
          q = new_motion(size(places, 2))
          call move_links(e%chain, e%state, e%length, q, finite, .true.)
-         square = squared_distances(q%position, guess, e%span)
+         square = squared_distances(q%position, guess, e%blocks%numbers%span)
          distance = sqrt(sum(square, mask=places == i))
          do k = 1, size(found%distance)
             if (distance < equal*found%distance(k)) exit

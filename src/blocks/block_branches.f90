@@ -1,28 +1,24 @@
-!> Branches of a block's motion that cross at a change point: how a change point is known, the position at it, and the
-!> other branch beyond it.
+!> Branches of a block's motion that cross at a change point: how a change point is known, and the other branch beyond
+!> it.
 !>
 !> Just beyond a change point, at the position x on the branch that goes on smoothly, the Jacobian J has one small
 !> singular value s, with w and k on its left and right: to second order along k
 !>    w . r(x + a k) = a s + a^2 q/2,   q = w . r''[k, k],
 !> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
-!>
-!> At a change point itself the equations determine the position to the root of the rounding only, 1E-8; the branch that
-!> is followed goes through it smoothly, so that three motions before it give it in full.
 module block_branches
    use kinds, only: wp
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
-   use predictor, only: predict, is_even
    use drives, only: law_t, drive_motion, halve, middle_of
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
-   use block_rank, only: values_t, decomposed, curvature_of, gauss_newton_step
-   use block_engine, only: block_engine_t, solve_again, set_drive_values
+   use block_rank, only: values_t, decomposed, curvature_of
+   use block_engine, only: block_engine_t, solve_again
    use block_diagnostics, only: links_of
    use branch_requests, only: branch_requests_t, decide
    implicit none
    private
-   public :: pass, take_other_branch, extrapolate, is_short_and_right
+   public :: pass, take_other_branch, is_short_and_right
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
@@ -45,9 +41,6 @@ module block_branches
    integer, parameter :: max_parts = 64
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
-   !> The position found from the equations, and that extrapolated, are the same where they differ by less, and by less
-   !> than this part of the way there: from a place very near to a dead point all is as near as at a change point.
-   real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp)), same_part = 0.05_wp
 
 contains
 
@@ -238,50 +231,4 @@ contains
          end do
       end subroutine go_in_parts
    end subroutine take_other_branch
-
-   !> The position at the change point `t`: singular blocks are extrapolated from three motions at equal steps before
-   !> it. `list`: a diagnostic for each such block; none where their equations have another position, or where no block
-   !> is singular.
-   subroutine extrapolate(e, t, list)
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
-      type(convergence_t) :: c
-      type(diagnostic_t) :: r
-      real(wp), allocatable :: x(:)
-      real(wp) :: change, far
-      logical :: smooth, singular(size(e%is_singular))
-      integer :: k
-
-      allocate (list(0))
-      singular = .false.
-      if (.not. is_even(e%history, t - e%history%t(0))) return
-      call set_drive_values(e, t)
-      call predict(e%history, t, e%state%u, change)
-      smooth = .true.
-      do k = 1, size(e%moving)
-         associate (i => e%moving(k))
-            x = values_of(e%blocks, i, e%state)
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-            if (.not. (smooth .and. is_solved(c))) return
-            if (e%blocks%list(i)%direct) cycle
-            e%is_singular(i) = c%singular
-            if (.not. c%singular) cycle
-            singular(i) = .true.
-            smooth = maxval(abs(values_of(e%blocks, i, e%state) - x)) <= min(same_place, same_part*change)
-            ! Off the direction that the equations leave undetermined they are exact.
-            call set_values(e%blocks, i, x, e%state)
-            call gauss_newton_step(e%blocks, i, e%state, far)
-            smooth = smooth .and. maxval(abs(values_of(e%blocks, i, e%state) - x)) <= same_place
-         end associate
-      end do
-      if (.not. smooth) return
-      do k = 1, size(singular)
-         if (.not. singular(k)) cycle
-         r = new_diagnostic(diagnostic_change, links_of(e, k))
-         r%t = t
-         r%here = .true.
-         list = [list, r]
-      end do
-   end subroutine extrapolate
 end module block_branches

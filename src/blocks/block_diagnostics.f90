@@ -4,16 +4,18 @@ module block_diagnostics
    use drives, only: drive_motion
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, &
-      diagnostic_incomplete, motion_t
+      diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
    use planar, only: without_turns
+   use scales, only: is_length
    use blocks, only: blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t, largest_drive_rate
    use block_engine, only: block_engine_t, mark_singular_links
-   use singularity, only: judge_position
+   use singularity, only: judge_blocks
    implicit none
    private
-   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, get_link_flags, links_of
+   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, &
+      diagnostic_at_change, links_of
 
    !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
    !> was meant.
@@ -204,7 +206,7 @@ contains
          if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          r%drive = d
          r%value = f(1)
-         r%is_angle = e%is_angle(d)
+         r%is_angle = .not. is_length(e%laws(d)%drive)
          if (abs(f(2)) > 0.0_wp) exit
       end do
       list = [r]
@@ -260,22 +262,51 @@ contains
    end function limit_diagnostic
 
    !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
-   !> is: its links, and whether they are in line. `all_at_once`: all equations are solved at once, and have one
-   !> Jacobian.
+   !> is: a dead point if some block has one, else a change point if some block has one; its links, of the first such
+   !> block, and whether they are in line. `all_at_once`: all equations are solved at once, and have one Jacobian.
    subroutine get_link_flags(e, found, all_at_once)
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
       logical, intent(in) :: all_at_once
       type(diagnostic_t) :: r
-      integer :: i
+      integer :: kinds(size(e%blocks%list)), i
 
       call mark_singular_links(e, found, all_at_once)
-      call judge_position(e, found%singularity, i)
-      if (i == 0) return
+      kinds = judge_blocks(e)
+      found%singularity = max(singular_unclear, maxval(kinds))
+      if (maxval(kinds) < 0) return
+      i = maxloc(kinds, dim=1)
       r = new_diagnostic(diagnostic_singular, links_of(e, i))
       r%in_line = is_in_line(e, i, r, e%state%u%value)
       found%singular_links = r
    end subroutine get_link_flags
+
+   !> A diagnostic for each block that has its change point at the instant `t`, at which the motion found last has no
+   !> velocities: each of the two branches has its own. None if some block has no change point there.
+   function change_diagnostics(e, t) result(list)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      type(diagnostic_t), allocatable :: list(:)
+      integer :: kinds(size(e%blocks%list)), i
+
+      kinds = judge_blocks(e)
+      allocate (list(0))
+      if (any(kinds >= 0 .and. kinds /= singular_change)) return
+      do i = 1, size(kinds)
+         if (kinds(i) == singular_change) list = [list, diagnostic_at_change(e, i, t)]
+      end do
+   end function change_diagnostics
+
+   !> The diagnostic of the change point of block `i` at the instant `t`.
+   type(diagnostic_t) function diagnostic_at_change(e, i, t) result(r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+
+      r = new_diagnostic(diagnostic_change, links_of(e, i))
+      r%t = t
+      r%here = .true.
+   end function diagnostic_at_change
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
    !> the unknowns have the values `value` (0:unknowns).

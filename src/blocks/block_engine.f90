@@ -2,7 +2,8 @@
 !> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
+   use mechanism, only: mechanism_t, wanted_links, pair_revolute
+   use scales, only: is_length
    use motion, only: motion_t
    use links_tree, only: tree_t
    use structure, only: structure_t, make_structure
@@ -67,7 +68,6 @@ module block_engine
    type, extends(engine_state_t) :: block_engine_t
       real(wp) :: length = 1.0_wp                       !< the unit of its lengths, a power of two in the deck's unit
       real(wp) :: tolerance = 0.0_wp                    !< relative, of corrections; 0: the limit of rounding
-      real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
@@ -75,7 +75,6 @@ module block_engine
       type(law_t), allocatable :: timed(:)              !< (drives) the deck's, while others are followed; then
       real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
-      logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: orientation_of(:)         !< (links)
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
@@ -102,7 +101,6 @@ contains
          return
       end if
       call move_alloc(structure%blocks, e%blocks)
-      e%span = e%blocks%numbers%span
       e%length = e%blocks%numbers%equations%length
       e%tolerance = m%tolerance
       if (e%blocks%solvable) call prepare(e, m, e%blocks%tree)
@@ -128,7 +126,7 @@ contains
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)), e%unit_of(size(m%drives)))
+      allocate (e%laws(size(m%drives)), e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)
@@ -146,7 +144,6 @@ contains
       call move_alloc(e%blocks%numbers, x)
       call put_numbers(m, e%blocks, x, fits)
       call move_alloc(x, e%blocks%numbers)
-      e%span = e%blocks%numbers%span
       e%length = e%blocks%numbers%equations%length
       associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)
          call put_chain(m, b%tree, axes, b%orientations, e%chain, b%numbers%unit)
@@ -198,7 +195,7 @@ contains
       end do
       ! As a section: a function's result would bring its own lower bound.
       e%estimated(:) = estimated_values(m, e%blocks%tree, e%blocks%numbers%equations%axes, e%length, &
-         e%blocks%unknowns, e%span)/e%blocks%numbers%unit
+         e%blocks%unknowns, e%blocks%numbers%span)/e%blocks%numbers%unit
    end subroutine put_estimate
 
    !> The laws of the drives of `m`, and the units of their values.
@@ -209,8 +206,7 @@ contains
 
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
-         e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
-         e%unit_of(i) = merge(1.0_wp, 1.0_wp/e%length, e%is_angle(i))
+         e%unit_of(i) = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives(i)))
       end do
       do i = 1, size(e%blocks%rows)
          associate (drive => e%blocks%rows(i)%drive)

@@ -19,8 +19,7 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t, block_numbers_t
-   use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_rates, &
-      set_accelerations
+   use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_derivatives
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
@@ -201,10 +200,10 @@ contains
       if (c%ended == ended_inconsistent) return
       if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
       if (c%singular) return
-      call set_rates(block%first, block%last, b%unknown, w%r(second), s%u)
+      call set_derivatives(1, block%first, block%last, b%unknown, w%r(second), s%u)
       call right_hand_side(b, i, 2, s, w%r)
       call solve_next_side(block%shape, w, w%r)
-      call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
+      call set_derivatives(2, block%first, block%last, b%unknown, w%r, s%u)
       associate (rows => block%shape%rows, n => block%shape%n)
          if (rows == n) return
          rates = largest_rates(b, i, s)
@@ -302,16 +301,10 @@ contains
       type(convergence_t), intent(inout) :: c
       real(wp) :: least, largest, inverse, size_of
       integer :: k, n
-      logical :: suspicious, is_single
+      logical :: suspicious
 
       n = block%shape%n
-      is_single = n == 1 .and. block%shape%rows == 1
-      if (is_single) then
-         least = abs(w%a(1))
-         c%determinant = merge(-1, 1, w%a(1) < 0.0_wp)
-      else
-         call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, w%sparse(block%shape%pattern))
-      end if
+      call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, w%sparse(block%shape%pattern))
       if (block%shape%pattern > 0) then
          ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
          inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork, w%sparse(block%shape%pattern))
@@ -331,11 +324,7 @@ contains
          if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
             s%excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
       end if
-      if (is_single) then
-         inverse = 1.0_wp/least
-      else if (block%shape%pattern == 0) then
-         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
-      end if
+      if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
       if (.not. suspicious) return

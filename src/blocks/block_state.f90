@@ -6,7 +6,7 @@ module block_state
    implicit none
    private
    public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, rotate_direction, set_values, &
-      set_rates, set_accelerations, values_of, largest_drive_rate
+      set_derivatives, values_of, largest_drive_rate
 
    !> Values alone: no factors, no scratch.
    type :: state_t
@@ -75,29 +75,19 @@ contains
       end do
    end subroutine set_values
 
-   !> Gives the unknowns with the numbers `unknown`(first:last) among `u` the rates `v`.
-   pure subroutine set_rates(first, last, unknown, v, u)
-      integer, intent(in) :: first, last, unknown(*)
+   !> Gives the unknowns with the numbers `unknown`(first:last) among `u` the derivatives `v` with respect to time,
+   !> first (`order` 1) or second (2).
+   pure subroutine set_derivatives(order, first, last, unknown, v, u)
+      integer, intent(in) :: order, first, last, unknown(*)
       real(wp), intent(in) :: v(*)
       type(unknown_t), intent(inout) :: u(0:*)
       integer :: k
 
       do k = first, last
-         u(unknown(k))%rate = v(k - first + 1)
+         if (order == 1) u(unknown(k))%rate = v(k - first + 1)
+         if (order == 2) u(unknown(k))%acceleration = v(k - first + 1)
       end do
-   end subroutine set_rates
-
-   !> The same of accelerations.
-   pure subroutine set_accelerations(first, last, unknown, a, u)
-      integer, intent(in) :: first, last, unknown(*)
-      real(wp), intent(in) :: a(*)
-      type(unknown_t), intent(inout) :: u(0:*)
-      integer :: k
-
-      do k = first, last
-         u(unknown(k))%acceleration = a(k - first + 1)
-      end do
-   end subroutine set_accelerations
+   end subroutine set_derivatives
 
    !> (n) The values of the unknowns of block `i`.
    pure function values_of(b, i, s) result(x)

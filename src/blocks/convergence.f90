@@ -108,22 +108,25 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: r(*)
       type(convergence_t), intent(inout) :: c
-      real(wp) :: largest
+      real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
       integer :: m
 
-      largest = 0.0_wp
+      opening = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         largest = max(largest, opening(b, m, r)/level_of(b, m))
+         associate (g => b%loops(m))
+            if (g%row_x > 0) opening(m) = abs(r(g%row_x))
+            if (g%row_y > 0) opening(m) = hypot(opening(m), r(g%row_y))
+            level(m) = max(1.0_wp, b%numbers%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
+         end associate
       end do
       c%open%value = 0.0_wp
       c%open%pair = 0
       c%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (opening(b, m, r)/level_of(b, m) < (1.0_wp - alike)*largest) cycle
+            if (opening(m)/level(m) < (1.0_wp - alike)*maxval(opening/level)) cycle
             if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
-            c%open = closure_error_t(opening(b, m, r), row%angular, b%numbers%loops(m)%unit, level_of(b, m), row%pair, &
-               row%drive)
+            c%open = closure_error_t(opening(m), row%angular, b%numbers%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
    end subroutine note_closure_error
@@ -134,27 +137,6 @@ contains
 
       is_inconsistent = c%open%value > inconsistent_level*c%open%level
    end function is_inconsistent
-
-   !> How many times as large as usual the closure error of loop `m` may be.
-   pure real(wp) function level_of(b, m)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-
-      level_of = max(1.0_wp, b%numbers%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
-   end function level_of
-
-   !> By how much loop `m` is open.
-   pure real(wp) function opening(b, m, r)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      real(wp), intent(in) :: r(*)
-
-      associate (g => b%loops(m))
-         opening = 0.0_wp
-         if (g%row_x > 0) opening = abs(r(g%row_x))
-         if (g%row_y > 0) opening = hypot(opening, r(g%row_y))
-      end associate
-   end function opening
 
    !> Equations that leave `open` of their rates contradict one another; `size_of`: numbers of this size have gone into
    !> them; `coarse`: of the block.

@@ -18,7 +18,6 @@ module link_motion
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
    type :: chain_link_t
       integer :: link = 0, parent = 0
-      integer :: pair = 0                               !< that joins them
       integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
@@ -44,15 +43,14 @@ module link_motion
 contains
 
    !> The chain of the links of `m`, in the deck's unit of length; first those `wanted` (links), and their parents.
-   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides, 1
-   !> where it is not given.
+   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides.
    function new_chain(m, t, a, wanted, first_slide, unit) result(c)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       logical, intent(in) :: wanted(:)
       integer, intent(in) :: first_slide
-      real(wp), intent(in), optional :: unit(0:)
+      real(wp), intent(in) :: unit(0:)
       type(chain_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
@@ -80,12 +78,11 @@ contains
       type(axes_t), intent(in) :: a
       integer, intent(in) :: first_slide
       type(chain_t), intent(inout) :: c
-      real(wp), intent(in), optional :: unit(0:)
+      real(wp), intent(in) :: unit(0:)
       integer :: i
 
       do i = 1, size(c%links)
          c%links(i) = new_chain_link(m, t, a, c%links(i)%link, first_slide)
-         if (.not. present(unit)) cycle
          associate (h => c%links(i))
             if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
             if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
@@ -112,7 +109,6 @@ contains
          h%root = first_slide + t%slides + 2*t%root(link) - 1
          return
       end if
-      h%pair = t%parent_joint(link)
       h%place = place_on_tree(m, t, a, 1.0_wp, link)
       h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
       h%parent_orientation = t%orientation(t%parent(link))

@@ -15,7 +15,7 @@ module singularity
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: judge_position, block_singularity, has_two_roots
+   public :: judge_blocks, block_singularity, has_two_roots
 
    !> A part of b along w, over the speeds that enter it, up to which the equations agree; likewise the coefficients
    !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
@@ -24,31 +24,25 @@ module singularity
 
 contains
 
-   !> What the position is that `e` has found last, one of singular_...: a dead point if some block has one, else a
-   !> change point if some block has one; and the first `block` for which that is so, 0 where none is singular. Blocks
-   !> that build on a singular one have no right-hand side of their own.
-   subroutine judge_position(e, singularity, block)
+   !> (blocks) What the position that `e` has found last is for each block, one of singular_...; -1 where the block is
+   !> not singular, or builds on one that is and so has no right-hand side of its own.
+   function judge_blocks(e) result(found)
       type(block_engine_t), intent(in) :: e
-      integer, intent(out) :: singularity, block
-      integer :: missing(0:e%blocks%unknowns), before, found, k
+      integer :: found(size(e%blocks%list))
+      integer :: missing(0:e%blocks%unknowns), before, k
 
-      singularity = singular_unclear
-      block = 0
+      found = -1
       missing = 0
       do k = 1, size(e%needed)
          associate (i => e%needed(k), b => e%blocks%list(e%needed(k)))
             before = largest_known(e%blocks, i, missing)
-            if (before == 0 .and. e%is_singular(i)) then
-               found = block_singularity(e%blocks, i, e%state)
-               if (block == 0 .or. found > singularity) block = i
-               singularity = max(singularity, found)
-            end if
+            if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, i, e%state)
             missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
          end associate
       end do
-   end subroutine judge_position
+   end function judge_blocks
 
-   !> The same of block `i` at the singular position of `s`; unclear where all that moves the block is at rest, and
+   !> What the singular position of `s` is for block `i`; unclear where all that moves the block is at rest, and
    !> where it says the same aside, where its links can move to: then a drive moves nothing, or adds nothing to others.
    integer function block_singularity(b, i, s) result(found)
       type(blocks_t), intent(in) :: b

@@ -14,12 +14,13 @@ module analysis
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
-   use block_engine, only: block_engine_t, renew_block_engine, get_blocks_motion => get_motion, get_driven_links, stay
+   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
+      get_driven_links, stay
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
-   use block_diagnostics, only: start_diagnostics, limit_diagnostic, get_link_flags
-   use at_bifurcation, only: stand_on, go_by_value, leave
-   use following, only: following_t, step_record_t, make_following, begin_following, continue_to, go_on_from, &
+   use block_diagnostics, only: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
+   use at_bifurcation, only: go_by_value, leave
+   use following, only: following_t, step_record_t, begin_following, continue_to, go_on_from, &
       go_back, place_t, note_place, return_to, passed_of, limit_t, note_limit, limit_before
    implicit none
    private
@@ -63,14 +64,17 @@ contains
       type(analysis_t), intent(out) :: a
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
+      type(block_engine_t), allocatable :: engine
 
+      allocate (engine)
       if (m%method == method_newton) then
-         call make_following(a%following_t, m, structure)
+         call make_block_engine(engine, m, structure)
       else
-         call make_following(a%following_t, for_blocks(m), structure)
+         call make_block_engine(engine, for_blocks(m), structure)
          allocate (a%dense)
          call make_dense(a%dense, m)
       end if
+      call begin_following(a%following_t, m, engine)
    end subroutine make_analysis
 
    !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the engine
@@ -123,7 +127,7 @@ contains
       end if
       if (goes_on) then
          call go_on_from(a%following_t, t)
-      else if (.not. step%stands) then
+      else
          call go_back(a%following_t, step)
       end if
       a%is_lost = .not. step%arrived
@@ -256,8 +260,10 @@ contains
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
          call go_by_value(a%following_t, found%t, step, list)
-         if (a%convergence%singular .and. .not. allocated(list)) &
-            call stand_on(a%following_t, found%t, step, list, step%stands)
+         if (a%convergence%singular .and. a%follows .and. .not. allocated(list)) then
+            list = change_diagnostics(a%engine, found%t)
+            step%stands = size(list) > 0
+         end if
       end if
       call take_motion(a, found, finite)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)

@@ -1,25 +1,24 @@
-!> An instant exactly at a change point: its position is known in full, its velocities are not unique, since each of
-!> the two branches has its own. The way back from a dead point or change point, for which there are two branches, too.
-!> And the passage through a change point at which the drive stops or turns.
+!> The way back from a dead point or change point, for which there are two branches, and the passage through a change
+!> point at which the drive stops or turns.
 module at_bifurcation
    use kinds, only: wp
-   use drive_excursion, only: drive_excursion_t, largest_derivative
+   use drive_excursion, only: drive_excursion_t
    use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
    use mechanism, only: drive_t
-   use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
+   use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
    use first_instant, only: solve_instant
-   use block_branches, only: extrapolate, take_other_branch
-   use block_diagnostics, only: links_of
+   use block_branches, only: take_other_branch
+   use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use branch_requests, only: decide
    use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to, &
       passed_of
    implicit none
    private
-   public :: stand_on, leave, go_by_value
+   public :: leave, go_by_value
 
-   !> The steps before the change point, in radians and in the unit of length: the extrapolation leaves 0.0112 of
-   !> their seventh power, and of the rounding ten times its part by a step.
+   !> How far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
+   !> length: far enough for rates, near enough for the same branch.
    real(wp), parameter :: short_step = (100.0_wp*epsilon(1.0_wp))**0.125_wp
    !> A drive stops or turns where its rate is below this part of its largest; its values on the way are those at so
    !> many equal steps of time.
@@ -30,48 +29,6 @@ module at_bifurcation
    real(wp), parameter :: leaving = 1.0e-5_wp
 
 contains
-
-   !> The motion at `t`, to which the `step` has led, on the branch that is followed, if `t` is a change point of that
-   !> (`stands`); it is followed from shortly before. `list`: a diagnostic for each block that has its change point
-   !> there.
-   subroutine stand_on(f, t, step, list, stands)
-      type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: t
-      type(step_record_t), intent(in) :: step
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
-      logical, intent(out) :: stands
-      type(place_t) :: before
-      type(step_record_t) :: on_the_way
-      real(wp) :: h, fastest
-      integer :: k
-
-      allocate (list(0))
-      stands = .false.
-      if (.not. f%follows) return
-      call go_back(f, step)
-      call note_place(f, before)
-
-      ! Three places at equal steps before `t`.
-      h = abs(t - f%t)/3.0_wp
-      associate (past => f%engine%history%past, predicted => f%engine%history%predicted)
-         fastest = max(0.0_wp, maxval(abs(past(predicted)%rate(0))))
-      end associate
-      fastest = max(fastest, min(largest_derivative(f%drives, 1, f%t, t), sqrt(huge(1.0_wp))))
-      if (h*fastest > short_step) h = short_step/fastest
-      h = sign(h, t - f%t)
-      stands = abs(h) > 0.0_wp
-      do k = 3, 1, -1
-         if (.not. stands) exit
-         call continue_to(f, t - k*h, on_the_way)
-         stands = on_the_way%arrived .and. .not. f%convergence%singular
-         if (stands) call go_on_from(f, t - k*h)
-      end do
-
-      if (stands) call extrapolate(f%engine, t, list)
-      stands = size(list) > 0
-      if (.not. stands) call return_to(f, before)
-      f%convergence = before%convergence
-   end subroutine stand_on
 
    !> Leaves the singular position of the last instant, at the time `last`, at which the `blocks` stand, towards `t`. If
    !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
@@ -91,9 +48,7 @@ contains
 
       allocate (list(size(blocks)))
       do k = 1, size(blocks)
-         list(k) = new_diagnostic(diagnostic_change, links_of(f%engine, blocks(k)))
-         list(k)%t = last
-         list(k)%here = .true.
+         list(k) = diagnostic_at_change(f%engine, blocks(k), last)
          list(k)%returns = .true.
       end do
       if (size(f%branch_requests%cards) == 0) return
@@ -131,8 +86,8 @@ contains
    !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
    !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a singular position
    !> and never across. So it is followed by the drive's value instead, from turn to turn: the position is a function of
-   !> that. Then `step`%arrived; where `t` itself is at a singular position, `list` says of it what that of `stand_on`
-   !> does, and of a change point `step`%stands. Otherwise `list` is not allocated.
+   !> that. Then `step`%arrived; where `t` itself is at a singular position, `list` is that of
+   !> `change_diagnostics`, and at a change point `step`%stands. Otherwise `list` is not allocated.
    subroutine go_by_value(f, t, step, list)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
@@ -217,7 +172,7 @@ contains
          turn = next
          if (stands .and. abs(t - turn) > 0.0_wp) call go_back(f, one)
       end do
-      if (stands) call stand_on(f, t, one, list, arrived)
+      if (stands) list = change_diagnostics(f%engine, t)
       arrived = .true.
 
    contains

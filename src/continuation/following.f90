@@ -3,7 +3,6 @@
 !> continuity, whatever is asked for in between, and need not be searched for again.
 module following
    use kinds, only: wp
-   use structure, only: structure_t
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
@@ -11,13 +10,13 @@ module following
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
-   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, accept
+   use block_engine, only: block_engine_t, engine_state_t, accept
    use first_instant, only: solve_instant
    use block_branches, only: pass
    implicit none
    private
-   public :: following_t, step_record_t, make_following, begin_following, continue_to, go_on_from, &
-      go_back, place_t, note_place, return_to, passed_of
+   public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, &
+      place_t, note_place, return_to, passed_of
    public :: limit_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -80,20 +79,7 @@ module following
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
-   !> `make_block_engine`.
-   subroutine make_following(f, m, structure)
-      type(following_t), intent(out) :: f
-      type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(inout), optional :: structure
-      type(block_engine_t), allocatable :: engine
-
-      allocate (engine)
-      call make_block_engine(engine, m, structure)
-      call begin_following(f, m, engine)
-   end subroutine make_following
-
-   !> The same with the `engine` of `m`, which is taken over.
+   !> Ready for the first instant of `m` with its `engine`, which is taken over.
    subroutine begin_following(f, m, engine)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m

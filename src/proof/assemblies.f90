@@ -95,7 +95,7 @@ contains
       if (is_solved(c)) then
          q = new_motion(size(m%links))
          call move_links(e%chain, e%state, e%length, q, unused, .true.)
-         a%chosen = number_of(q%position, a%list, e%span)
+         a%chosen = number_of(q%position, a%list, e%blocks%numbers%span)
       end if
       if (is_nearer_one()) call begin_in_nearest()
       a%is_missed = is_solved(c) .and. a%chosen == 0
@@ -278,7 +278,7 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved
-      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%span)))
+      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%blocks%numbers%span)))
       k = count(a%list%distance <= one%distance*(1.0_wp + alike))
       a%list = [a%list(:k), one, a%list(k + 1:)]
    end subroutine note_assembly
