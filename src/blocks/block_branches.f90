@@ -8,12 +8,12 @@
 module block_branches
    use kinds, only: wp
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
-   use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
+   use convergence, only: convergence_t, nothing_gathered, is_solved, max_kantorovich_ratio
    use drives, only: law_t, drive_motion, halve, middle_of
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
    use block_rank, only: values_t, decomposed, curvature_of
-   use block_engine, only: block_engine_t, solve_again
+   use block_engine, only: block_engine_t, solve_each
    use block_diagnostics, only: links_of
    use branch_requests, only: branch_requests_t, decide
    implicit none
@@ -193,13 +193,15 @@ contains
       if (.not. found) return
       away = -2.0_wp*v%s(v%n)/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
-      call solve_again(e, c)
+      c = nothing_gathered
+      call solve_each(e, e%moving, .true., c)
       if (is_solved(c) .and. c%kantorovich_ratio > max_kantorovich_ratio) then
          y = values_of(e%blocks, i, e%state)
          e%state%u(:) = before
          call go_in_parts(1 + int(min(c%kantorovich_ratio/max_part_ratio, real(max_parts, wp))), y - x, found)
          if (.not. found) return
-         call solve_again(e, c)
+         c = nothing_gathered
+         call solve_each(e, e%moving, .true., c)
       end if
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))

@@ -21,7 +21,7 @@ module block_diagnostics
    !> was meant.
    real(wp), parameter :: far_angle = 1.0_wp
    !> A limit is reported where it is no further than this part of the step that could not be made.
-   real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   real(wp), parameter, public :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
    real(wp), parameter :: near_pivot = 0.05_wp
    !> And an unknown is faster than the drives, by more than this factor.

@@ -24,7 +24,7 @@ module block_engine
    implicit none
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
-   public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
+   public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_each, &
       is_certain, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, &
       followed_state, slide_unit
 
@@ -309,15 +309,6 @@ contains
       call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., c)
       c%singular = .true.
    end subroutine stay
-
-   !> Solves the moving blocks once more, from where they are now.
-   subroutine solve_again(e, c)
-      type(block_engine_t), intent(inout) :: e
-      type(convergence_t), intent(out) :: c
-
-      c = nothing_gathered
-      call solve_each(e, e%moving, .true., c)
-   end subroutine solve_again
 
    !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
    subroutine solve_each(e, list, follows, c)

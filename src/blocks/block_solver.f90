@@ -30,7 +30,7 @@ module block_solver
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
-   real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
+   real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
    !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
@@ -43,7 +43,7 @@ module block_solver
    !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
-   real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
+   real(wp), parameter, public :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2

@@ -44,7 +44,7 @@ contains
       integer, intent(in) :: unknowns
       real(wp), intent(in), optional :: span
       real(wp) :: value(0:unknowns)
-      real(wp) :: phi(size(m%links))
+      real(wp) :: phi(size(m%links)), angles(2)
       integer :: i, u
 
       value = 0.0_wp
@@ -56,20 +56,12 @@ contains
          value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
       end do
       do i = 1, size(m%pairs)
-         if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = estimated_slide(m, i, phi)/length
+         if (t%slide(i) == 0) cycle
+         angles = phi(m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link)
+         value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, angles), &
+            direction(angles(1) + m%pairs(i)%alpha))/length
       end do
    end function estimated_values
-
-   !> The slide of prismatic pair `i`, in the deck's unit.
-   pure real(wp) function estimated_slide(m, i, phi) result(slide)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-      real(wp), intent(in) :: phi(:)
-      real(wp) :: angles(2)
-
-      angles = phi(m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link)
-      slide = dot_product(closure_error_of(m, i, angles), direction(angles(1) + m%pairs(i)%alpha))
-   end function estimated_slide
 
    !> (2) From the first point of pair `k` to the other, their links at the deck's places and the `angles` (2).
    pure function closure_error_of(m, k, angles) result(closure_error)

@@ -15,7 +15,7 @@ module singularity
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: judge_blocks, block_singularity, has_two_roots
+   public :: judge_blocks, block_singularity
 
    !> A part of b along w, over the speeds that enter it, up to which the equations agree; likewise the coefficients
    !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
@@ -76,7 +76,7 @@ contains
       type(state_t), intent(inout) :: s
       logical, intent(out) :: agrees, crosses
       type(values_t) :: v
-      real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), unit
+      real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), c(0:2), unit
       integer :: j
 
       call find_known_parts(b, i, s)
@@ -98,17 +98,10 @@ contains
          call right_hand_side(b, i, 2, s, r)
          q(j) = dot_product(v%left(:, v%n), r)/unit**2
       end do
-      crosses = has_two_roots([q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)], &
-         b%numbers%blocks(i)%lipschitz)
+      ! Two real roots, one of which may be infinite; none where all coefficients are zero beside the Lipschitz
+      ! constant, as they are where a drive adds nothing to the others.
+      c = [q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)]
+      crosses = maxval(abs(c)) > agreement*b%numbers%blocks(i)%lipschitz .and. &
+         c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*maxval(abs(c))**2
    end subroutine judge
-
-   !> c(0) + c(1) l + c(2) l**2 has two real roots, one of which may be infinite; none where all coefficients are zero
-   !> beside `scale`, as they are where a drive adds nothing to the others.
-   pure logical function has_two_roots(c, scale)
-      real(wp), intent(in) :: c(0:2), scale
-      real(wp) :: largest
-
-      largest = maxval(abs(c))
-      has_two_roots = largest > agreement*scale .and. c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*largest**2
-   end function has_two_roots
 end module singularity

@@ -18,10 +18,10 @@ module analysis
       get_driven_links, stay
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
-   use block_diagnostics, only: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
+   use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use at_bifurcation, only: go_by_value, leave
    use following, only: following_t, step_record_t, begin_following, continue_to, go_on_from, &
-      go_back, place_t, note_place, return_to, passed_of, limit_t, note_limit, limit_before
+      go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -229,7 +229,6 @@ contains
          call find_what_exists(a, found, finite)
          is_found = found%known == 2 .and. is_solved(a%convergence)
       end if
-      if (step%stands) return
       if (.not. is_found) then
          call go_back(a%following_t, step)
       else if (step%tries > 1) then
@@ -302,7 +301,8 @@ contains
    end subroutine arrive
 
    !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
-   !> that is said once.
+   !> that is said once. The instant lies beyond a limit if no substep could be made and it is further behind that place
+   !> than `near_part` of the step, or if it is only known that it was not reached.
    subroutine give_up(a, t, step, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
@@ -346,7 +346,12 @@ contains
          if (size(step%dead_end) > 0) list = step%dead_end
       end if
       if (.not. a%is_lost) call add_diagnostics(list, found)
-      if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
+      if (.not. a%follows .or. inconsistent .or. abs(t - a%place%t) <= 0.0_wp) return
+      associate (limit => a%limits(merge(2, 1, t > a%place%t)))
+         limit%known = .true.
+         limit%t = merge(a%t + near_part*(t - a%place%t), t, step%blocked)
+         limit%diagnostics = list
+      end associate
    end subroutine give_up
 
    !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason.

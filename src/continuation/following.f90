@@ -17,7 +17,7 @@ module following
    private
    public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, &
       place_t, note_place, return_to, passed_of
-   public :: limit_t, note_limit, limit_before, largest_correction
+   public :: limit_t, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.
@@ -33,9 +33,6 @@ module following
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
    integer, parameter :: max_longer = 8
-   !> An instant lies beyond a limit if it is further behind the place where the motion was blocked than this part of
-   !> the step.
-   real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
 
    !> A place of the motion that is followed: all that its continuation depends on.
    type :: place_t
@@ -264,23 +261,6 @@ contains
       f%convergence = p%convergence
       call note_place(f, f%place)
    end subroutine return_to
-
-   !> The step from `place` to `t` has ended at `reached`. `blocked`: no substep could be made there; otherwise it
-   !> is only known that `t` was not reached. `diagnostics`: what there is to say of it.
-   pure subroutine note_limit(limits, place, reached, t, blocked, diagnostics)
-      type(limit_t), intent(inout) :: limits(2)
-      real(wp), intent(in) :: place, reached, t
-      logical, intent(in) :: blocked
-      type(diagnostic_t), intent(in) :: diagnostics(:)
-
-      if (abs(t - place) <= 0.0_wp) return
-      associate (limit => limits(merge(2, 1, t > place)))
-         limit%known = .true.
-         limit%t = t
-         if (blocked) limit%t = reached + near_part*(t - place)
-         limit%diagnostics = diagnostics
-      end associate
-   end subroutine note_limit
 
    !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.
    pure integer function limit_before(limits, t) result(k)

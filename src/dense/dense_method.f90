@@ -20,7 +20,7 @@ module dense_method
    use position_iteration, only: solve_position
    implicit none
    private
-   public :: dense_t, make_dense, for_blocks, solve_all_links, solve_velocity, solve_acceleration
+   public :: dense_t, make_dense, for_blocks, solve_all_links
 
    !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain = 0.5_wp
@@ -86,7 +86,7 @@ contains
       real(wp), dimension(3, size(found%position, 2)) :: there, start
       type(motion_t) :: before
       type(state_t) :: s
-      real(wp) :: w(3)
+      real(wp) :: w(3), b(d%system%n)
       logical :: finite
       integer :: k, iterations
 
@@ -129,8 +129,21 @@ contains
       c%singular = c%singular .or. any(e%is_singular(e%needed))
       found%position = d%pose%q
       if (.not. c%singular) then
-         call solve_velocity(d%system, d%factors, d%drive_values(2, :), found%velocity)
-         call solve_acceleration(d%system, d%factors, d%pose, d%drive_values(3, :), found%velocity, found%acceleration)
+         ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
+         ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f is zero in pairs' rows.
+         associate (s => d%system, first => d%system%n - size(d%drive_values, 2) + 1)
+            b = 0.0_wp
+            b(first:) = d%drive_values(2, :)
+            call solve_factored(d%factors, b)
+            found%velocity = 0.0_wp
+            call add_to_links(s, b, found%velocity)
+            call remainder(s, d%pose, found%velocity, b)
+            b = -b
+            b(first:) = b(first:) + d%drive_values(3, :)
+            call solve_factored(d%factors, b)
+            found%acceleration = 0.0_wp
+            call add_to_links(s, b, found%acceleration)
+         end associate
          found%velocity(:2, :) = d%system%length*found%velocity(:2, :)
          found%acceleration(:2, :) = d%system%length*found%acceleration(:2, :)
       end if
@@ -163,40 +176,4 @@ contains
          end associate
       end do
    end function is_found_by_blocks
-
-   !> Velocities `v` (3, links) from the drives' rates `rate` (drives), by the factors `f` of the Jacobian:
-   !> J v = f' (21), with the dependence of A' on the unknown velocities moved to the left; f' is zero in pairs' rows.
-   subroutine solve_velocity(s, f, rate, v)
-      type(system_t), intent(in) :: s
-      type(factors_t), intent(in) :: f
-      real(wp), intent(in) :: rate(:)
-      real(wp), intent(out) :: v(:, :)
-      real(wp) :: b(s%n)
-
-      b = 0.0_wp
-      b(s%n - size(rate) + 1:) = rate
-      call solve_factored(f, b)
-      v = 0.0_wp
-      call add_to_links(s, b, v)
-   end subroutine solve_velocity
-
-   !> Accelerations `a` (3, links) from those of the drives, `acceleration` (drives), and the velocities `v` (3, links):
-   !> J a = f'' - gamma(q, v) (22), gamma the acceleration remainder.
-   subroutine solve_acceleration(s, f, p, acceleration, v, a)
-      type(system_t), intent(in) :: s
-      type(factors_t), intent(in) :: f
-      type(pose_t), intent(in) :: p
-      real(wp), intent(in) :: acceleration(:), v(:, :)
-      real(wp), intent(out) :: a(:, :)
-      real(wp) :: b(s%n)
-
-      call remainder(s, p, v, b)
-      b = -b
-      associate (last => b(s%n - size(acceleration) + 1:))
-         last = last + acceleration
-      end associate
-      call solve_factored(f, b)
-      a = 0.0_wp
-      call add_to_links(s, b, a)
-   end subroutine solve_acceleration
 end module dense_method

@@ -17,6 +17,7 @@ module position_iteration
    use kinds, only: wp
    use linear_solver, only: factors_t, factor, solve
    use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged
+   use block_solver, only: rounding_level, angle_limit
    use pose, only: system_t, pose_t, set_pose, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    implicit none
@@ -26,16 +27,12 @@ module position_iteration
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
    integer, parameter :: matrix_iterations = nint(7.55*digits(1.0_wp))
-   !> A residual is a sum of at most six terms of the size of the coordinates, each rounded; twice that for margin.
-   real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
    real(wp), parameter :: step_tolerance = 16.0_wp*epsilon(1.0_wp)
    !> Even where the Jacobian has no inverse a residual at the rounding level leaves no more to correct than this.
    real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> An iteration does not return from a residual or step of this many sizes; well below overflow.
    real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
-   !> An angle beyond this has fewer digits after the point than the listing prints.
-   real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
 
 contains
 
