@@ -11,8 +11,7 @@ module block_assemblies
    use block_rank, only: gauss_newton_step, moving_unknowns
    use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
    use homotopy, only: follow_paths
-   use isotropic, only: given
-   use block_bilinear, only: block_form_t, make_form, solves_all, real_values
+   use block_bilinear, only: block_form_t, make_form, solves_all, real_values, given
    implicit none
    private
    public :: block_positions_t, find_positions, add_turns, max_group
@@ -71,7 +70,16 @@ contains
       found%group = f%system%p
       found%moves = f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. found%group > largest_group) return
-      call find_ends(ends, found%moves)
+      if (f%system%p == 0) then
+         ends%paths = 1
+         allocate (ends%list(1))
+         ends%list(1)%x = [(1.0_dp, 0.0_dp)]
+         ends%list(1)%y = ends%list(1)%x
+      else if (f%system%p == 1) then
+         call solve_quadratic(f%system, ends, found%moves)
+      else
+         call follow_paths(f%system, start, ends, found%moves)
+      end if
       found%paths = ends%paths
       found%infinite = ends%infinite
       found%failed = ends%failed
@@ -85,23 +93,6 @@ contains
       end do
 
    contains
-
-      !> All solutions of the system of `f`.
-      subroutine find_ends(ends, moves)
-         type(ends_t), intent(out) :: ends
-         logical, intent(inout) :: moves
-
-         if (f%system%p == 0) then
-            ends%paths = 1
-            allocate (ends%list(1))
-            ends%list(1)%x = [(1.0_dp, 0.0_dp)]
-            ends%list(1)%y = ends%list(1)%x
-         else if (f%system%p == 1) then
-            call solve_quadratic(f%system, ends, moves)
-         else
-            call follow_paths(f%system, start, ends, moves)
-         end if
-      end subroutine find_ends
 
       !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
       subroutine take_end(e)

@@ -6,19 +6,19 @@
 module block_bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
+   use planar, only: length_of
    use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t
    use block_equations, only: find_known_parts
-   use isotropic, only: directions_of_slides, given, direction_factor, linear_form, size_of_loop, i_unit
    use bilinear, only: bilinear_t, path_end_t, rounding
    implicit none
    private
-   public :: block_form_t, make_form, solves_all, real_values
+   public :: block_form_t, make_form, solves_all, real_values, given
 
    !> The system of a block, from whose solutions its unknowns follow.
    type :: block_form_t
-      integer, allocatable :: turns(:)                !< (n) see `directions_of_slides`
+      integer, allocatable :: turns(:)                !< (n) of a slide its direction, 0: a known one; of a direction -1
       complex(dp), allocatable :: basis(:, :)         !< (0:n, 0:p) of directions and slides from the system's unknowns
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
       logical :: is_impossible = .false.              !< its linear equations contradict one another
@@ -26,6 +26,7 @@ module block_bilinear
       complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) equations that are too many
    end type block_form_t
 
+   complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
    !> Coefficients below this part of the largest are rounding.
    real(wp), parameter :: zero_level = 4096.0_wp*epsilon(1.0_wp)
    !> Of equations that are too many those that differ by less agree: the numbers of the deck have 11 digits, of which
@@ -64,12 +65,15 @@ contains
       integer :: m
 
       call find_known_parts(b, i, s)
-      f%turns = directions_of_slides(b, i)
-      associate (rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
+      associate (block => b%list(i), rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
+         f%turns = merge(-1, 0, b%unknown(block%first:block%last) <= b%orientations)
+         do m = b%loops(block%first_loop)%first_slide, b%loops(block%last_loop)%last_slide
+            if (b%slides(m)%column > 0) f%turns(b%slides(m)%column) = b%slides(m)%orientation_column
+         end do
          allocate (d%projections(0))
          allocate (d%a(0:n, rows), d%c(0:n, 0:n, rows + n), source=(0.0_wp, 0.0_wp))
          allocate (d%size_of(rows + n), source=1.0_wp)
-         do m = b%list(i)%first_loop, b%list(i)%last_loop
+         do m = block%first_loop, block%last_loop
             if (b%loops(m)%kind == loop_angles) then
                call add_angles(b, i, m, s, f, d)
             else
@@ -117,8 +121,7 @@ contains
       type(projection_t) :: one
 
       allocate (one%l(n + 1))
-      one%l(:) = linear_form(b, m, s, n)
-      one%size_of = size_of_loop(b, m, s)
+      call find_form(b, m, s, one%l, one%size_of)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
             one%at = g%orientation_column
@@ -140,6 +143,68 @@ contains
          d%projections = [d%projections, one]
       end subroutine add
    end subroutine add_loop
+
+   !> What row `row` of block `i` asks for: its constant and its drive's value.
+   pure real(wp) function given(b, i, row, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, row
+      type(state_t), intent(in) :: s
+
+      associate (k => b%list(i)%first_row + row - 1)
+         given = b%numbers%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
+      end associate
+   end function given
+
+   !> What unknown number `u` of all, in column `column` of its block, is a multiple of: 1 of a direction of the block,
+   !> a known direction otherwise.
+   pure complex(wp) function direction_factor(column, u, s) result(factor)
+      integer, intent(in) :: column, u
+      type(state_t), intent(in) :: s
+
+      factor = 1.0_wp
+      if (column == 0) factor = cmplx(s%u(u)%c, s%u(u)%s, wp)
+   end function direction_factor
+
+   !> Loop `m`, as a linear form `l` (0:n) of 1 and the n unknowns of a group. `size_of`: the sum of the sizes of its
+   !> terms that are known or of known length, in its unit: what rounding of the loop is measured by.
+   pure subroutine find_form(b, m, s, l, size_of)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      type(state_t), intent(in) :: s
+      complex(wp), intent(out) :: l(0:)
+      real(wp), intent(out) :: size_of
+      complex(wp) :: factor
+      real(wp) :: slide
+      integer :: k
+
+      associate (g => b%loops(m))
+         l = 0.0_wp
+         l(0) = cmplx(s%loop(m)%known(0)%x, s%loop(m)%known(0)%y, wp)
+         size_of = length_of(b%numbers%loops(m)%ground)
+         do k = g%first_vector, g%last_vector
+            size_of = size_of + length_of(b%numbers%d(k))
+            if (k < g%first_own) cycle
+            associate (d => b%body_vectors(k))
+               l(d%column) = l(d%column) + direction_factor(d%column, d%orientation, s) &
+                  *cmplx(b%numbers%d(k)%x, b%numbers%d(k)%y, wp)
+            end associate
+         end do
+         do k = g%first_slide, g%last_slide
+            associate (e => b%slides(k))
+               factor = direction_factor(e%orientation_column, e%orientation, s) &
+                  *cmplx(b%numbers%e(k)%x, b%numbers%e(k)%y, wp)
+               slide = 1.0_wp
+               if (e%column > 0) then
+                  l(e%column) = l(e%column) + factor
+               else
+                  slide = s%u(e%unknown)%value
+                  l(e%orientation_column) = l(e%orientation_column) + factor*slide
+               end if
+            end associate
+            size_of = size_of + length_of(b%numbers%e(k))*abs(slide)
+         end do
+      end associate
+   end subroutine find_form
 
    !> Two projections of one loop, in whatever unit, on different directions that turn together are one linear equation:
    !> the components of a closed loop, or a slide that is driven and its guide. The others are bilinear.

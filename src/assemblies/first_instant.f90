@@ -196,17 +196,6 @@ contains
 
    contains
 
-      !> The positions `x` and `y` are one, as far as is known; whole turns do not count.
-      logical function are_alike(x, y, is_singular)
-         real(wp), intent(in) :: x(:), y(:)
-         logical, intent(in) :: is_singular
-
-         associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-            are_alike = all(merge(abs(without_turns(x - y)), abs(x - y)/max(1.0_wp, abs(x)), &
-               own <= e%blocks%orientations) <= merge(singular_alike, alike, is_singular))
-         end associate
-      end function are_alike
-
       !> Puts the position `x` in its place among those found, unless it is there already; its angles are within half a
       !> turn of the guess. Of two that are as near, that with the greater first value: rounding shall not choose.
       subroutine note_position(x, is_singular)
@@ -217,11 +206,13 @@ contains
          integer :: k, first
          logical :: finite
 
-         do k = 1, size(found%distance)
-            if (are_alike(x, found%x(:, k), is_singular)) return
-         end do
-         associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-            y = merge(start + without_turns(x - start), x, own <= e%blocks%orientations)
+         associate (is_angle => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last) <= e%blocks%orientations)
+            do k = 1, size(found%distance)
+               y = found%x(:, k)
+               if (all(merge(abs(without_turns(x - y)), abs(x - y)/max(1.0_wp, abs(x)), is_angle) &
+                  <= merge(singular_alike, alike, is_singular))) return
+            end do
+            y = merge(start + without_turns(x - start), x, is_angle)
          end associate
          call set_values(e%blocks, i, y, e%state)
          call add_turns(e%blocks, i, e%state, y)

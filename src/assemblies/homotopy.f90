@@ -71,7 +71,7 @@ contains
             call make_start(f%p, round, own)
             call follow_all(f, shorter**(round - 1), own, found, start)
          end if
-         if (round == 1 .or. worth(found) > worth(ends)) ends = found
+         if (round == 1 .or. found%paths - found%failed > ends%paths - ends%failed) ends = found
          if (found%failed == 0) exit
       end do
       moves = .false.
@@ -82,15 +82,6 @@ contains
       do round = 1, size(ends%list)
          if (ends%list(round)%is_singular) moves = moves .or. .not. is_among(f, ends%list(round), found%list)
       end do
-
-   contains
-
-      !> Paths of `e` of which the end is known.
-      pure integer function worth(e)
-         type(ends_t), intent(in) :: e
-
-         worth = e%paths - e%failed
-      end function worth
    end subroutine follow_paths
 
    !> A singular solution of `list` is that of `e`, as far as rounding leaves it known.

@@ -27,40 +27,20 @@ contains
       real(wp), intent(in) :: coarse(width), u(width, n)
       real(wp), intent(inout) :: a(width, n*n), exchanged(width), d(width, n), v(width, n)
       real(wp), intent(out) :: going(width)
-
-      if (n == 1) then
-         call correct_one(coarse, u, a, d, v, going)
-      else
-         call correct_two(coarse, u, a, exchanged, d, v, going)
-      end if
-   end subroutine correct
-
-   !> The same of one equation.
-   pure subroutine correct_one(coarse, u, a, d, v, going)
-      real(wp), intent(in) :: coarse(width), u(width)
-      real(wp), intent(inout) :: a(width), d(width), v(width)
-      real(wp), intent(out) :: going(width)
-      real(wp) :: pivot, x
-      integer :: l
-
-      do l = 1, width
-         pivot = merge(a(l), no_pivot, abs(a(l)) > 0.0_wp)
-         x = merge(0.0_wp, d(l), abs(d(l)) <= closed_level*max(coarse(l), abs(u(l))))/pivot
-         a(l) = pivot
-         d(l) = x
-         v(l) = v(l)/pivot
-         going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l) - x)))
-      end do
-   end subroutine correct_one
-
-   !> The same of two.
-   pure subroutine correct_two(coarse, u, a, exchanged, d, v, going)
-      real(wp), intent(in) :: coarse(width), u(width, 2)
-      real(wp), intent(inout) :: a(width, 4), exchanged(width), d(width, 2), v(width, 2)
-      real(wp), intent(out) :: going(width)
       real(wp) :: p1, p2, q1, q2, x, y, first, second, residual, rounding
       integer :: l
 
+      if (n == 1) then
+         do l = 1, width
+            p1 = merge(a(l, 1), no_pivot, abs(a(l, 1)) > 0.0_wp)
+            x = merge(0.0_wp, d(l, 1), abs(d(l, 1)) <= closed_level*max(coarse(l), abs(u(l, 1))))/p1
+            a(l, 1) = p1
+            d(l, 1) = x
+            v(l, 1) = v(l, 1)/p1
+            going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l, 1) - x)))
+         end do
+         return
+      end if
       do l = 1, width
          residual = max(abs(d(l, 1)), abs(d(l, 2)))
          rounding = closed_level*max(coarse(l), abs(u(l, 1)), abs(u(l, 2)))
@@ -92,7 +72,7 @@ contains
          going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l, 1) - x))) &
             + merge(0.0_wp, 1.0_wp, abs(y) <= step_tolerance*max(coarse(l), abs(u(l, 2) - y)))
       end do
-   end subroutine correct_two
+   end subroutine correct
 
    !> Solves the equations with the factors `a` for the right-hand sides `b` (lanes, n), in their place.
    pure subroutine substitute(n, a, exchanged, b)

@@ -11,8 +11,7 @@ module lane_equations
    use kinds, only: wp
    use blocks, only: equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
    use lane_sines, only: width, sines
-   use lane_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
-   use lane_state, only: lanes_t
+   use lane_state, only: lanes_t, vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    implicit none
    private
    public :: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations

@@ -11,8 +11,7 @@ module lane_steps
    use drives, only: drive_motion
    use lane_sines, only: width, max_angle
    use lane_elimination, only: max_order, correct, substitute, judge_factors
-   use lane_state, only: lanes_t, lane_block_t, depth
-   use lane_types, only: unknown_t
+   use lane_state, only: lanes_t, lane_block_t, unknown_t, depth
    use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
    implicit none
    private

@@ -41,8 +41,10 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
       type(mechanism_t), intent(inout) :: off
+      type(tree_t) :: t
+      type(axes_t) :: axes
       real(wp) :: origin(2), size_of
-      integer :: i, j
+      integer :: i, j, quarters
 
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
@@ -61,11 +63,24 @@ contains
          call put(card_number_t(number_point, i, 0, 1), size_of)
          call put(card_number_t(number_point, i, 0, 2), size_of)
       end do
+      if (any(m%pairs%kind == pair_prismatic)) then
+         t = new_tree(m)
+         axes = axes_of(m, t)
+      end if
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind /= pair_prismatic) cycle
          call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
+         ! Guides that are parallel or at right angles by the cards of links that turn as one stay so: their directions
+         ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
+         ! links and between guides are as they stand: the arms that they turn are off.
+         associate (link => m%points(m%pairs(i)%point_i)%link)
+            quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
+               int(quarter, int64)))
+            off%pairs(i)%alpha = m%pairs(i)%alpha
+            if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*max(1.0_wp, &
+               maxval(abs(m%pairs%alpha)))*deviate(card_number_t(number_pair, t%orientation(link), quarters, 1), k)
+         end associate
       end do
-      if (any(m%pairs%kind == pair_prismatic)) call put_guides()
       do i = 1, size(m%drives)
          do j = 1, 3
             size_of = abs(m%drives(i)%polynomial(j))
@@ -115,29 +130,6 @@ contains
             end do
          end if
       end subroutine put_term
-
-      !> Puts the directions of guides off. Those that are parallel or at right angles by the cards of links that turn
-      !> as one stay so: they are off by the same part of a radian, whatever the angles are of which their directions
-      !> are sums. The angles of ground links and between guides are as they stand: the arms that they turn are off.
-      subroutine put_guides()
-         type(tree_t) :: t
-         type(axes_t) :: axes
-         integer :: i, quarters
-
-         t = new_tree(m)
-         axes = axes_of(m, t)
-         do i = 1, size(m%pairs)
-            if (m%pairs(i)%kind /= pair_prismatic) cycle
-            associate (link => m%points(m%pairs(i)%point_i)%link)
-               quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
-                  int(quarter, int64)))
-               off%pairs(i)%alpha = m%pairs(i)%alpha
-               if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp) &
-                  *max(1.0_wp, maxval(abs(m%pairs%alpha)))*deviate(card_number_t(number_pair, t%orientation(link), &
-                  quarters, 1), k)
-            end associate
-         end do
-      end subroutine put_guides
    end subroutine put_off
 
    !> By which part of it the instant is off in direction `k` by a rounding.

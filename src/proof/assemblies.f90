@@ -158,6 +158,7 @@ contains
       type(block_engine_t), intent(in) :: e
       type(assemblies_t), intent(inout) :: a
       type(assembly_block_t) :: one
+      logical :: is_joined(size(m%links))
       integer :: i, k, places(2, size(m%links))
 
       places = places_of(e)
@@ -168,25 +169,18 @@ contains
          one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
          one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
          if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
-         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], is_joined(i))
+         if (size(one%links) == 0) then
+            is_joined = .false.
+            do k = e%blocks%list(i)%first_row, e%blocks%list(i)%last_row
+               associate (row => e%blocks%rows(k))
+                  if (row%pair > 0) is_joined(pair_links(m, m%pairs(row%pair))) = .true.
+                  if (row%drive > 0) is_joined(drive_links(m, m%drives(row%drive))) = .true.
+               end associate
+            end do
+            one%links = pack([(k, k=1, size(m%links))], is_joined .and. .not. m%links%ground)
+         end if
          a%blocks = [a%blocks, one]
       end do
-
-   contains
-
-      !> (links) Those that move, and that a pair or drive of block `i` names.
-      function is_joined(i)
-         integer, intent(in) :: i
-         logical :: is_joined(size(m%links))
-         integer :: row
-
-         is_joined = .false.
-         do row = e%blocks%list(i)%first_row, e%blocks%list(i)%last_row
-            if (e%blocks%rows(row)%pair > 0) is_joined(pair_links(m, m%pairs(e%blocks%rows(row)%pair))) = .true.
-            if (e%blocks%rows(row)%drive > 0) is_joined(drive_links(m, m%drives(e%blocks%rows(row)%drive))) = .true.
-         end do
-         is_joined = is_joined .and. .not. m%links%ground
-      end function is_joined
    end subroutine name_blocks
 
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that

@@ -70,7 +70,8 @@ contains
       type(motion_t), intent(in) :: q
       logical, intent(in) :: bounded
       type(motion_proof_t), intent(inout) :: found
-      integer :: k
+      integer, allocatable :: block_of(:)         !< of the ground, none, and of each unknown
+      integer :: k, i
 
       found%taken = .true.
       found%is_proved = .false.
@@ -102,7 +103,8 @@ contains
          k = e%needed(findloc(p%at(p%now)%is_proved(e%needed), .false., dim=1))
       end if
       if (k == 0) return
-      found%failed = links_of_block(e, k)
+      block_of = [0, e%blocks%block_of]
+      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%orientation_of) == k)
       if (e%blocks%list(k)%shape%n > max_unknowns .or. found%step%is_broken_off) &
          found%too_many = e%blocks%list(k)%shape%n
    end subroutine prove_motion
@@ -113,18 +115,6 @@ contains
 
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
-
-   !> The links whose angles block `k` gives.
-   pure function links_of_block(e, k) result(links)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: k
-      integer, allocatable :: links(:)
-      integer :: i
-
-      associate (block_of => [0, e%blocks%block_of])
-         links = pack([(i, i=1, size(e%orientation_of))], block_of(1 + e%orientation_of) == k)
-      end associate
-   end function links_of_block
 
    !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.
    subroutine prove_step(p, e, list, from, to, proof)

@@ -54,8 +54,9 @@ contains
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
       logical :: unbounded(0:size(e%laws))
+      type(ball_t) :: c(0:2)
       real(wp) :: h
-      integer :: i, k, u
+      integer :: i, k, j, u
 
       h = to%t - from%t
       tube%radius = 0.0_wp
@@ -68,33 +69,37 @@ contains
          i = list(k)
          associate (block => e%blocks%list(i))
             tube%block = i
-            do u = block%first, block%last
-               call set_curve(e%blocks%unknown(u))
+            do j = block%first, block%last
+               u = e%blocks%unknown(j)
+               c = cubic(h, from%x(:1, u), to%x(:1, u))
+               call set_ball(e%blocks, u, c(0), p%curve)
+               p%curve%u(u)%rate = c(1)
+               p%curve%u(u)%acceleration = c(2)
+               p%balls%u(u) = p%curve%u(u)
             end do
             tube%is_proved = .not. any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))
             if (tube%is_proved .and. block%direct) then
-               call prove_direct(e%blocks%unknown(block%first), block%first_row)
+               ! The unknown is another one and a drive, and so are their cubics.
+               associate (row => e%blocks%rows(block%first_row))
+                  call note_radius(u, (ends_open(block%first_row) + tube%radius(row%other) &
+                     + tube%drive(row%drive))*room)
+               end associate
             else if (tube%is_proved) then
                call prove_block(e%blocks, e%blocks%unknown(block%first:block%last))
             end if
          end associate
          if (.not. tube%is_proved) exit
       end do
-      if (.not. tube%is_proved) call set_middle(e%blocks)
+      if (tube%is_proved) return
+      do k = 1, size(list)
+         do j = e%blocks%list(list(k))%first, e%blocks%list(list(k))%last
+            u = e%blocks%unknown(j)
+            p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*h*(from%x(1, u) - to%x(1, u))
+            call set_direction(e%blocks, u, p%state)
+         end do
+      end do
 
    contains
-
-      !> The curve of unknown `u`: the balls of its cubic.
-      subroutine set_curve(u)
-         integer, intent(in) :: u
-         type(ball_t) :: c(0:2)
-
-         c = cubic(h, from%x(:1, u), to%x(:1, u))
-         call set_ball(e%blocks, u, c(0), p%curve)
-         p%curve%u(u)%rate = c(1)
-         p%curve%u(u)%acceleration = c(2)
-         p%balls%u(u) = p%curve%u(u)
-      end subroutine set_curve
 
       !> How far the laws of the drives can be from the cubics with their values and rates at both ends: by the range of
       !> their second derivatives, unless these are `unbounded`.
@@ -122,14 +127,6 @@ contains
             p%balls%drive(1, i) = ball_t(0.0_wp, tube%drive(i))
          end do
       end subroutine bound_drives
-
-      !> The direct block at hand: its unknown `u` is another one and a drive, and so are their cubics.
-      subroutine prove_direct(u, row)
-         integer, intent(in) :: u, row
-
-         call note_radius(u, (ends_open(row) + tube%radius(e%blocks%rows(row)%other) &
-            + tube%drive(e%blocks%rows(row)%drive))*room)
-      end subroutine prove_direct
 
       !> What Hermite's interpolation makes of what row `row` leaves open at both ends.
       pure real(wp) function ends_open(row)
@@ -176,21 +173,6 @@ contains
             end do
          end associate
       end subroutine prove_block
-
-      !> The middle of the cubics of the unknowns of the blocks `list` in p%state.
-      subroutine set_middle(b)
-         type(blocks_t), intent(in) :: b
-         integer :: k, i
-
-         do k = 1, size(list)
-            do i = b%list(list(k))%first, b%list(list(k))%last
-               associate (u => b%unknown(i))
-                  p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*h*(from%x(1, u) - to%x(1, u))
-                  call set_direction(b, u, p%state)
-               end associate
-            end do
-         end do
-      end subroutine set_middle
    end subroutine prove_tube
 
    !> Balls (0:2) that hold the cubic with the values and rates `x0` and `x1` (0:1) at both ends of an interval of the

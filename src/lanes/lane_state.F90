@@ -1,6 +1,8 @@
 !> The motions of several mechanisms of one structure, each in a lane: what `block_engine` has of one, as arrays whose
 !> first index is the lane. A lane takes over from an engine that has followed three motions at equal steps, and gives
 !> back to it the motion of one of its last instants.
+#define NUMBER real(wp), dimension(width)
+#define IS(value)
 module lane_state
    use kinds, only: wp
    use mechanism, only: own_predictor
@@ -9,11 +11,14 @@ module lane_state
    use drives, only: law_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
-   use lane_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use lane_elimination, only: max_order
    implicit none
    private
    public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, unload_lane, depth
+   public :: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
+
+   ! What equations are made of, one number a lane.
+#include "number_types.inc"
 
    !> Motions that a lane remembers: the last three are needed to predict, and three before to go back to.
    integer, parameter :: depth = 6
