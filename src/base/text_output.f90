@@ -9,7 +9,7 @@ module text_output
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: held_length, write_held, release_output, has_failed, turn_lost
+   public :: held_length, write_held, release_output, has_failed, turn_lost, replaced
 
    integer, parameter :: block_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
@@ -225,4 +225,21 @@ contains
          done = done + written
       end do
    end subroutine write_text
+
+   !> `text` with `words`(k), without blanks at its end, in the place of each letter number k of `letters`.
+   pure function replaced(text, letters, words) result(other)
+      character(*), intent(in) :: text, letters, words(:)
+      character(:), allocatable :: other
+      integer :: i, k
+
+      other = ''
+      do i = 1, len(text)
+         k = index(letters, text(i:i))
+         if (k > 0) then
+            other = other//trim(words(k))
+         else
+            other = other//text(i:i)
+         end if
+      end do
+   end function replaced
 end module text_output

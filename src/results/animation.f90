@@ -15,7 +15,7 @@ module animation
       line_height
    use picture, only: closes
    use svg, only: page_t, width, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
-      attribute, translation, fitted
+      attribute, fitted
    use listing, only: words_of_mark
    implicit none
    private
@@ -255,7 +255,8 @@ contains
          real(wp), intent(in) :: place(:, :), elsewhere
          logical, intent(in) :: is_there(:)
 
-         call put_group(c%o, attributes//translation(place(:, 1)), title)
+         call put_group(c%o, attributes//'transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', &
+            title)
          call put_moving(shift, place, smooth)
          if (.not. all(is_there)) call put_moving('animate attributeName="opacity"', &
             reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)

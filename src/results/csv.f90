@@ -27,7 +27,7 @@ module csv
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use link_bounds, only: row_bound
    use set_motion, only: set_motion_t, find_row_in_set, known_numbers, error_in_set, spread_t, spread_in_set
-   use text_output, only: output_t, put, add
+   use text_output, only: output_t, put, add, replaced
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
@@ -267,18 +267,12 @@ contains
    subroutine add_name(o, name)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
-      integer :: i
 
       if (scan(name, ',"') == 0) then
          call add(o, name)
-         return
+      else
+         call add(o, '"'//replaced(name, '"', ['""'])//'"')
       end if
-      call add(o, '"')
-      do i = 1, len(name)
-         if (name(i:i) == '"') call add(o, '"')
-         call add(o, name(i:i))
-      end do
-      call add(o, '"')
    end subroutine add_name
 
    !> The table of the set `s`; `chosen`: of these rows alone, whether they are printed or not, without tolerances.
@@ -404,12 +398,8 @@ contains
    pure function dotted(name) result(text)
       character(*), intent(in) :: name
       character(len(name)) :: text
-      integer :: i
 
-      text = name
-      do i = 1, len_trim(name)
-         if (text(i:i) == ' ') text(i:i) = '.'
-      end do
+      text = replaced(trim(name), ' ', ['.'])
    end function dotted
 
    !> The heading: the names of all columns.

@@ -82,7 +82,7 @@ module drawing
       integer, allocatable :: poles(:)       !< the requests of poles
       type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
-      integer :: stride = 1, stride_at = 1   !< every so many instants of TIME, or of AT, and the last are frames
+      integer :: stride = 1                  !< every so many instants of TIME, and the last, are frames
       type(snapshot_t), allocatable :: frame(:)
       integer :: frames = 0, films = 0       !< recorded so far; those of TIME, which come first
       integer, allocatable :: own(:)         !< the numbers of frames that the picture may show in full
@@ -167,7 +167,6 @@ contains
 
       most = max(2, min(max_frames, max_held/size(m%links)))
       d%stride = max(1, 1 + (m%steps - 1)/(most - 1))
-      d%stride_at = max(1, 1 + (instant_count(m) - m%steps - 3)/(picture_candidates - 1))
       allocate (d%frame(count([(is_frame(d, i), i=0, instant_count(m) - 1)])))
    end function new_drawing
 
@@ -177,8 +176,7 @@ contains
       integer, intent(in) :: k
 
       is_frame = mod(k, d%stride) == 0 .or. k == d%m%steps
-      if (k > d%m%steps) is_frame = d%every == 0 .and. (mod(k - d%m%steps - 1, d%stride_at) == 0 &
-         .or. k == instant_count(d%m) - 1)
+      if (k > d%m%steps) is_frame = d%every == 0
    end function is_frame
 
    !> The ground links where the deck has them; the others are not known.

@@ -7,7 +7,7 @@ module plot_script
    use scales, only: characteristic_length, characteristic_rate
    use names, only: drive_name
    use csv, only: table_t
-   use text_output, only: output_t, put, add
+   use text_output, only: output_t, put, add, replaced
    use numerals, only: whole, full
    use phrases
    implicit none
@@ -154,21 +154,7 @@ contains
    pure function quoted(text) result(word)
       character(*), intent(in) :: text
       character(:), allocatable :: word
-      integer :: i
 
-      word = '"'
-      do i = 1, len(text)
-         select case (text(i:i))
-         case ('"')
-            word = word//'\042'
-         case ('\')
-            word = word//'\134'
-         case ('`')
-            word = word//'\140'
-         case default
-            word = word//text(i:i)
-         end select
-      end do
-      word = word//'"'
+      word = '"'//replaced(text, '"\`', ['\042', '\134', '\140'])//'"'
    end function quoted
 end module plot_script

@@ -3,12 +3,12 @@
 module svg
    use kinds, only: wp
    use planar, only: quarter_turn
-   use text_output, only: output_t, put, add
+   use text_output, only: output_t, put, add, replaced
    use numerals, only: fixed, whole, max_decimals
    implicit none
    private
    public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, &
-      put_words, put_columns, pixels, escaped, attribute, translation, fitted
+      put_words, put_columns, pixels, attribute, fitted
 
    !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
    !> first line.
@@ -258,36 +258,15 @@ contains
       text = name//'="'//escaped(value)//'"'
    end function attribute
 
-   !> The attribute that moves a group by `shift` (2).
-   pure function translation(shift) result(text)
-      real(wp), intent(in) :: shift(2)
-      character(:), allocatable :: text
-
-      text = 'transform="translate('//place(shift)//')"'
-   end function translation
-
    !> `text` as XML takes it; what is not printable ASCII becomes a question mark.
    pure function escaped(text) result(xml)
       character(*), intent(in) :: text
       character(:), allocatable :: xml
       integer :: i
 
-      xml = ''
-      do i = 1, len(text)
-         select case (text(i:i))
-         case ('&')
-            xml = xml//'&amp;'
-         case ('<')
-            xml = xml//'&lt;'
-         case ('>')
-            xml = xml//'&gt;'
-         case ('"')
-            xml = xml//'&quot;'
-         case (' ':'!', '#':'%', '''':';', '=', '?':'~')
-            xml = xml//text(i:i)
-         case default
-            xml = xml//'?'
-         end select
+      xml = replaced(text, '&<>"', [character(6) :: '&amp;', '&lt;', '&gt;', '&quot;'])
+      do i = 1, len(xml)
+         if (xml(i:i) < ' ' .or. xml(i:i) > '~') xml(i:i) = '?'
       end do
    end function escaped
 end module svg

@@ -13,10 +13,11 @@ module study
    use points, only: row_t, has_number, is_due
    use scales, only: characteristic_length, characteristic_rate
    use known_digits, only: nothing_known
-   use set_motion, only: is_flagged, find_row_in_set, error_in_set
+   use set_motion, only: set_motion_t, new_set_motion, is_flagged, find_row_in_set, error_in_set
+   use csv, only: table_t, new_table
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
-      has_failed
+      has_failed, replaced
    use numerals, only: whole
    use processes, only: memfd_create
    use system_calls, only: close_descriptor
@@ -41,9 +42,11 @@ module study
 
    !> What the rows of a set are compared with.
    type :: truth_t
-      logical :: is_reference = .false.          !< kinmat-quad's rows; otherwise the estimates of errors
+      logical :: is_reference = .false.          !< kinmat-quad's table; otherwise the estimates of errors
       integer :: compared = 0                    !< instants
-      real(qp), allocatable :: value(:, :, :)    !< (3, 0:2, rows of all instants)
+      logical, allocatable :: due(:)             !< (1 + instants) rows are printed there
+      type(table_t) :: table
+      real(qp), allocatable :: value(:, :)       !< (columns, 0:compared - 1) angles as the deck has them
    end type truth_t
 
    !> One measurement takes at least so many seconds: many ticks of the clock; and at most, as far as few steps let it.
@@ -51,19 +54,15 @@ module study
    integer, parameter :: min_steps = 4
    !> A trial ends early if it misses instants and has taken so many seconds.
    real(dp), parameter :: long = 2.0_dp
-   !> A study solves this number of links at instants in each trial, and compares this number of rows.
-   integer, parameter :: max_solved = 1000000, max_rows = 100000
+   !> A study solves this number of links at instants in each trial, and compares this number of numbers.
+   integer, parameter :: max_solved = 1000000, max_compared = 1000000
    !> Methods that solve all equations at once are tried up to this number of equations.
    integer, parameter :: max_equations = 130
    real(dp), parameter :: tolerances(*) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, 1.0e-12_dp, 0.0_dp]
    real(dp), parameter :: micro = 1.0e6_dp
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
-   !> Stands for a number that the reference does not have.
-   real(qp), parameter :: no_number = real(huge(1.0_dp), qp)
-   !> A row has nine numbers of at most 44 characters, and less than a hundred others.
-   integer, parameter :: row_length = 1024
-   !> Seconds that the reference may take. What it has written until then is compared.
+   !> Seconds that the reference of a set may take. What it has written until then is compared.
    integer, parameter :: patience = 60
    !> Cards that do not change a row of a link, point or pair, or that a study replaces.
    character(*), parameter :: left_out = 'METHOD|VARY|TOLER|EXTREMES|RANGE|CIRCUITS|ASSEMBLY|PROVE'
@@ -83,7 +82,7 @@ contains
       type(failure_t), allocatable :: failure
       type(output_t) :: o
       type(progress_t) :: progress
-      integer :: reference, i       ! the unit of rows in real128; 0: there are none
+      integer :: i
 
       status = status_solved
       message = ''
@@ -96,8 +95,6 @@ contains
          call abandon_output(o)
       else
          if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
-         reference = 0
-         if (.not. only_times) call open_reference(path, reference)
          do i = 1, size(sets)
             if (only_times) then
                call put_times(sets(i))
@@ -108,7 +105,6 @@ contains
             call flush_output(o)
             if (has_failed(o)) exit
          end do
-         if (reference /= 0) close (reference)
          call close_output(o, failure)
       end if
       if (.not. allocated(failure)) return
@@ -168,7 +164,7 @@ contains
             i=1, merge(size(methods), 1, .not. redundant .and. equations <= max_equations)), &
             (trial_t(predictor=k), k=0, 3)]
          allocate (tried(size(trials)))
-         call read_truth(m, last, reference, truth)
+         call read_truth(m, last, path, size(sets), truth)
          do i = 1, size(trials)
             call show_progress(progress, 'TRIAL', i, size(trials))
             ! The mechanism as the trial solves it, with no question of the deck but its rows.
@@ -250,14 +246,13 @@ contains
       type(truth_t), intent(in) :: truth
       type(set_analysis_t) :: a
       real(dp) :: begun, largest(2, 0:2), difference(2, 0:2)
-      integer :: k, at_first, row
+      integer :: k, at_first
 
       ! Of what is zero but for rounding, as the acceleration of a link that turns evenly, the unit is characteristic.
       associate (length => characteristic_length(m))
          largest = reshape([(real([length, 1.0_wp]*characteristic_rate(m, length)**k, dp), k=0, 2)], [2, 3])
       end associate
       difference = 0.0_dp
-      row = 0
       t%seconds = 0.0_dp
       call make_set_analysis(m, a)
       do k = 0, last
@@ -279,72 +274,67 @@ contains
       !> Notes the largest values of the rows of this instant and their largest differences from the truth: of lengths
       !> and of angles.
       subroutine compare()
-         type(row_t) :: r
-         real(dp) :: off(3, 0:2)
-         integer :: i, c, d, kind
+         type(row_t) :: rows(size(a%now%rows))
+         real(wp) :: error(3, 0:2, size(a%now%rows))
+         real(qp) :: off
+         integer :: i, kind
 
+         if (.not. truth%due(1 + k)) return
          if (.not. truth%is_reference) call sample_set(a, .true., .false.)
-         do i = 1, size(a%now%rows)
-            if (.not. is_compared(a, i, k)) cycle
-            row = row + 1
-            call find_row_in_set(a%now, i, r)
-            if (truth%is_reference) off = real(abs(real(r%value, qp) - truth%value(:, :, row)), dp)
-            if (.not. truth%is_reference) off = real(error_in_set(a%now, i), dp)
-            do d = 0, 2
-               do c = 1, 3
-                  if (.not. has_number(r, c, d)) cycle
-                  if (truth%is_reference .and. off(c, d) >= 0.5_dp*no_number) cycle
-                  kind = merge(2, 1, c == 3 .or. r%angular)
-                  difference(kind, d) = max(difference(kind, d), off(c, d))
-                  largest(kind, d) = max(largest(kind, d), real(abs(r%value(c, d)), dp))
-               end do
-            end do
+         do i = 1, size(rows)
+            call find_row_in_set(a%now, i, rows(i))
+            if (.not. truth%is_reference .and. rows(i)%kind <= request_pair) error(:, :, i) = error_in_set(a%now, i)
+         end do
+         do i = 1, size(truth%table%columns)
+            associate (c => truth%table%columns(i), row => rows(truth%table%columns(i)%request))
+               if (row%kind > request_pair .or. .not. has_number(row, c%coordinate, c%order)) cycle
+               if (truth%is_reference) then
+                  off = abs(row%value(c%coordinate, c%order) &
+                     - truth%value(i, k)/merge(radian, 1.0_qp, c%angular .and. m%degrees))
+                  ! The reference has no number there.
+                  if (.not. off <= huge(1.0_dp)) cycle
+               else
+                  off = error(c%coordinate, c%order, c%request)
+               end if
+               kind = merge(2, 1, c%angular)
+               difference(kind, c%order) = max(difference(kind, c%order), real(off, dp))
+               largest(kind, c%order) = max(largest(kind, c%order), real(abs(row%value(c%coordinate, c%order)), dp))
+            end associate
          end do
       end subroutine compare
    end subroutine solve
 
-   !> Whether row number `i` of the set in `a` is compared at instant number `k`: links, points and pairs are.
-   logical function is_compared(a, i, k)
-      type(set_analysis_t), intent(in) :: a
-      integer, intent(in) :: i, k
-      type(request_t) :: request
-
-      request = request_of(a%now, i)
-      is_compared = request%kind <= request_pair .and. is_due(a%now, request, k)
-   end function is_compared
-
-   !> Reads what the rows of `m` at instants 0 to `last` are compared with: the rows of the unit `reference` as far as
-   !> they go. Without a reference, or if it has no row of this set, the program's own estimates of errors stand for
-   !> them.
-   subroutine read_truth(m, last, reference, truth)
+   !> Reads what the rows of links, points and pairs of `m`, one of so many `sets` of the deck in the file `path`, are
+   !> compared with at instants 0 to `last`: the table of kinmat-quad as far as it goes. Without one the program's own
+   !> estimates of errors stand for it.
+   subroutine read_truth(m, last, path, sets, truth)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last, reference
+      integer, intent(in) :: last, sets
+      character(*), intent(in) :: path
       type(truth_t), intent(out) :: truth
-      type(set_analysis_t) :: a
-      type(row_t) :: r
-      logical :: is_there
-      integer :: i, k, count
+      type(set_motion_t) :: s
+      type(request_t), allocatable :: requests(:)
+      character(1) :: heading
+      real(qp) :: before(1 + size(m%drives))     ! the time, and values of drives
+      integer :: i, k, unit, status
 
-      call make_set_analysis(m, a)
-      if (reference /= 0) allocate (truth%value(3, 0:2, max_rows))
-      count = 0
-      instants: do k = 0, merge(last, -1, reference /= 0)
-         if (count + size(a%now%rows) > max_rows) exit
-         do i = 1, size(a%now%rows)
-            if (.not. is_compared(a, i, k)) cycle
-            count = count + 1
-            call find_row_in_set(a%now, i, r)
-            call read_reference(reference, [m%set_number, k], r%name, truth%value(:, :, count), is_there)
-            if (.not. is_there) exit instants
-            if (.not. m%degrees) cycle
-            associate (value => truth%value(merge(1, 3, r%angular):, :, count))
-               where (value < no_number) value = value/radian
-            end associate
-         end do
-         truth%compared = k + 1
-      end do instants
-      truth%is_reference = truth%compared > 0
-      if (.not. truth%is_reference) truth%compared = min(last + 1, max(1, max_rows/max(1, size(a%now%rows))))
+      call new_set_motion(m, s)
+      requests = [(request_of(s, i), i=1, size(s%rows))]
+      truth%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
+      truth%table = new_table(s, pack([(i, i=1, size(s%rows))], requests%every > 0))
+      truth%compared = min(last + 1, max(1, max_compared/max(1, size(truth%table%columns))))
+      call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
+      if (unit == 0) return
+      allocate (truth%value(size(truth%table%columns), 0:truth%compared - 1))
+      read (unit, '(a)', iostat=status) heading
+      do k = 0, truth%compared - 1
+         if (.not. truth%due(1 + k)) cycle
+         read (unit, *, iostat=status) before, truth%value(:, k)
+         if (status /= 0) exit
+         truth%is_reference = .true.
+      end do
+      if (truth%is_reference) truth%compared = k
+      close (unit)
    end subroutine read_truth
 
    !> Returns microseconds of a step of `m`, position, velocity and acceleration at instants 1 to `last`, without the
@@ -392,10 +382,10 @@ contains
       median = 0.5_dp*(minval(x, mask=twice >= size(x)) + minval(x, mask=twice > size(x)))
    end function median
 
-   !> Lets kinmat-quad solve the deck in the file `path`: its CSV is open at `unit`. That is 0 if it stands neither
-   !> beside this program nor in PATH, or if it computes in another kind of reals.
-   subroutine open_reference(path, unit)
-      character(*), intent(in) :: path
+   !> Lets kinmat-quad solve set K of N, `set` K/N, of the deck in the file `path`: its table is open at `unit`. That is
+   !> 0 if it stands neither beside this program nor in PATH, or if it computes in another kind of reals.
+   subroutine open_reference(path, set, unit)
+      character(*), intent(in) :: path, set
       integer, intent(out) :: unit
       character(:), allocatable :: rows, this
       integer(c_int) :: descriptor
@@ -414,54 +404,17 @@ contains
       call execute_command_line('exec 2>/dev/null; p='//shell_word(this)//'; [ -x "$p" ] || p=kinmat-quad; ' &
          //'case $("$p" --version) in *REAL128) ;; *) exit 1;; esac; ' &
          //'awk ''!/^[*]/ { kept = toupper($0) !~ /^('//left_out//')/ } kept'' '//shell_word(path) &
-         //' | timeout '//whole(patience)//' "$p" --no-listing --csv '//rows, exitstat=status)
+         //' | timeout '//whole(patience)//' "$p" --no-listing --table '//rows//' --sets '//set, exitstat=status)
       if (status /= 1) open (newunit=unit, file=rows, action='read', iostat=status)
       if (status /= 0) unit = 0
       closed = close_descriptor(descriptor)
    end subroutine open_reference
 
-   !> Reads from `unit` the next row of a link, point or pair from set and instant number `place` (2) on. `value`
-   !> (3, 0:2): its numbers, angles as the deck has them; `no_number` for one that is missing. `is_there`: there is one,
-   !> it is of that set and instant, and has this `name`.
-   subroutine read_reference(unit, place, name, value, is_there)
-      integer, intent(in) :: unit, place(2)
-      character(*), intent(in) :: name
-      real(qp), intent(out) :: value(3, 0:2)
-      logical, intent(out) :: is_there
-      character(row_length) :: row
-      character(len(name)) :: words(3)        ! the beginning of the time, the kind of row, and its name
-      integer :: here(2), status, comma, i
-
-      value = no_number
-      is_there = .false.
-      do
-         read (unit, '(a)', iostat=status) row
-         if (status /= 0) return
-         read (row, *, iostat=status) here, words
-         if (status /= 0 .or. here(1) < place(1) .or. (here(1) == place(1) .and. here(2) < place(2))) cycle
-         if (any(words(2) == ['LINK ', 'POINT', 'PAIR '])) exit
-      end do
-      is_there = all(here == place) .and. words(3) == name
-      ! The nine numbers stand before the mark, which is the last cell. An empty cell leaves its number as it is.
-      comma = len_trim(row) + 1
-      do i = 1, 10
-         comma = index(row(:comma - 1), ',', back=.true.)
-      end do
-      read (row(comma + 1:), *, iostat=status) value
-      if (status /= 0) value = no_number
-   end subroutine read_reference
-
    !> `text` as one word of a shell's command.
    pure function shell_word(text) result(word)
       character(*), intent(in) :: text
       character(:), allocatable :: word
-      integer :: i
 
-      word = ''''
-      do i = 1, len(text)
-         word = word//text(i:i)
-         if (text(i:i) == '''') word = word//'\'''''
-      end do
-      word = word//''''
+      word = ''''//replaced(text, '''', ['''\'''''])//''''
    end function shell_word
 end module study
