@@ -16,7 +16,7 @@ parts() {
    speed against error|70|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
-   the command|600|tests/system/command.sh
+   the command|480|tests/system/command.sh
    what is installed|18|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|270|tests/system/output.sh
