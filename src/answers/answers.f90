@@ -9,12 +9,12 @@ module answers
    use extreme_search, only: note_instant
    use dwells, only: dwell_t, find_dwells
    use extremes_table, only: put_extremes
-   use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
+   use tolerance_shares, only: shares_t, note_tolerances, put_shares
    use ranges, only: range_t, put_ranges
    use assembly_table, only: put_assemblies
    use circuits, only: circuits_t
    use circuits_table, only: find_ranges, find_all_circuits, put_circuits
-   use proof_table, only: proof_table_t, new_proof_table, note_proof, put_proofs
+   use proof_table, only: proof_table_t, note_proof, put_proofs
    implicit none
    private
    public :: answers_t, new_answers, take_instant, put_answers
@@ -44,13 +44,11 @@ contains
 
       a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=lbound(s%now%parts, 1), s%now%count)])
       a%ranges_asked = s%now%ranges
+      a%proofs_asked = s%now%proves
       a%shares_asked = lists .and. s%now%largest_tolerance > 0.0_wp
-      if (a%shares_asked) call new_shares(s%now, a%shares)
       if (s%now%assemblies) then
          if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])
       end if
-      a%proofs_asked = s%now%proves
-      if (a%proofs_asked) call new_proof_table(s%now, a%proofs)
       allocate (a%ranges(0))
       if (a%extremes_asked) call new_extremes(s%now, a%extremes)
    end subroutine new_answers

@@ -21,8 +21,7 @@ module circuits
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
    implicit none
    private
-   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, name_limits, number_assemblies, turns_of, &
-      no_sign
+   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, turns_of, no_sign
 
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.

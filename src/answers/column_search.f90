@@ -101,7 +101,7 @@ contains
    end subroutine search_waiting
 
    !> Searches between the first and the last of three `nodes` of mechanism `c`, the ends and the middle of a part, if
-   !> its accelerations are `simple`, or `anyway`.
+   !> its accelerations and their derivatives at the ends are those of simple curves, or `anyway`.
    subroutine search_three(x, s, c, nodes, anyway, simple)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
@@ -109,10 +109,30 @@ contains
       type(node_t), intent(in) :: nodes(3)
       logical, intent(in) :: anyway
       logical, intent(out) :: simple
-      real(wp) :: jerk(3, size(x%asked), 2)
+      real(wp) :: jerk(3, size(x%asked), 2), f(3, 0:2), open, h
+      integer :: i, j, k
 
-      jerk = jerks_of(x, c, nodes)
-      simple = are_simple(x, c, nodes, jerk)
+      h = nodes(3)%t - nodes(1)%t
+      simple = .true.
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            do j = 1, x%columns(q)
+               do k = 1, 3
+                  f(k, :) = nodes(k)%value(j, :, q)*[1.0_wp, h, h**2]
+               end do
+               open = max(noise_of(x, nodes, q, j, 0), noise_part*maxval(abs(f(:, 0))))
+               jerk(j, q, 1) = jerk_at_first(f, open)/h**3
+               ! From the last to the first the rates have the other sign, and so has their second derivative.
+               f = f(3:1:-1, :)
+               f(:, 1) = -f(:, 1)
+               jerk(j, q, 2) = -jerk_at_first(f, open)/h**3
+               ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
+               open = overlooked*x%size_of(j, 2, q) + errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(h) &
+                  + noise_of(x, nodes, q, j, 2))
+               simple = simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], jerk(j, q, :)*h, open)
+            end do
+         end associate
+      end do
       if (.not. (simple .or. anyway)) return
       call take_node(x, c, nodes(2), .false.)
       call search_columns(x, s, c, nodes, jerk)
@@ -168,7 +188,7 @@ contains
             return
          end if
          nodes(1) = a
-         call find_node(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
+         call find_node(x%asked, track%rows, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
          nodes(3) = b
          if (.not. is_known(nodes(2), track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
@@ -188,8 +208,8 @@ contains
       end associate
    end subroutine search_part
 
-   !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`; `jerk`: see
-   !> `jerks_of`.
+   !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`, where
+   !> their accelerations have the derivatives `jerk` (3, asked, 2).
    subroutine search_columns(x, s, c, nodes, jerk)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
@@ -324,33 +344,6 @@ contains
       path = [path(:n), point, path(n + 1:)]
    end subroutine insert
 
-   !> The derivatives (3, asked, 2) of the accelerations of mechanism `c` at the first and the last of three `nodes`.
-   pure function jerks_of(x, c, nodes) result(jerk)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: nodes(3)
-      real(wp) :: jerk(3, size(x%asked), 2), f(3, 0:2), open, h
-      integer :: i, j, k
-
-      jerk = 0.0_wp
-      h = nodes(3)%t - nodes(1)%t
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            do j = 1, x%columns(q)
-               do k = 1, 3
-                  f(k, :) = nodes(k)%value(j, :, q)*[1.0_wp, h, h**2]
-               end do
-               open = max(noise_of(x, nodes, q, j, 0), noise_part*maxval(abs(f(:, 0))))
-               jerk(j, q, 1) = jerk_at_first(f, open)/h**3
-               ! From the last to the first the rates have the other sign, and so has their second derivative.
-               f = f(3:1:-1, :)
-               f(:, 1) = -f(:, 1)
-               jerk(j, q, 2) = -jerk_at_first(f, open)/h**3
-            end do
-         end associate
-      end do
-   end function jerks_of
-
    !> The third derivative at the first of three places of an interval of the length 1, its ends and its middle, by
    !> values, rates and accelerations `f` (3, 0:2) at them: from all, which has an error of 2E-6 of the ninth
    !> derivative, but where rounding explains the difference from rates and accelerations alone, with an error of 7E-4
@@ -363,30 +356,6 @@ contains
       jerk = sum(by_rates*f(:, 1:))
       if (abs(by_values - jerk) > sum(abs(by_all(:, 0)))*open) jerk = by_values
    end function jerk_at_first
-
-   !> The accelerations of mechanism `c` at the `nodes`, two ends and the middle, and their derivatives `jerk` at the
-   !> ends are those of simple curves.
-   pure logical function are_simple(x, c, nodes, jerk)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: nodes(3)
-      real(wp), intent(in) :: jerk(:, :, :)
-      real(wp) :: open, length
-      integer :: i, j, k
-
-      length = nodes(3)%t - nodes(1)%t
-      are_simple = .true.
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            do j = 1, x%columns(q)
-               ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
-               open = overlooked*x%size_of(j, 2, q) + errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(length) &
-                  + noise_of(x, nodes, q, j, 2))
-               are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], jerk(j, q, :)*length, open)
-            end do
-         end associate
-      end do
-   end function are_simple
 
    !> What rounding may leave open, at most, of derivative number `k` of column `j` of row `q` at the `nodes`.
    pure real(wp) function noise_of(x, nodes, q, j, k) result(noise)

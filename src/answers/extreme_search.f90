@@ -47,7 +47,7 @@ contains
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c))
             if (size(track%rows) == 0) cycle
-            call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
+            call find_node(x%asked, track%rows, s, c, s%now%motions(c)%t, .false., now)
             now%begins_pair = mod(k, 2) == 0
             known = is_known(now, track%rows)
             is_lost = any(now%known(track%rows) < 0)
@@ -179,7 +179,7 @@ contains
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
             do i = 1, places
-               call find_node(x%asked, s, c, times(i), .true., near(i))
+               call find_node(x%asked, x%tracks(c)%rows, s, c, times(i), .true., near(i))
                if (.not. is_known(near(i), x%tracks(c)%rows)) exit
             end do
             if (i <= places) cycle
@@ -221,7 +221,7 @@ contains
          logical, intent(in) :: always
          type(node_t) :: node
 
-         call find_node(x%asked, s, c, t, always, node)
+         call find_node(x%asked, x%tracks(c)%rows, s, c, t, always, node)
          if (is_known(node, x%tracks(c)%rows)) then
             call add_node(x, s, c, node)
          else

@@ -53,33 +53,27 @@ module nodes
 
 contains
 
-   !> Finds the rows of those of the requests `asked` that are of mechanism `c`, at the last instant of `s` or a time
-   !> `t` between the instants. `always`: their errors too where no digit of a table is in doubt.
-   subroutine find_node(asked, s, c, t, always, node)
-      integer, intent(in) :: asked(:), c
+   !> Finds the rows of the requests asked(these), all of mechanism `c`, at the last instant of `s` or a time `t`
+   !> between the instants. `always`: their errors too where no digit of a table is in doubt.
+   subroutine find_node(asked, these, s, c, t, always, node)
+      integer, intent(in) :: asked(:), these(:), c
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t
       logical, intent(in) :: always
       type(node_t), intent(out) :: node
-      type(row_t) :: rows(size(asked))
-      real(wp) :: error(3, 0:2, size(asked))
-      integer :: these(size(asked)), n, i
+      type(row_t) :: rows(size(these))
+      real(wp) :: error(3, 0:2, size(these))
+      integer :: i
       logical :: is_found
 
       node%t = t
       allocate (node%known(size(asked)), source=-1)
       allocate (node%value(3, 0:2, size(asked)), node%error(3, 0:2, size(asked)), source=0.0_wp)
-      n = 0
-      do i = 1, size(asked)
-         if (s%now%rows(asked(i))%part /= c) cycle
-         n = n + 1
-         these(n) = i
-      end do
-      call rows_at(s, c, asked(these(:n)), t, rows(:n), is_found, always, error(:, :, :n), node%growth)
-      node%known(these(:n)) = rows(:n)%known
-      do i = 1, n
+      call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
+      node%known(these) = rows%known
+      node%error(:, :, these) = error
+      do i = 1, size(these)
          node%value(:, :, these(i)) = rows(i)%value
-         node%error(:, :, these(i)) = error(:, :, i)
       end do
    end subroutine find_node
 

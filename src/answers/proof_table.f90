@@ -16,7 +16,7 @@ module proof_table
    use phrases
    implicit none
    private
-   public :: proof_table_t, new_proof_table, note_proof, put_proofs
+   public :: proof_table_t, note_proof, put_proofs
 
    !> Of a printed instant, and the steps to it from the last one.
    type :: line_t
@@ -49,14 +49,6 @@ module proof_table
 
 contains
 
-   !> Before the first instant of `m`.
-   subroutine new_proof_table(m, p)
-      class(settings_t), intent(in) :: m
-      type(proof_table_t), intent(out) :: p
-
-      allocate (p%lines(max(2, m%steps + size(m%at) + 2)), p%reasons(0))
-   end subroutine new_proof_table
-
    !> Takes what is proved of instant number `k`, to which `s` has advanced; `due`: it is printed.
    subroutine note_proof(p, s, k, due)
       type(proof_table_t), intent(inout) :: p
@@ -66,6 +58,7 @@ contains
       type(reason_t) :: reason
       integer :: c
 
+      if (.not. allocated(p%lines)) allocate (p%lines(max(2, s%now%steps + size(s%now%at) + 2)), p%reasons(0))
       p%instants = p%instants + 1
       associate (line => p%lines(p%count + 1))
          do c = 1, s%now%count

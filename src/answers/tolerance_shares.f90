@@ -16,7 +16,7 @@ module tolerance_shares
    use phrases
    implicit none
    private
-   public :: shares_t, new_shares, note_tolerances, put_shares
+   public :: shares_t, note_tolerances, put_shares
 
    !> A quantity at the instant at which its root of squares is greatest so far.
    type :: share_t
@@ -41,16 +41,6 @@ module tolerance_shares
 
 contains
 
-   !> Before the first instant of the set `s`.
-   subroutine new_shares(s, a)
-      class(set_t), intent(in) :: s
-      type(shares_t), intent(out) :: a
-      integer :: c
-
-      allocate (a%list(3, 0:2, size(s%rows)))
-      allocate (a%jams(maxval([(size(s%parts(c)%tolerances), c=1, s%count)]), s%count), source=.false.)
-   end subroutine new_shares
-
    !> Takes the sensitivities of instant number `k`, that of the motions `s`.
    subroutine note_tolerances(a, s, k)
       type(shares_t), intent(inout) :: a
@@ -59,8 +49,12 @@ contains
       type(request_t) :: request
       type(spread_t) :: x
       real(wp) :: root(3, 0:2), worst(3, 0:2)
-      integer :: i, n, column, order
+      integer :: i, n, column, order, c
 
+      if (.not. allocated(a%list)) then
+         allocate (a%list(3, 0:2, size(s%rows)))
+         allocate (a%jams(maxval([(size(s%parts(c)%tolerances), c=1, s%count)]), s%count), source=.false.)
+      end if
       do i = 1, size(s%rows)
          request = request_of(s, i)
          associate (c => s%rows(i)%part)

@@ -6,7 +6,7 @@ module zero_search
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: sample_t, column_t, look, find_zero, find_turn, differ_in_sign, slope_in, noise_part
+   public :: sample_t, column_t, look, find_zero, find_turn, differ_in_sign, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
@@ -142,7 +142,7 @@ contains
       real(wp), intent(in) :: jerk(2)
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
-      real(wp) :: f(0:4), d(2:4), t, before, step, first, length, bend, steep, u, noise
+      real(wp) :: f(0:4), d(4), t, before, step, first, length, bend, steep, u, slope, noise
       integer :: i, k
 
       associate (a => points(1), b => points(3))
@@ -160,13 +160,16 @@ contains
                if (.not. at%exists) return
                f(k) = at%f(2)
             end do
-            d = [f(2) - 2.0_wp*f(1) + f(0), f(3) - 3.0_wp*(f(2) - f(1)) - f(0), f(4) - 4.0_wp*(f(3) + f(1)) &
-               + 6.0_wp*f(2) + f(0)]
+            ! Newton's formula of forward differences.
+            d = [f(1) - f(0), f(2) - 2.0_wp*f(1) + f(0), f(3) - 3.0_wp*(f(2) - f(1)) - f(0), &
+               f(4) - 4.0_wp*(f(3) + f(1)) + 6.0_wp*f(2) + f(0)]
             noise = max(c%noise(2), noise_part*maxval(abs(f)))
             before = t
             u = (t - first)/step
             do k = 1, newton_steps
-               u = u - slope_in(f, u)/(d(2) + (u - 1.0_wp)*d(3) + (0.5_wp*u**2 - 1.5_wp*u + 11.0_wp/12.0_wp)*d(4))
+               slope = d(1) + (u - 0.5_wp)*d(2) + (0.5_wp*u**2 - u + 1.0_wp/3.0_wp)*d(3) &
+                  + (u**3/6.0_wp - 0.75_wp*u**2 + 11.0_wp*u/12.0_wp - 0.25_wp)*d(4)
+               u = u - slope/(d(2) + (u - 1.0_wp)*d(3) + (0.5_wp*u**2 - 1.5_wp*u + 11.0_wp/12.0_wp)*d(4))
                u = min(max(u, (a%t - first)/step), (b%t - first)/step)
             end do
             t = first + u*step
@@ -204,16 +207,6 @@ contains
          if (estimated .or. zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
       end do
    end subroutine settle
-
-   !> The derivative at `u` of the polynomial of degree four that has the values `f` at 0, 1, 2, 3 and 4: Newton's
-   !> formula of forward differences.
-   pure real(wp) function slope_in(f, u) result(slope)
-      real(wp), intent(in) :: f(0:4), u
-
-      slope = f(1) - f(0) + (u - 0.5_wp)*(f(2) - 2.0_wp*f(1) + f(0)) &
-         + (0.5_wp*u**2 - u + 1.0_wp/3.0_wp)*(f(3) - 3.0_wp*(f(2) - f(1)) - f(0)) &
-         + (u**3/6.0_wp - 0.75_wp*u**2 + 11.0_wp*u/12.0_wp - 0.25_wp)*(f(4) - 4.0_wp*(f(3) + f(1)) + 6.0_wp*f(2) + f(0))
-   end function slope_in
 
    !> One is positive, the other negative.
    pure logical function differ_in_sign(x, y)
