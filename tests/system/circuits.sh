@@ -23,26 +23,6 @@ $(head CRANK)
  1       1        -   1             $turns
  2       2        +   2             $turns"
 
-# Its rocker: between the two positions with crank and coupler in line, and their mirror images.
-four_bar 1.0 3.5 3.0 4.0 ROCKER 85.0 35.0 120.0 120.0 > "$w/deck"
-least=$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')
-greatest=$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')
-one="$(limit "$least") .. $(limit "$greatest")"
-other="$(limit "$(awk -v x="$greatest" 'BEGIN { printf "%.12f", 360 - x }')") .. $(
-   limit "$(awk -v x="$least" 'BEGIN { printf "%.12f", 360 - x }')")"
-lined='LINKS CRANK, COUPLER AT THE LIMIT, COLLINEAR'
-found 'a rocker' " CIRCUITS AND BRANCHES, DRIVE ANGLE ROCKER
-$(head ROCKER)
- 1       1        +   1             $one
- 1       2        -   2             $one
- 2       3        -                 $other
- 2       4        +                 $other
- DEAD POINTS
-   BRANCHES 1 AND 2 MEET AT $(limit "$greatest") DEG, $lined
-   BRANCHES 1 AND 2 MEET AT $(limit "$least") DEG, $lined
-   BRANCHES 3 AND 4 MEET AT ${other##* } DEG, $lined
-   BRANCHES 3 AND 4 MEET AT ${other%% *} DEG, $lined"
-
 # 1.5 + 4 > 2 + 3: no link turns fully, and there is one circuit; in Polish.
 four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 | sed "s/^CIRCUITS/&\n$(card LANG PL)/" > "$w/deck"
 found 'a triple rocker, in Polish' " OBWODY I GALEZIE, NAPED ANGLE CRANK
@@ -201,40 +181,7 @@ equal 'a ram to infinity: circuits' '3 0' "$(limits | awk '/ (MIN|TURNS) / { n++
 equal 'two slides to infinity' '0 8' "$(circuits | awk '/NOT FOLLOWED/ { lost++ } { n += gsub(/NO LIMIT FOUND/, "") } END { print lost + 0, n + 0 }')"
 equal 'two slides to infinity: RANGE' 105.0000000 "$("$kinmat" "$w/deck" | awk '/^   MAX/ { print $2 }')"
 
-# Groups that share nothing but the crank. Dyads of 1.5 and 3 whose base of 4 is turned by 0 and by 60 degrees end the motion of a
-# crank of 2 at +-a and 60 +- a by the law of cosines: it goes from 60 - a to a on one circuit, which turns back at four dead
-# points. Dyads of 5 and 4.5 that turn fully double the circuits each.
-# groups N: so many of the latter, and CARD... before END
-groups() {
-   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card JOINT A BASE CRANK 0.0 0.0
-   awk -v turning="$1" 'function card(a, b, c, d, x, y) { printf "%-8s%-8s%-8s%-8s%-16s%s\n", a, b, c, d, x, y }
-      function acos(x) { return atan2(sqrt(1 - x*x), x) }
-      function dyad(k, coupler, rocker, base, psi,   dx, dy, l, to, turn) {
-         psi = psi*atan2(1, 1)/45; dx = base*cos(psi) - 2; dy = base*sin(psi); l = sqrt(dx*dx + dy*dy)
-         to = atan2(dy, dx) + acos((coupler^2 + l*l - rocker^2)/(2*coupler*l))
-         card("LINK", "C" k); card("LINK", "R" k); card("JOINT", "A" k, "CRANK", "C" k, "2.0", "0.0")
-         card("JOINT", "B" k, "C" k, "R" k, sprintf("%.13f", 2 + coupler*cos(to)), sprintf("%.13f", coupler*sin(to)))
-         card("JOINT", "D" k, "R" k, "BASE", sprintf("%.13f", dx + 2), sprintf("%.13f", dy)) }
-      BEGIN { dyad(1, 1.5, 3, 4, 0); dyad(2, 1.5, 3, 4, 60)
-         for (k = 3; k < 3 + turning; k++) dyad(k, 5, 4.5, 4, 31*k) }'
-   shift
-   card DRIVE ANGLE CRANK '' 0.0 10.0; card AT '' '' '' 0.0; printf '%s\n' "$@"; card END
-}
-a=$(angle 2 4 4.5)
-low=$(limit "$(awk -v a="$a" 'BEGIN { printf "%.12f", 60 - a }')")
-high=$(limit "$a")
-circuits=1
-for n in 0 1 2; do
-   groups $n CIRCUITS > "$w/deck"
-   equal "groups, $n more" "$circuits $((4*circuits)) $((4*circuits)) $((4*circuits))" "$(limits | awk -v low="$low" -v high="$high" '
-      / MIN / { n++; circuit = $1; for (i = 4; $i ~ /^[0-9]+$/; i++) assemblies += !seen[$i]++
-         good += $(i + 1) == low && $(i + 4) == high } END { print circuit, n, good, assemblies }')"
-   equal "groups, $n more: dead points" "$((2*circuits)) $((2*circuits))" "$(circuits | awk -v low="$low" -v high="$high" '
-      / DEG, LINKS C1, R1 AT THE LIMIT, COLLINEAR/ { one += index($0, high) > 0 } / DEG, LINKS C2, R2 AT THE LIMIT, COLLINEAR/ { two += index($0, low) > 0 }
-      END { print one + 0, two + 0 }')"
-   circuits=$((2*circuits))
-done
-# A parallelogram among the groups has its change points.
+# A parallelogram beside a four-bar on the same crank has its change points.
 { with parallelogram CIRCUITS | grep -v '^\(CIRCUITS\|END\)'; card LINK C9 '' '' 2.0; card LINK R9 '' '' 0.0 4.0
   card POINT P9 BASE '' 0.0 4.0; card POINT Q9 CRANK '' 2.0; card POINT S9 C9; card POINT T9 C9 '' 5.0; card POINT U9 R9
   card POINT V9 R9 '' 4.5; card REVOLUTE Q9 S9 X9; card REVOLUTE T9 V9 Y9; card REVOLUTE P9 U9 Z9; card CIRCUITS; card END; } > "$w/deck"

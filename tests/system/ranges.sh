@@ -30,26 +30,7 @@ four_bar 3.0 1.1 2.649997 0.75 CRANK 50.0 -35.8 38.6 50.0 > "$w/deck"
 equal 'near the limit of Grashof' "-$(limit "$(angle 3 0.75 3.749997)") $(limit "$(angle 3 0.75 3.749997)")" \
    "$(awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }' "$w/out")"
 
-# Watt II: a crank-rocker 1, 3.5, 3 on 4, whose rocker is the crank of a second four-bar with 1.9 and 2.3 on a base of 2: that
-# one ends where these are in line, 4.2 from the end of the first rocker to the last pivot. That rocker's angle follows by the
-# law of cosines, and both angles of the crank by the triangle of crank and coupler.
-{
-   four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
-   card LINK COUPLER2 '' '' 3.3 2.9 -26.0; card LINK ROCKER2 '' '' 6.0 0.0 115.0
-   card POINT G0 BASE '' 6.0
-   card POINT F1 COUPLER2; card POINT F2 COUPLER2 '' 1.9; card POINT G1 ROCKER2; card POINT G2 ROCKER2 '' 2.3
-   card REVOLUTE E2 F1 P5; card REVOLUTE F2 G2 P6; card REVOLUTE G0 G1 P7
-   card DRIVE ANGLE CRANK '' 60.0 30.0; card AT '' '' '' 0.0; card RANGE; card END
-} > "$w/deck"
-ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
-   BEGIN { cosine = -(4.2^2 - 3^2 - 2^2)/(2*3*2); x = 4 + 3*cosine; y = 3*sqrt(1 - cosine^2); d = sqrt(x*x + y*y)
-      middle = atan2(y, x); half = arccos((1 + d*d - 3.5^2)/(2*d)); degree = atan2(1, 1)/45
-      printf "%#.10g %#.10g", (middle - half)/degree, (middle + half)/degree }')
-range 'Watt II' " ANGLE CRANK
-   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR
-   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR"
-
-# Stephenson III: a dyad 2.6, 1.9 from the point (1.75, 1.25) of that coupler to (5, 1): it is in line where that point's path is
+# Stephenson III: a dyad 2.6, 1.9 from the point (1.75, 1.25) of the coupler of 1, 3.5, 3 on 4 to (5, 1): it is in line where that point's path is
 # 4.5 from there, found by bisection on the path in closed form.
 {
    four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
