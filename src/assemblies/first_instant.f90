@@ -19,7 +19,7 @@ module first_instant
    use block_assemblies, only: block_positions_t, find_positions, add_turns
    implicit none
    private
-   public :: solve_first, solve_instant, measure_closure_error, places_of, squared_distances
+   public :: solve_first, solve_instant, measure_closure_error, places_of, squared_distances, alike, equal
 
    !> Positions of one block, nearest to the guess first.
    type :: candidates_t

@@ -5,7 +5,7 @@
 !> lane alone.
 module lane_runs
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_link, request_point, request_pair, instant, instant_count
+   use mechanism, only: mechanism_t, method_newton, request_pair, instant, instant_count
    use motion, only: mark_none
    use structure, only: findings_t
    use points, only: row_t, find_row
@@ -236,9 +236,8 @@ contains
       may_be_laned = size(r%s%list) == 1 .and. r%m%method == method_newton
       if (.not. may_be_laned) return
       may_be_laned = r%s%now%motions(1)%known == 2 .and. r%s%now%motions(1)%mark == mark_none
-      if (r%asked%extremes_asked) may_be_laned = may_be_laned .and. all(r%m%requests(r%asked%extremes%asked)%kind &
-         == request_link .or. r%m%requests(r%asked%extremes%asked)%kind == request_point &
-         .or. r%m%requests(r%asked%extremes%asked)%kind == request_pair)
+      if (r%asked%extremes_asked) may_be_laned = may_be_laned &
+         .and. all(r%m%requests(r%asked%extremes%asked)%kind <= request_pair)
    end function may_be_laned
 
    !> Instants `first` to `last` of `r`, as far as there are such, by the engine; one more, if EXTREMES search the last

@@ -8,7 +8,7 @@ module assemblies
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
-   use first_instant, only: solve_first, places_of, squared_distances
+   use first_instant, only: solve_first, places_of, squared_distances, same_place => alike, less => equal
    use blocks, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -22,12 +22,9 @@ module assemblies
    integer, parameter :: max_assemblies = 1000
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
-   !> A smaller ratio of distances is more than rounding, if the larger one is more than `fine`: estimates as good are
-   !> meant.
-   real(wp), parameter :: less = 0.999_wp, fine = 1.0e-4_wp
-   !> Positions that differ by no more, in rad and characteristic lengths, may be one: an iteration near a dead point
-   !> has half of all digits.
-   real(wp), parameter :: same_place = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
+   !> A ratio of distances below `less` is more than rounding if the larger one is more than this: estimates as good
+   !> are meant.
+   real(wp), parameter :: fine = 1.0e-4_wp
 
    !> An assembly.
    type :: assembly_t

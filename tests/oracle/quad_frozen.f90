@@ -8,14 +8,11 @@ module quad_frozen
    use quad_matrices, only: spectral_radius, solve_quad
    implicit none
    private
-   public :: references_t, references_of_arms, printed_references, nearest_references, tangent_references
-   public :: dyad_references, dyad_rate
-   public :: frozen_matrix, theory
+   public :: references_t, printed_references, nearest_references, dyad_references, frozen_matrix, theory
 
    integer, parameter :: slot_as_printed = 1   !< as (16) has it: columns of x and y alone
    !> of d_x n_x and d_y n_y the one whose n is nearer to zero becomes d s(h) h
    integer, parameter :: slot_one_product = 2
-   integer, parameter :: slot_slope = 3        !< the derivative
 
    !> Where the angles that multiply the frozen coefficients are counted from: the cosine's row, the sine's row.
    type :: references_t
@@ -60,21 +57,6 @@ contains
       end do
    end function nearest_references
 
-   !> Where the tangents at psi of the cosine and the sine are zero: psi + cot psi and psi - tan psi, or far away;
-   !> slot rows as their derivatives.
-   pure type(references_t) function tangent_references(m, q) result(z)
-      type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: q(:, :)
-      integer :: i
-
-      allocate (z%body_vectors(2, size(m%points)))
-      allocate (z%normals(2, size(m%pairs)), source=0.0_qp)
-      z%slot = slot_slope
-      do i = 1, size(m%points)
-         z%body_vectors(:, i) = tangents(body_vector_angle(m, q, i))
-      end do
-   end function tangent_references
-
    !> One reference for each of the two links of a dyad, with which G is nilpotent where they stand in `q` (3, links):
    !> h3 = sec d - tan d and h4 = sec d + tan d, d = phi_4 - phi_3, make (h4 - h3) cot d = 2 and h3 h4 = 1. There are
    !> none at d = 90 deg. `three`, `four`: the links, whose points have eta = 0.
@@ -103,35 +85,12 @@ contains
       end do
    end subroutine count_from
 
-   !> The spectral radius of G of a dyad with d = phi_4 - phi_3, its angles counted as `h3` and `h4`: max |1 - l| over
-   !> the roots of l^2 - (h4 - h3) cot(d) l + h3 h4 = 0.
-   elemental real(qp) function dyad_rate(h3, h4, d) result(rho)
-      real(qp), intent(in) :: h3, h4, d
-      complex(qp) :: root
-      real(qp) :: half
-
-      half = 0.5_qp*(h4 - h3)*cos(d)/sin(d)
-      root = sqrt(cmplx(half**2 - h3*h4, 0.0_qp, qp))
-      rho = max(abs(1.0_qp - half - root), abs(1.0_qp - half + root))
-   end function dyad_rate
-
    pure function nearest_zeros(psi) result(z)
       real(qp), intent(in) :: psi
       real(qp) :: z(2)
 
       z = pi_q*[anint(psi/pi_q - 0.5_qp) + 0.5_qp, anint(psi/pi_q)]
    end function nearest_zeros
-
-   pure function tangents(psi) result(z)
-      real(qp), intent(in) :: psi
-      real(qp) :: z(2)
-
-      real(qp), parameter :: far = 1.0e30_qp
-
-      z = psi + far
-      if (abs(sin(psi)) > 1.0_qp/far) z(1) = psi + cos(psi)/sin(psi)
-      if (abs(cos(psi)) > 1.0_qp/far) z(2) = psi - sin(psi)/cos(psi)
-   end function tangents
 
    !> A of (20), rows and columns in the program's order; the drives are of the kind ANGLE.
    pure function frozen_matrix(m, q, z) result(a)
@@ -224,8 +183,6 @@ contains
       d = place(m, q, m%pairs(k)%point_i) - place(m, q, m%pairs(k)%point_j)
       if (z%slot == slot_as_printed) then
          g = [cos(psi), sin(psi), 0.0_qp]
-      else if (z%slot == slot_slope) then
-         g = [cos(psi), sin(psi), aimag(d)*cos(psi) - real(d, qp)*sin(psi)]
       else if (abs(sin(psi)) <= abs(cos(psi))) then
          g = [cos(psi), 0.0_qp, aimag(d)*frozen(sin(psi), psi - z%normals(2, k), cos(psi))]
       else
