@@ -19,8 +19,8 @@ module block_rank
    real(wp), parameter :: zero_level = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
    !> A mechanism with a degree of freedom left is moved by this to see whether it follows.
    real(wp), parameter :: trial = 1.0e-3_wp
-   !> The step of second differences.
-   real(wp), parameter, public :: difference = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
+   !> The step of second differences, whose roundings and whose neglected terms are then alike.
+   real(wp), parameter, public :: difference = sqrt(sqrt(epsilon(1.0_wp)))
    !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decompositions take the cube of these numbers of operations: of a block, and of blocks with all they need.

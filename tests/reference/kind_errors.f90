@@ -29,11 +29,11 @@ program kind_errors
    character(*), parameter :: close_sets(8) = [character(27) :: 'antiparallelogram_across, 1', 'kite_across, 1', &
       'parallelogram, 1', 'scott_russell, 1', 'antiparallelogram_branch, 1', 'kite_branch, 1', &
       'parallelogram_branch, 1', 'scott_russell_branch, 1']
-   !> At a change point itself a position is extrapolated, and multiplies its roundings by 10 over the step, the eighth
-   !> root of 100 roundings; there are no velocities.
+   !> At a change point itself the position is the place where the Jacobian has no inverse, which is known as positions
+   !> close to it are; there are no velocities. In few bits that place is not always found: any position whose equations
+   !> hold up to rounding is then within the root of that.
    character(*), parameter :: at_change(4) = [character(20) :: 'antiparallelogram_at', 'kite_at', 'parallelogram_at', &
       'scott_russell_at']
-   real(qp), parameter :: roundings_there = 10.0_qp/(100.0_qp*epsilon(1.0_wp))**0.125_qp
    !> Sets whose cards hold pi/2, a root and the like in 16 or 17 digits, where the closed forms have the number itself:
    !> real128 tells them apart. None of them multiplies that by more than a few.
    character(*), parameter :: rounded_sets(7) = [character(14) :: 'andrews, 2', 'drag_link, 1', 'drag_link, 2', &
@@ -44,6 +44,8 @@ program kind_errors
    !> decks with such names may be marked, which is no error; what is given is compared like all else. Of a crank that has
    !> turned often no digit is left then; of an acceleration that is a difference of 1E-12 of two, none by the estimate.
    integer, parameter :: bits_enough = 53
+   real(qp), parameter :: roundings_there = merge(roundings*inverse_close, sqrt(roundings/epsilon(1.0_wp)), &
+      digits(1.0_wp) >= bits_enough)
    character(*), parameter :: change_decks(3) = [character(7) :: '_across', '_at', '_branch']
    integer, parameter :: cells = 15, cell_length = 60
 
