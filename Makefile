@@ -188,7 +188,7 @@ quad-check single-check: %-check:
 	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* kind-check
 
 # Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
-bench: $(BUILD)/kinmat $(BUILD)/timed/bench
+bench: $(BUILD)/timed/bench
 	BUILD=$(BUILD) tests/bench/bench.sh
 
 bench-short: $(BUILD)/release/bench
@@ -220,7 +220,7 @@ study-1987: $(BUILD)/timed/matrix_1987
 	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='docs/matrix_1987.png'" tests/study/matrix_1987.gp
 
 # Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
-hard: $(BUILD)/release/hard
+hard: $(BUILD)/kinmat $(addprefix $(BUILD)/release/,hard print_expected)
 	BUILD=$(BUILD) tests/oracle/hard.sh full
 	BUILD=$(BUILD) tests/system/answers.sh long
 

@@ -12,7 +12,7 @@ module outputs
    private
    public :: outputs_t, share_of_job_t, open_outputs, flush_files, forget_files, close_outputs, is_over, set_suffix
 
-   !> What this process computes of a job in several processes: see `shares`.
+   !> The part of a job in several processes that this process computes; `shares` divides the job.
    type :: share_of_job_t
       character(:), allocatable :: kind         !< SETS or VARIANTS
       integer :: first = 1, last = 0            !< all of them

@@ -1,7 +1,7 @@
-!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. Whoever
-!> is free takes the next one; its text stays in memory until all parts before are written. Meanwhile the process goes
-!> on with further parts, as long as no output holds too much. One that dies or is broken off leaves its part undone,
-!> and nothing after that is written.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. A free
+!> process takes the next part. It holds the text of this part in memory until all parts before are written. Meanwhile
+!> it goes on with further parts, as long as no output holds too much. A process that dies or is broken off leaves its
+!> part undone, and no part after that is written.
 !>
 !> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
 !> each part at hand: who waits for a part waits for its lock, which the system opens as well if its process dies.

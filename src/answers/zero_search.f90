@@ -163,6 +163,7 @@ contains
             ! Newton's formula of forward differences.
             d = [f(1) - f(0), f(2) - 2.0_wp*f(1) + f(0), f(3) - 3.0_wp*(f(2) - f(1)) - f(0), &
                f(4) - 4.0_wp*(f(3) + f(1)) + 6.0_wp*f(2) + f(0)]
+            if (.not. maxval(abs(d(2:))) > 0.0_wp) return
             noise = max(c%noise(2), noise_part*maxval(abs(f)))
             before = t
             u = (t - first)/step

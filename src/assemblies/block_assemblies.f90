@@ -148,8 +148,8 @@ contains
       end function apart
    end subroutine find_positions
 
-   !> Adds the whole turns that drives ask for between two angles of block `i` to these angles, in `x` and in `s`, which
-   !> has them. Angles that are joined by such drives turn together.
+   !> Adds to the angles of block `i` the whole turns that its drives ask for between two of them, in `x` and in `s`; on
+   !> entry `s` has the values `x`. Angles that are joined by such drives turn together.
    subroutine add_turns(b, i, s, x)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

@@ -144,7 +144,7 @@ contains
       end subroutine add
    end subroutine add_loop
 
-   !> What row `row` of block `i` asks for: its constant and its drive's value.
+   !> The value that row `row` of block `i` requires: its constant and its drive's value.
    pure real(wp) function given(b, i, row, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, row
@@ -155,8 +155,8 @@ contains
       end associate
    end function given
 
-   !> What unknown number `u` of all, in column `column` of its block, is a multiple of: 1 of a direction of the block,
-   !> a known direction otherwise.
+   !> The factor of unknown `u`, in column `column` of its block: 1 for a direction of the block, otherwise the known
+   !> direction.
    pure complex(wp) function direction_factor(column, u, s) result(factor)
       integer, intent(in) :: column, u
       type(state_t), intent(in) :: s
@@ -165,8 +165,8 @@ contains
       if (column == 0) factor = cmplx(s%u(u)%c, s%u(u)%s, wp)
    end function direction_factor
 
-   !> Loop `m`, as a linear form `l` (0:n) of 1 and the n unknowns of a group. `size_of`: the sum of the sizes of its
-   !> terms that are known or of known length, in its unit: what rounding of the loop is measured by.
+   !> Finds the linear form `l` (0:n) of loop `m` in 1 and the n unknowns of a group. `size_of`: the sum of the sizes of
+   !> its terms that are known or of known length, in the loop's unit; rounding of the loop is measured by it.
    pure subroutine find_form(b, m, s, l, size_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m

@@ -196,8 +196,9 @@ contains
 
    contains
 
-      !> Puts the position `x` in its place among those found, unless it is there already; its angles are within half a
-      !> turn of the guess. Of two that are as near, that with the greater first value: rounding shall not choose.
+      !> Puts the position `x` in its place among those found, unless it is there already. Its angles are brought within
+      !> half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that with
+      !> the greater first value: rounding shall not choose.
       subroutine note_position(x, is_singular)
          real(wp), intent(in) :: x(:)
          logical, intent(in) :: is_singular

@@ -102,9 +102,9 @@ contains
       integer :: held, last
 
       if (len(text) > len(o%buffer) - o%used .and. o%held) then
-         ! Room for text that is held, as much again, and for none that is written.
+         ! Room for text that is held, as much again up to 2**26, and for none that is written.
          held = held_length(o)
-         allocate (character(max(len(o%buffer), 2*(held + len(text)))) :: other)
+         allocate (character(max(len(o%buffer), held + len(text) + min(held + len(text), 2**26))) :: other)
          other(:held) = o%buffer(o%written + 1:o%used)
          call move_alloc(other, o%buffer)
          o%used = held

@@ -1,4 +1,4 @@
-!> The diagnostics of the block engine: of the first motion, and of a limit.
+!> The diagnostics of the block engine: of the first motion, of a limit, and of singular positions.
 module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
@@ -282,7 +282,7 @@ contains
    end subroutine get_link_flags
 
    !> A diagnostic for each block that has its change point at the instant `t`, at which the motion found last has no
-   !> velocities: each of the two branches has its own. None if some block has no change point there.
+   !> velocities: each of the two branches has its own. None if a block is singular there in another way.
    function change_diagnostics(e, t) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t

@@ -310,7 +310,7 @@ contains
       c%singular = .true.
    end subroutine stay
 
-   !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
+   !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve_blocks`.
    subroutine solve_each(e, list, follows, c)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in), contiguous :: list(:)

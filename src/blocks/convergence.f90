@@ -109,6 +109,7 @@ contains
       real(wp), intent(in) :: r(*)
       type(convergence_t), intent(inout) :: c
       real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
+      real(wp) :: largest
       integer :: m
 
       opening = 0.0_wp
@@ -119,12 +120,13 @@ contains
             level(m) = max(1.0_wp, b%numbers%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
          end associate
       end do
+      largest = maxval(opening/level)
       c%open%value = 0.0_wp
       c%open%pair = 0
       c%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (opening(m)/level(m) < (1.0_wp - alike)*maxval(opening/level)) cycle
+            if (opening(m)/level(m) < (1.0_wp - alike)*largest) cycle
             if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
             c%open = closure_error_t(opening(m), row%angular, b%numbers%loops(m)%unit, level(m), row%pair, row%drive)
          end associate

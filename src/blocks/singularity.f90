@@ -24,8 +24,8 @@ module singularity
 
 contains
 
-   !> (blocks) What the position that `e` has found last is for each block, one of singular_...; -1 where the block is
-   !> not singular, or builds on one that is and so has no right-hand side of its own.
+   !> (blocks) Judges the position that `e` has found last for each block: one of singular_...; -1 if the block is not
+   !> singular, or builds on a singular one and so has no right-hand side of its own.
    function judge_blocks(e) result(found)
       type(block_engine_t), intent(in) :: e
       integer :: found(size(e%blocks%list))
@@ -42,8 +42,8 @@ contains
       end do
    end function judge_blocks
 
-   !> What the singular position of `s` is for block `i`; unclear where all that moves the block is at rest, and
-   !> where it says the same aside, where its links can move to: then a drive moves nothing, or adds nothing to others.
+   !> Tells which singular position `s` is for block `i`. Unclear if all that moves the block is at rest, or if the
+   !> judgement is equal at a place nearby to which its links can move: a drive moves nothing, or adds nothing.
    integer function block_singularity(b, i, s) result(found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

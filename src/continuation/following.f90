@@ -58,7 +58,7 @@ module following
    type :: step_record_t
       logical :: arrived = .false.               !< at the instant asked for
       logical :: blocked = .false.               !< at a place from which no substep could be made
-      logical :: stands = .false.                !< on a change point, from shortly before which it is followed
+      logical :: stands = .false.                !< at a singular position; the motion is still followed from before it
       logical :: rests = .false.                 !< at the singular position of the instant before
       integer :: tries = 0                       !< substeps tried
       logical :: gave_up = .false.               !< after the largest number of them
@@ -76,7 +76,7 @@ module following
 
 contains
 
-   !> Ready for the first instant of `m` with its `engine`, which is taken over.
+   !> Makes `f` ready for the first instant of `m`; its `engine` is taken over.
    subroutine begin_following(f, m, engine)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m

@@ -47,7 +47,7 @@ contains
    !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
    !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
    !> (`report` says why) or status_system. `share`: only its sets are wanted, or of a deck with VARY cards its
-   !> variants, for which all sets are. `variations` (number of sets): their VARY cards; empty where a set has none.
+   !> variants, for which all sets are. `variations` (as `sets`): their VARY cards; empty if a set has none.
    subroutine read_deck(path, sets, report, failure, share, variations)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)

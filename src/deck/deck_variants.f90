@@ -276,9 +276,9 @@ contains
       end select
    end function stands_alone
 
-   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: it is that variant now. Where
-   !> more than these numbers may depend on the cards, or `m` is new, the cards of `v` have these numbers, ready to be
-   !> built.
+   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: `m` is now that
+   !> variant. If not, because `m` is new or more may depend on these numbers, the cards of `v` have them: build `m` of
+   !> these cards.
    subroutine take_values(v, n, m, is_done)
       type(variation_t), intent(inout) :: v
       integer, intent(in) :: n

@@ -225,7 +225,6 @@ contains
       type(card_t), intent(in) :: card
       character(*), intent(in) :: text
       character(*), intent(in), optional :: value
-
       integer :: n
 
       errors%remarked = errors%remarked + 1

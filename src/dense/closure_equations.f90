@@ -249,9 +249,9 @@ contains
    !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `f` (2), which has the
    !> angle `psi` and in the frozen form the reference angles `zeros` (2).
    !>
-   !> In the frozen form (16) of d . f that of the two products d_x f_x and d_y f_y whose f is nearer to zero becomes
-   !> d s(h) h, h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x
-   !> and y columns alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
+   !> In the frozen form (16), d . f is d_x f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with
+   !> h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y
+   !> columns alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(s, p, k, f, psi, zeros) result(row)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p

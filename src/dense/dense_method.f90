@@ -130,7 +130,7 @@ contains
       found%position = d%pose%q
       if (.not. c%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
-         ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f is zero in pairs' rows.
+         ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f' and f'' are zero in the rows of pairs.
          associate (s => d%system, first => d%system%n - size(d%drive_values, 2) + 1)
             b = 0.0_wp
             b(first:) = d%drive_values(2, :)

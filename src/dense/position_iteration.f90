@@ -38,10 +38,10 @@ contains
 
    !> Moves the links of `p` to a position where the drives have the values `driven` (drives): by Newton's method or, if
    !> `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding. `f`: room for n
-   !> equations; leaves the factors of the Jacobian, of Newton's method one step of the tolerance's size before the
-   !> position, for the velocities of (21) and the accelerations of (22). `c` says how it ended. `reach`: an angle that
-   !> goes further than this from its start, in radians, would return by chance alone: diverged. `limit`: iterations
-   !> allowed.
+   !> equations. If a position is found, `f` has the factors of the Jacobian for (21) and (22): there, or by Newton's
+   !> method one step of the tolerance's size before it. Otherwise those of the last matrix. `c` says how it ended.
+   !> `reach`: an angle that goes further than this from its start, in radians, would return by chance alone: diverged.
+   !> `limit`: iterations allowed.
    subroutine solve_position(s, driven, tolerance, is_matrix, p, f, c, reach, limit)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance

@@ -23,8 +23,8 @@ module independent
       integer, allocatable :: links(:)
    end type part_t
 
-   !> Numbers of links, points, pairs and drives (`of_drives`) by kind: those in the deck of what a part has, as above;
-   !> or those in the part of what the deck has.
+   !> A list for each kind: links, points, pairs and drives (`of_drives`). It has the deck's numbers of what a part has,
+   !> increasing, or for each number of the deck the number in the part.
    type :: places_t
       integer, allocatable :: of(:)
    end type places_t
@@ -40,7 +40,7 @@ module independent
       integer :: count = 1                          !< of independent mechanisms
       type(mechanism_t), allocatable :: parts(:)    !< (1), or (0:count)
       type(member_t), allocatable :: rows(:), drives(:)   !< in the order of the cards
-      type(part_t), allocatable :: cards(:)         !< (parts) their links alone, for pictures
+      type(part_t), allocatable :: cards(:)         !< (parts) only their links, for pictures
       real(wp) :: largest_tolerance = 0.0_wp        !< as a part of the whole's sizes; 0: no number has a tolerance
    end type set_t
 

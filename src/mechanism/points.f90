@@ -10,7 +10,7 @@ module points
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, find_row, note_known, set_values, has_number, difference, centre_numbers, &
+   public :: row_t, row_of, find_row, set_values, has_number, difference, centre_numbers, &
       coordinates_of, is_due, is_listed, is_fixed
    public :: point_motion, pair_motion
 

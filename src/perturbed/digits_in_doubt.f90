@@ -101,10 +101,9 @@ contains
       end if
    end subroutine find_growth
 
-   !> By how much roundings grow at most in a block of `e`, whose numbers are the characteristic ones. With 1/p for the
-   !> inverse of the Jacobian, whose least pivot is p, 1 at most, and L for its Lipschitz constant, a rounding of its
-   !> numbers grows by L/p^2, and by 1/p and L/p^2 those of much larger vectors that it knows. `angles`: those of angles
-   !> grow by 1/p in positions and, over `rate_digits`, by L^2/p^3 in accelerations.
+   !> Finds by how much roundings grow at most in a block of `e`, with p the least pivot of its Jacobian (at most 1), L
+   !> its Lipschitz constant, C its `coarse`. `numbers`: L/p^2; with C above `usual_coarse` also C/p and C L/p^2.
+   !> `angles`: C/p in positions; over `rate_digits`, C L^2/p^3 in accelerations.
    pure subroutine find_growths(e, numbers, angles)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(out) :: numbers, angles

@@ -33,8 +33,8 @@ module error_estimate
       !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
       real(wp), allocatable :: changes(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
-      !> (3, 0:2, requests) The same by changes of one rounding, where errors are asked for. By as much as these are
-      !> larger the calculation rounds: in the rates of links that turn as one there is nothing else.
+      !> (3, 0:2, requests) Changes of the rows if all numbers are off by one rounding, if errors are asked for. What
+      !> exceeds `changes` is rounding of the calculation; rates of links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
    end type error_estimate_t
 
@@ -43,7 +43,7 @@ module error_estimate
       type(sizes_t) :: sizes
       type(at_hand_t) :: place
       !> (0:2*directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in each direction
-      !> by many roundings; by one.
+      !> by `many` or `few` roundings; off in each direction by one.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
@@ -89,7 +89,7 @@ contains
       call find_place(engine, q, s%place)
       s%place%stays = s%place%is_singular
       call find_changed(0, many, found%solved)
-      found%of_sums = errors_of_sums(q, s%sizes%length, found%solved)
+      found%of_sums = errors_of_sums(m, q, s%sizes%length, found%solved)
       s%place%stays = .false.
       call find_changes(many, s%place%is_singular, found%changes, is_small)
       if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
@@ -108,7 +108,7 @@ contains
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
-         call make_ready(s%perturbed, merge(k, k + directions, roundings > 1.0_wp), m, engine, i)
+         call make_ready(s%perturbed, merge(k, k + directions, abs(roundings) > 1.0_wp), m, engine, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
                call put_off(m, k, roundings, p%m)

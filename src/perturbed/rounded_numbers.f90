@@ -34,8 +34,8 @@ module rounded_numbers
 contains
 
    !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
-   !> by so many `roundings`; 0: by none. The time of a table, the exponent of a power, and what an estimate says of
-   !> moving links are as they stand.
+   !> by so many `roundings`; 0: by none. As they stand are the time of a table, the exponent of a power, the angles
+   !> of ground links, BETA of guides, and the initial guess of moving links.
    subroutine put_off(m, k, roundings, off)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k

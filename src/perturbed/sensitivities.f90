@@ -211,15 +211,17 @@ contains
       type(mechanism_t) :: off
       type(row_t) :: row
       type(motion_t) :: rest
+      type(sizes_t) :: sizes
       real(wp) :: step
       integer :: d, k
 
       allocate (s(3, 0:2, size(m%tolerances)), source=0.0_wp)
+      sizes = sizes_of(m)
       rest = new_motion(size(m%links))
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
             do k = -1, 1, 2
-               step = k*ground_step*natural_unit(one, sizes_of(m))
+               step = k*ground_step*natural_unit(one, sizes)
                off = m
                call set_number(off, one%card_number_t, number_value(m, one%card_number_t) + step)
                row = row_of(off, rest, request)

@@ -1,7 +1,7 @@
 !> What the roundings of sums leave open of rows, and how they grow in instant centres and centres of curvature.
 module sum_errors
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole
+   use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole, request_curve
    use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
    use points, only: row_t, row_of
@@ -16,14 +16,17 @@ module sum_errors
 contains
 
    !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the links
-   !> of the motion `q` and of its `rows`; `length`: the characteristic one. What is summed up to a velocity is no
-   !> smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
-   !> slide is a difference of places, which are counted from a ground link, and so are the arms of its derivatives.
-   pure function errors_of_sums(q, length, rows) result(size_of)
+   !> of the motion `q` of `m` and its `rows`, but for poles; `length`: the characteristic one. What is summed up to a
+   !> velocity is no smaller than an angular velocity times a length, what is summed up to an acceleration has the
+   !> square of one. A slide is a difference of places, which are counted from a ground link, and so are the arms of its
+   !> derivatives.
+   pure function errors_of_sums(m, q, length, rows) result(size_of)
+      type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: length
       type(row_t), intent(in) :: rows(:)
       real(wp) :: size_of(3, 0:2)
+      real(wp) :: reach
       integer :: i
 
       size_of = 0.0_wp
@@ -37,7 +40,18 @@ contains
          end associate
       end do
       do i = 1, size(rows)
-         if (rows(i)%known < 0 .or. rows(i)%kind >= request_pole) cycle
+         if (rows(i)%known < 0 .or. rows(i)%kind == request_pole) cycle
+         if (rows(i)%kind == request_curve) then
+            ! A bound of what its point adds up, which needs no direction.
+            associate (point => m%points(m%requests(i)%subject))
+               reach = norm2(point%offset)
+               size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, point%link) + q%origin)) + reach, &
+                  maxval(abs(q%velocity(:2, point%link))) + abs(q%velocity(3, point%link))*reach, &
+                  maxval(abs(q%acceleration(:2, point%link))) + (abs(q%acceleration(3, point%link)) &
+                  + q%velocity(3, point%link)**2)*reach])
+            end associate
+            cycle
+         end if
          associate (value => abs(rows(i)%value), unit => merge(2, 1, rows(i)%angular))
             size_of(unit, :) = max(size_of(unit, :), value(1, :))
             if (rows(i)%kind /= request_pair) size_of(:2, :) = max(size_of(:2, :), value(2:, :))

@@ -18,7 +18,8 @@ module drawing
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation leaps.
    integer, parameter, public :: max_intervals = 360
-   !> All sets of a page have this many intervals, or those of the deck. Reason: a page of 1,000 sets would take 300 MB.
+   !> All sets of a page have this many intervals, or those of the deck. Reason: the text of a page is held until its
+   !> last set is drawn.
    integer, parameter :: max_in_all = 18000
    !> There are at most this many frames, which hold at most this many positions of links, but two at least. Reason: a
    !> picture of 800 pixels shows no more, and memory does not grow with the run.
@@ -98,7 +99,7 @@ contains
 
    !> Makes the `film` of `m`: `m` at instants that are dense enough to be drawn, those of TIME and others between them,
    !> or without TIME others between the first and the last of AT. `every`: each so many instants of the film's TIME are
-   !> the deck's; 0: none. `sets`: films that are kept until all of them are drawn.
+   !> the deck's; 0: none. `sets`: how many sets the page has.
    subroutine film_of(m, sets, film, every)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets

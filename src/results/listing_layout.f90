@@ -46,6 +46,7 @@ module listing_layout
       integer :: power(2, 0:2) = 0                       !< printed is the value over 10**power
       !> By the kind of a table: the lines over its rows, joined by new_line('a').
       character(4*(row_length + 1)) :: heads(links_turning:request_curve)
+      integer :: head_length(links_turning:request_curve) = 0
    end type digits_t
 
    !> A drive at the head of an instant: what stands before and behind its value, and its form.
@@ -253,6 +254,7 @@ contains
          text = text//new_line('a')//trim(in_columns(l%unit(:, kind), kind))
          if (any(l%per(:, kind) /= '')) text = text//new_line('a')//trim(in_columns(l%per(:, kind), kind))
          d%heads(kind) = text
+         d%head_length(kind) = len(text)
       end subroutine take_heads
    end function new_layout
 

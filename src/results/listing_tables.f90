@@ -177,7 +177,7 @@ contains
       table%kind = kind
       table%part = part
       if (stand) return
-      call put(o, trim(l%own(part)%heads(kind)))
+      call put(o, l%own(part)%heads(kind)(:l%own(part)%head_length(kind)))
       table%lines = 0
    end subroutine put_heads
 
@@ -193,13 +193,14 @@ contains
       type(listing_state_t), intent(inout) :: table
       character(row_length) :: line
       real(wp) :: x, off
-      integer :: k, c, i, first, last, unit, column(3, 0:2)
+      integer :: k, c, i, first, last, end_of, unit, column(3, 0:2)
 
       column = l%column(:, :, merge(links_turning, row%kind, angle_alone))
       ! A pair has a slide or an angle, and its value is the first.
       if (row%kind == request_pair) column(merge(1, 3, row%angular), :) = 0
       line = ' '//row%name
       first = names_length(row%kind)
+      end_of = first
       if (row%kind >= request_pole) then
          i = index(row%name, ' ')
          line(i + 1:) = ''
@@ -209,6 +210,7 @@ contains
          do c = 1, 3
             if (column(c, k) == 0) cycle
             last = first + numeral_length*column(c, k)
+            end_of = max(end_of, last)
             associate (field => line(last - numeral_length + 1:last))
                if (row%kind >= request_pole) then
                   field = number_of_centre()
@@ -236,7 +238,8 @@ contains
             end associate
          end do
       end do
-      call put(o, trim(line))
+      ! Without the copy of the line that `trim` would make.
+      call put(o, line(:len_trim(line(:end_of))))
       table%lines = table%lines + 1
 
    contains

@@ -42,7 +42,7 @@ contains
       call find_units(b, x)
    end subroutine put_numbers
 
-   !> Fills `x` from the numbers of its equations, in their unit of length; `x` may have these alone.
+   !> Fills `x` from the numbers of its equations, in their unit of length. Allocates the lists of `x` if they are not.
    pure subroutine fill_numbers(b, x)
       type(blocks_t), intent(in) :: b
       type(numbers_t), intent(inout) :: x

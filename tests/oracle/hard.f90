@@ -157,8 +157,9 @@ contains
          call advance(a, s%at(k), q)
          if (k > 1) call look_at_turns(exact_links(s, s%at(k)), abs(s%at(k) - s%at(k - 1)), q%position(3, :) - before, &
             tally)
-         ! The first ones, and those on change points: the condition is the larger part of the time.
-         if (short .and. size(s%at) > 9 .and. k > 3 .and. mod(k, 4) /= 3) cycle
+         ! The first three, every fourth and the last: the condition is the larger part of the time. Every fourth from
+         ! the third has both change points of NEARLY A PARALLELOGRAM.
+         if (short .and. size(s%at) > 9 .and. k > 3 .and. k < size(s%at) .and. mod(k, 4) /= 3) cycle
          call judge_instant(s, s%at(k), q, tally)
       end do
       call get_motion_of(s, tally)

@@ -185,7 +185,7 @@ equal 'two slides to infinity: RANGE' 105.0000000 "$("$kinmat" "$w/deck" | awk '
 { with parallelogram CIRCUITS | grep -v '^\(CIRCUITS\|END\)'; card LINK C9 '' '' 2.0; card LINK R9 '' '' 0.0 4.0
   card POINT P9 BASE '' 0.0 4.0; card POINT Q9 CRANK '' 2.0; card POINT S9 C9; card POINT T9 C9 '' 5.0; card POINT U9 R9
   card POINT V9 R9 '' 4.5; card REVOLUTE Q9 S9 X9; card REVOLUTE T9 V9 Y9; card REVOLUTE P9 U9 Z9; card CIRCUITS; card END; } > "$w/deck"
-equal 'groups, one of them a parallelogram' '4 4' "$(circuits | awk '/ CLOSES AFTER / { n++ } /^   CIRCUITS / { meet++ } END { print n + 0, meet + 0 }')"
+equal 'a parallelogram and a four-bar on one crank' '4 4' "$(circuits | awk '/ CLOSES AFTER / { n++ } /^   CIRCUITS / { meet++ } END { print n + 0, meet + 0 }')"
 
 # No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"

@@ -49,11 +49,6 @@ three_cranks() {
 # said LISTING: the remarks, each after the number of its instant, but for that of equations that repeat others
 said() { awk '/ S (IS LESS THAN|JEST MNIEJSZE NIZ) / { next } /^ (INSTANT|CHWILA) / { k = $2 } /^ (\*\*\*|---) / { print k ":" $0 } /^ (LARGEST|NAJW)/' "$1"; }
 
-# asked_of LINES I J: columns I and J of those lines of the table of extremes, of which some may be blank
-asked_of() { sed -n '/^ EXTREMES *T/,$p' "$w/out" | awk -v i="$2" -v j="$3" '/^ +('"$1"') / {
-   row = $0; name = substr(row, 1, 9); $0 = name; $1 = $1; name = $0; $0 = substr(row, 12*i - 2, 12) " " substr(row, 12*j - 2, 12)
-   $1 = $1; printf "%s %s,", name, $0 }'; }
-
 # told NAME STATUS WORDS: the deck in $w/deck, its status and all that is said of it
 told() {
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
@@ -495,6 +490,8 @@ for run in "$(card TIME 5 '' '' -1.0 1.0)" "$(card TIME 6 '' '' 1.0 -1.0)" "$(ca
 done
 crank "$(card TIME 5 '' '' 0.1 1.0)" > "$w/deck"
 told 'a law behind its pole' 0 ''
+crank "$(card TIME 5 '' '' -1.0 -0.1)" > "$w/deck"
+told 'a law before its pole' 0 ''
 
 # Change points: a BRANCH card asks for the other branch. Crank 2 at 20 deg and 10 deg a second on a base of 4.
 crossing() { head_of CROSSING; four_bar '' 0.0 2.0 4.0 2.0 4.0 20.0 0.0 20.0; drive ANGLE CRANK '' 20.0 10.0; "$@"; until_time 4 20.0; }

@@ -90,8 +90,8 @@ for method in NEWTON DENSE; do
    equal "on a change point, $method: rates of the crank" 10.00000 \
       "$(awk '/^ INSTANT/ { crank = "" } /^ CRANK / { crank = $7 } /CHANGE POINT, LINKS COUPLER, ROCKER COLLINEAR:/ { print crank; exit }' "$w/$method.lst")"
 done
-# What --errors tells by METHOD DENSE and by NEWTON is what the same roundings may cause, a few times more or less, at positions
-# far from those of the deck too: numbers whose told errors differ by more than 30 times, as `make errors` has it, and whether there are many.
+# --errors by METHOD DENSE and by NEWTON estimates the same roundings, also at positions far from those of the deck. Counted: numbers
+# whose two estimates differ by more than 30 times (the most is 11, accelerations near zero of drag_link), and whether there are many.
 for deck in drag_link whitworth four_bar; do
    for method in NEWTON DENSE; do
       deck_by $method "input/$deck.deck"

@@ -119,6 +119,8 @@ if [ -w /dev/full ]; then
       told "a full disk, $option" 3 $? ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)'
       whole "a full disk, $option" out
    done
+   short 'full' "$kinmat" long -o /dev/full
+   told 'a full disk, -o' 3 $? ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)'
 fi
 # A limit on the size of files: after so many blocks of 512 bytes.
 (ulimit -f 400; exec timeout -k 1 20 "$kinmat" long -o limited --csv limited.csv --errors 2> err)
