@@ -6,7 +6,6 @@
 !> limits there may be extremes. What is closer is not searched, and the table says so.
 module extreme_search
    use kinds, only: wp
-   use mechanism, only: mechanism_t
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t, find_node, is_known, times_between, beside_joint, limits_of, places, &

@@ -10,11 +10,11 @@ module variant_rows
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
    use set_motion, only: is_flagged
-   use listing_layout, only: layout_t, digits_t, dimension_of, choose_digits, angle_unit
+   use listing_layout, only: layout_t, dimension_of, choose_digits, angle_unit
    use csv, only: marks, table_t, new_table, drive_columns, dotted
-   use extremes, only: extremes_t, extreme_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, &
-      column_of, strokes_of, ratio_decimals
-   use ranges, only: range_t, low, high
+   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, column_of, strokes_of, &
+      ratio_decimals
+   use ranges, only: low, high
    use answers, only: answers_t
    use numerals, only: whole
    use phrases

@@ -9,7 +9,7 @@ module first_instant
    use planar, only: without_turns
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent
    use motion, only: motion_t, new_motion
-   use blocks, only: blocks_t, largest_known, blocks_below
+   use blocks, only: largest_known, blocks_below
    use block_state, only: set_values, values_of
    use block_solver, only: solve_block
    use link_motion, only: move_links

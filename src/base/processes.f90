@@ -1,6 +1,6 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_null_char, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
    use failures, only: status_system
    use system_calls, only: write_bytes, note_all_signals, last_error
    implicit none

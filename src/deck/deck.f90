@@ -2,13 +2,12 @@
 !> computed from a deck with an error.
 module deck
    use, intrinsic :: iso_fortran_env, only: int64
-   use kinds, only: label_length
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, set_apart, read_small_letters, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
-   use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
-      form_at, form_end
+   use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, form_link, form_time, form_at, &
+      form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo

@@ -6,8 +6,8 @@ module card_numbers
    use kinds, only: wp, label_length
    use planar, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
-      number_drive, number_knot, number_time, pair_prismatic, term_harmonic, term_power, term_table, term_words, &
-      rise_words, term_parabola, driven_kinds, request_link
+      number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_words, rise_words, &
+      term_parabola, driven_kinds, request_link
    use drawn_values, only: take_drawn, drawn_drive
    use names, only: drive_name
    use numerals, only: whole

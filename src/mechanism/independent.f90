@@ -4,9 +4,8 @@
 module independent
    use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
-   use mechanism, only: settings_t, mechanism_t, request_t, tolerance_t, pair_links, drive_links, request_links, &
-      drive_relangle, driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, &
-      number_link, number_knot
+   use mechanism, only: settings_t, mechanism_t, request_t, pair_links, drive_links, request_links, drive_relangle, &
+      driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, number_link, number_knot
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private

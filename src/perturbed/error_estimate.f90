@@ -2,7 +2,7 @@
 !> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_t, request_link, request_pair, request_pole, request_links
+   use mechanism, only: mechanism_t, method_newton, request_link, request_pair, request_pole
    use motion, only: motion_t
    use points, only: row_t, row_of, difference, is_fixed
    use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers

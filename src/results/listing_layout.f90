@@ -6,8 +6,8 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
-      request_curve, pair_prismatic
+   use mechanism, only: settings_t, request_t, request_link, request_point, request_pair, request_pole, request_curve, &
+      pair_prismatic
    use points, only: centre_numbers
    use independent, only: set_t, request_of
    use drives, only: law_t, new_law, growing_sizes

@@ -3,7 +3,6 @@
 !> of each block are split into what it knows and what it solves for. Each entry of the block's Jacobian has its place:
 !> in a dense matrix by columns, or in the order of a sparse one's pattern, which is made here.
 module block_structure
-   use kinds, only: wp
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use klu, only: pattern_t, order_columns

@@ -13,7 +13,7 @@
 !> holds few links, so the blocks stay small and the work proportional to the links.
 module vector_loops
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute
+   use mechanism, only: mechanism_t, pair_prismatic
    use links_tree, only: tree_t, axes_t, offset_in_drawing, ground_place, guide, other_link
    implicit none
    private
