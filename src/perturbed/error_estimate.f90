@@ -111,7 +111,9 @@ contains
          call make_ready(s%perturbed, merge(k, k + directions, abs(roundings) > 1.0_wp), m, engine, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
-               call put_off(m, k, roundings, p%m)
+               associate (blocks => engine%blocks)
+                  call put_off(m, blocks%tree, blocks%numbers%equations%axes, k, roundings, p%m)
+               end associate
                call put_changes(p, by_roundings=.true.)
                p%time_off = 0.0_wp
                if (k > 0) p%time_off = roundings*part_off(k)

@@ -18,7 +18,7 @@ module rounded_numbers
    use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number
-   use links_tree, only: tree_t, axes_t, new_tree, axes_of
+   use links_tree, only: tree_t, axes_t
    implicit none
    private
    public :: directions, caution, put_off, part_off
@@ -35,15 +35,15 @@ contains
 
    !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
    !> by so many `roundings`; 0: by none. As they stand are the time of a table, the exponent of a power, the angles
-   !> of ground links, BETA of guides, and the initial guess of moving links.
-   subroutine put_off(m, k, roundings, off)
+   !> of ground links, BETA of guides, and the initial guess of moving links. `t`, `axes`: of `m`.
+   subroutine put_off(m, t, axes, k, roundings, off)
       type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
       type(mechanism_t), intent(inout) :: off
-      type(tree_t) :: t
-      type(axes_t) :: axes
-      real(wp) :: origin(2), size_of
+      real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
       do i = 1, size(m%links)
@@ -63,10 +63,7 @@ contains
          call put(card_number_t(number_point, i, 0, 1), size_of)
          call put(card_number_t(number_point, i, 0, 2), size_of)
       end do
-      if (any(m%pairs%kind == pair_prismatic)) then
-         t = new_tree(m)
-         axes = axes_of(m, t)
-      end if
+      largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind /= pair_prismatic) cycle
          call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
@@ -77,8 +74,8 @@ contains
             quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
                int(quarter, int64)))
             off%pairs(i)%alpha = m%pairs(i)%alpha
-            if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*max(1.0_wp, &
-               maxval(abs(m%pairs%alpha)))*deviate(card_number_t(number_pair, t%orientation(link), quarters, 1), k)
+            if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*largest &
+               *deviate(card_number_t(number_pair, t%orientation(link), quarters, 1), k)
          end associate
       end do
       do i = 1, size(m%drives)

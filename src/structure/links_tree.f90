@@ -11,7 +11,7 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, axes_t, axes_of, put_axes, other_link, link_offset_t, place_on_tree, point_in_drawing, &
+   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_in_drawing, &
       offset_in_drawing, ground_place, guide
 
    type :: tree_t
@@ -171,16 +171,6 @@ contains
          t%root(link) = t%root(parent)
       end subroutine attach
    end function new_tree
-
-   !> The axes of the links of `m` on its tree `t`.
-   function axes_of(m, t) result(a)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t) :: a
-
-      allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
-      call put_axes(m, t, a)
-   end function axes_of
 
    !> Gives the axes `a` the numbers of `m`, whose tree is `t`.
    pure subroutine put_axes(m, t, a)

@@ -3,16 +3,26 @@ module sample_blocks
    use kinds, only: wp
    use planar, only: vector_t
    use mechanism, only: mechanism_t
-   use links_tree, only: tree_t, new_tree
+   use links_tree, only: tree_t, new_tree, axes_t, put_axes
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, numbers_t
    use block_structure, only: new_blocks
    use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, make_equations, xy
+   public :: plain_blocks, make_equations, xy, axes_of
 
 contains
+
+   !> The axes of the links of `m` on its tree `t`.
+   function axes_of(m, t) result(a)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      type(axes_t) :: a
+
+      allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
+      call put_axes(m, t, a)
+   end function axes_of
 
    !> The equations `e` of `m` with their numbers `x`, lengths in units of `length`.
    subroutine make_equations(m, length, e, x)
