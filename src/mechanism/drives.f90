@@ -38,10 +38,11 @@ module drives
       real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
    end type bounds_t
 
-   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals,
-   !> quotients of TIME, and error estimates put it up to twice 256 roundings aside. Instants of
-   !> doubles are as far off in real128.
-   real(wp), parameter :: joint_part = 1024.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
+   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals and
+   !> quotients of TIME put it some roundings aside. Error estimates put both the instant and the duration off by 256
+   !> roundings times a normal deviate: apart by 362 times such a deviate, which is below 2048 but once in a hundred
+   !> million times. Instants of doubles are as far off in real128.
+   real(wp), parameter :: joint_part = 2048.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
    !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
    real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
    !> The largest derivatives 0 to 3 of a rise of the lift 1 and the duration 1, whatever its law.

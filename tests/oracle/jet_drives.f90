@@ -11,7 +11,7 @@ module jet_drives
    public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
 
    !> As `fine_joint_part`, or as much as a coarser kind of real needs.
-   real(qp), parameter :: joint_part = max(fine_joint_part, 1024.0_qp*epsilon(1.0_wp))
+   real(qp), parameter :: joint_part = max(fine_joint_part, 2048.0_qp*epsilon(1.0_wp))
 
 contains
 

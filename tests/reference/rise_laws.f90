@@ -12,7 +12,7 @@ module rise_laws
    !> digits of a single.
    real(qp), parameter :: joint_part = 1.0e-6_qp
    !> The same of instants that have the digits of a double, as docs/cards.md says.
-   real(qp), parameter :: fine_joint_part = 1024.0_qp*epsilon(1.0_real64)
+   real(qp), parameter :: fine_joint_part = 2048.0_qp*epsilon(1.0_real64)
 
 contains
 
