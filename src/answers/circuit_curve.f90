@@ -13,13 +13,12 @@
 module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
-   use mechanism, only: mechanism_t, drive_x, drive_y
+   use mechanism, only: drive_t, mechanism_t, drive_x, drive_y
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve, determinant_sign
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values, drive_residual, drive_row, &
       drive_remainder
-   use drives, only: law_t
    use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance, measure_slots
    implicit none
    private
@@ -86,7 +85,7 @@ contains
       integer, intent(in) :: drive
       real(wp), intent(in) :: t
       real(wp) :: f(3, size(m%drives))
-      type(law_t), allocatable :: laws(:)
+      type(drive_t), allocatable :: laws(:)
       integer, allocatable :: others(:)
       integer :: i
 
@@ -206,8 +205,8 @@ contains
       value = x
       if (c%is_angle) return
       value = x*c%closure%length
-      if (c%driven%laws(1)%drive%kind == drive_x) value = value + c%closure%origin(1)
-      if (c%driven%laws(1)%drive%kind == drive_y) value = value + c%closure%origin(2)
+      if (c%driven%laws(1)%kind == drive_x) value = value + c%closure%origin(1)
+      if (c%driven%laws(1)%kind == drive_y) value = value + c%closure%origin(2)
    end function drive_value
 
    !> The links' position (3, links) `q` in the deck's unit, counted from its origin.

@@ -7,7 +7,7 @@ module ranges
    use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change
-   use drives, only: new_law, drive_motion
+   use drives, only: drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
    use independent, only: set_t
@@ -135,7 +135,7 @@ contains
 
       held = m
       do i = 1, size(m%drives)
-         f = drive_motion(new_law(m%drives(i)), t)
+         f = drive_motion(m%drives(i), t)
          held%drives(i)%polynomial = [f(1), 0.0_wp, 0.0_wp]
          if (allocated(held%drives(i)%terms)) deallocate (held%drives(i)%terms)
       end do

@@ -46,7 +46,7 @@ contains
          if (s%pairs(i)%kind == pair_prismatic) call tie(s%link_of(s%pairs(i)%point_i), s%link_of(s%pairs(i)%point_j))
       end do
       do i = 1, size(s%laws)
-         associate (drive => s%laws(i)%drive)
+         associate (drive => s%laws(i))
             if (drive%kind == drive_relangle) call tie(drive%subject, drive%second)
             if (drive%kind == drive_angle) where (c%class == c%class(drive%subject)) c%class = 0
          end associate
@@ -134,9 +134,9 @@ contains
       end do
       do k = 1, size(s%laws)
          row = 2*size(s%pairs) + k
-         associate (subject => s%laws(k)%drive%subject)
-            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = body(subject)
-            if (s%laws(k)%drive%kind == drive_slide) bound(row) = slot(subject)
+         associate (subject => s%laws(k)%subject)
+            if (any(s%laws(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
+            if (s%laws(k)%kind == drive_slide) bound(row) = slot(subject)
          end associate
       end do
    end function jacobian_lipschitz

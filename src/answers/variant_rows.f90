@@ -4,7 +4,7 @@ module variant_rows
    use planar, only: in_degrees
    use mechanism, only: request_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
-   use drives, only: new_law, drive_motion
+   use drives, only: drive_motion
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
@@ -343,7 +343,7 @@ contains
 
       if (d == 0) return
       associate (drive => set%parts(set%drives(d)%part)%drives(set%drives(d)%number))
-         f = drive_motion(new_law(drive), t)
+         f = drive_motion(drive, t)
          cell = cell_t(cell_number, f(1))
       end associate
    end function drive_cell

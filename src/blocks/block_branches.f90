@@ -7,9 +7,10 @@
 !> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
 module block_branches
    use kinds, only: wp
+   use mechanism, only: drive_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, nothing_gathered, is_solved, max_kantorovich_ratio
-   use drives, only: law_t, drive_motion, halve, middle_of
+   use drives, only: drive_motion, halve, middle_of
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
    use block_rank, only: values_t, decomposed, curvature_of
@@ -118,7 +119,7 @@ contains
    pure real(wp) function time_of_values(e, t, part) result(at)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t, part
-      type(law_t) :: law
+      type(drive_t) :: law
       real(wp) :: span(2), start(size(e%laws)), way(size(e%laws)), f(3), low, high
       integer :: d
 

@@ -206,7 +206,7 @@ contains
          if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          r%drive = d
          r%value = f(1)
-         r%is_angle = .not. is_length(e%laws(d)%drive)
+         r%is_angle = .not. is_length(e%laws(d))
          if (abs(f(2)) > 0.0_wp) exit
       end do
       list = [r]

@@ -2,13 +2,13 @@
 !> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, wanted_links, pair_revolute
+   use mechanism, only: drive_t, mechanism_t, wanted_links, pair_revolute
    use scales, only: is_length
    use motion, only: motion_t
    use links_tree, only: tree_t
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
-   use drives, only: law_t, new_law, drive_motion
+   use drives, only: drive_motion
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
@@ -71,8 +71,8 @@ module block_engine
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
-      type(law_t), allocatable :: laws(:)               !< (drives)
-      type(law_t), allocatable :: timed(:)              !< (drives) the deck's, while others are followed; then
+      type(drive_t), allocatable :: laws(:)             !< (drives)
+      type(drive_t), allocatable :: timed(:)            !< (drives) the deck's, while others are followed; then
       real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       integer, allocatable :: orientation_of(:)         !< (links)
@@ -126,7 +126,7 @@ contains
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      allocate (e%laws(size(m%drives)), e%unit_of(size(m%drives)))
+      allocate (e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)
@@ -204,8 +204,8 @@ contains
       type(mechanism_t), intent(in) :: m
       integer :: i
 
+      e%laws = m%drives
       do i = 1, size(m%drives)
-         e%laws(i) = new_law(m%drives(i))
          e%unit_of(i) = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives(i)))
       end do
       do i = 1, size(e%blocks%rows)

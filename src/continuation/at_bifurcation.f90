@@ -3,7 +3,7 @@
 module at_bifurcation
    use kinds, only: wp
    use drive_excursion, only: drive_excursion_t
-   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
+   use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
@@ -200,7 +200,7 @@ contains
 
    !> The value of `law` at the time `t`.
    pure real(wp) function value_at(law, t)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t
       real(wp) :: f(3)
 
@@ -210,7 +210,7 @@ contains
 
    !> The first time after `from`, up to `t`, at which `law` turns back, or rests before it does; otherwise `t`.
    pure real(wp) function next_turn(law, from, t) result(turn)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: from, t
       real(wp) :: f(3), low, way
       integer :: i
@@ -252,14 +252,12 @@ contains
 
    !> The law `value` + `rate` t of the same drive.
    function straight_law(law, value, rate) result(straight)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: value, rate
-      type(law_t) :: straight
-      type(drive_t) :: drive
+      type(drive_t) :: straight
 
-      drive = law%drive
-      drive%polynomial = [value, rate, 0.0_wp]
-      if (allocated(drive%terms)) deallocate (drive%terms)
-      straight = new_law(drive)
+      straight = law
+      straight%polynomial = [value, rate, 0.0_wp]
+      if (allocated(straight%terms)) deallocate (straight%terms)
    end function straight_law
 end module at_bifurcation

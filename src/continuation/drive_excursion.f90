@@ -7,10 +7,10 @@
 !> leave its own chord by more: round a cusp there is another assembly at the same values.
 module drive_excursion
    use kinds, only: wp
-   use mechanism, only: mechanism_t, find_instants
+   use mechanism, only: drive_t, mechanism_t, find_instants
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
-   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
+   use drives, only: drive_motion, bounds_t, bounds_of
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, largest_derivative, &
@@ -24,7 +24,7 @@ module drive_excursion
 
    !> The laws of all drives, and bounds of them. Times are in the deck's unit.
    type :: drive_excursion_t
-      type(law_t), allocatable :: laws(:)         !< (drives)
+      type(drive_t), allocatable :: laws(:)       !< (drives)
       real(wp), allocatable :: unit(:)            !< (drives) of the value: 1 over the characteristic length, or 1
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
@@ -44,10 +44,9 @@ contains
       n = merge(size(m%drives), 0, depends)
       length = 1.0_wp
       if (any(is_length(m%drives(:n)))) length = solver_length(m)
-      allocate (p%laws(n))
+      p%laws = m%drives(:n)
       allocate (p%unit(n), source=1.0_wp)
       do i = 1, n
-         p%laws(i) = new_law(m%drives(i))
          if (is_length(m%drives(i))) p%unit(i) = 1.0_wp/length
       end do
       call find_instants(m, p%first, p%last)

@@ -9,6 +9,7 @@ module deck_drives
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
    use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
+   use splines, only: new_spline
    use drawn_values, only: drawn_drive
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
@@ -144,10 +145,10 @@ contains
                if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, i, card_name)
                if (is_row(card)) then
                   if (row == 1) n = count(set%cards(i:last)%term == card%term)
-                  if (row == 1) allocate (term%knots(n), term%values(n))
+                  if (row == 1) allocate (term%table%x(n), term%table%y(n))
                   term%kind = term_table
-                  term%knots(row) = card%real(1)
-                  term%values(row) = card%real(2)*unit_of(drive)
+                  term%table%x(row) = card%real(1)
+                  term%table%y(row) = card%real(2)*unit_of(drive)
                   if (row > 1 .and. card%valid .and. any(card%given) .and. set%cards(i - 1)%valid &
                      .and. card%real(1) <= set%cards(i - 1)%real(1)) call add_card_error(set, table_order, i, real_1)
                   if (n == 1) call add_card_error(set, table_short, i, label_a)
@@ -182,9 +183,10 @@ contains
          if (set%cards(k)%row /= 1) cycle
          associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
             if (term%kind == term_table) then
+               term%table = new_spline(term%table%x, term%table%y)
                ! As doubles: in real128 a double may lie outside by its rounding.
-               if (real(first, dp) < real(term%knots(1), dp)) call add_instant_error(table_range, first)
-               if (real(last, dp) > real(term%knots(size(term%knots)), dp)) call add_instant_error(table_range, last)
+               if (real(first, dp) < real(term%table%x(1), dp)) call add_instant_error(table_range, first)
+               if (real(last, dp) > real(maxval(term%table%x), dp)) call add_instant_error(table_range, last)
             else if (term%kind == term_power) then
                ! t**p exists for t < 0 if p is a whole number, and with two derivatives at t = 0 if p is 0, 1 or at
                ! least 2. The motion passes t = 0 between instants as well.

@@ -9,7 +9,7 @@ module deck_remarks
       remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, mechanism_t, pair_t, card_number_t, &
       drive_links, pair_links, used_points, instant, pair_prismatic, driven_kinds, request_link, request_point, &
       request_pair, request_curve, method_words, method_newton
-   use drives, only: new_law, drive_motion
+   use drives, only: drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_drive
    use scales, only: solver_length
@@ -259,7 +259,7 @@ contains
             is_angle = driven_kinds(drive%kind) == request_link
             if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
                call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
-            f = drive_motion(new_law(drive), instant(m, 0))
+            f = drive_motion(drive, instant(m, 0))
             x = f(1) - drawn_drive(m, drive)
             if (is_angle) x = without_turns(x)
             if (abs(x) > drawn_digits*merge(1.0_wp, length, is_angle)) &

@@ -113,7 +113,7 @@ contains
 
       do i = 1, size(s%laws)
          f(:, i) = drive_motion(s%laws(i), t)
-         associate (kind => s%laws(i)%drive%kind)
+         associate (kind => s%laws(i)%kind)
             if (any(kind == [drive_x, drive_y])) f(1, i) = f(1, i) - s%origin(axis_of(kind))
             if (any(kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
          end associate
@@ -134,7 +134,7 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: driven
 
-      associate (drive => s%laws(k)%drive, subject => s%laws(k)%drive%subject, axis => axis_of(s%laws(k)%drive%kind))
+      associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
          select case (drive%kind)
          case (drive_angle)
             r = p%q(3, subject)
@@ -158,7 +158,7 @@ contains
       real(wp) :: coefficients(3)
 
       coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
-      associate (drive => s%laws(k)%drive, subject => s%laws(k)%drive%subject, axis => axis_of(s%laws(k)%drive%kind))
+      associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
          select case (drive%kind)
          case (drive_angle)
             call place(s, a, row, subject, coefficients)
@@ -184,7 +184,7 @@ contains
       integer, intent(in) :: k
 
       gamma = 0.0_wp
-      associate (subject => s%laws(k)%drive%subject, kind => s%laws(k)%drive%kind)
+      associate (subject => s%laws(k)%subject, kind => s%laws(k)%kind)
          if (any(kind == [drive_x, drive_y])) &
             gamma = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
          if (kind == drive_slide) gamma = projection_remainder(s, p, v, subject, along(s, p, subject))

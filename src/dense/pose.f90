@@ -11,9 +11,8 @@
 module pose
    use kinds, only: wp
    use planar, only: rotated, quarter_turn, pi
-   use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
+   use mechanism, only: drive_t, mechanism_t, pair_t, drive_slide, plane_origin
    use scales, only: solver_length, power_of_two
-   use drives, only: law_t, new_law
    implicit none
    private
    public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, normal_angle, add_to_links
@@ -28,7 +27,7 @@ module pose
       integer, allocatable :: link_of(:)          !< (points)
       real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
       type(pair_t), allocatable :: pairs(:)
-      type(law_t), allocatable :: laws(:)         !< of the drives
+      type(drive_t), allocatable :: laws(:)       !< of the drives
       real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
    end type system_t
 
@@ -69,10 +68,7 @@ contains
       s%pairs%offset = m%pairs%offset/s%length
       s%guide(1, :) = cos(m%pairs%alpha)
       s%guide(2, :) = sin(m%pairs%alpha)
-      allocate (s%laws(size(m%drives)))
-      do i = 1, size(m%drives)
-         s%laws(i) = new_law(m%drives(i))
-      end do
+      s%laws = m%drives
    end function new_system
 
    !> The deck's positions: of ground links the given ones, of the others the estimates.
@@ -123,8 +119,8 @@ contains
          p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
       end do
       do i = 1, size(s%laws)
-         if (s%laws(i)%drive%kind == drive_slide) &
-            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
+         if (s%laws(i)%kind == drive_slide) &
+            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%subject) + pi/2.0_wp)
       end do
       call set_pose(s, p)
    end subroutine choose_references

@@ -5,10 +5,9 @@
 #define IS(value)
 module lane_state
    use kinds, only: wp
-   use mechanism, only: own_predictor
+   use mechanism, only: drive_t, own_predictor
    use loop_equations, only: are_alike
    use blocks, only: blocks_t
-   use drives, only: law_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
    use lane_elimination, only: max_order
@@ -40,7 +39,7 @@ module lane_state
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)
       logical :: is_polynomial = .true.                 !< no law of any lane has terms
-      type(law_t), allocatable :: laws(:, :)            !< (drives, lanes)
+      type(drive_t), allocatable :: laws(:, :)            !< (drives, lanes)
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
       real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
@@ -114,13 +113,13 @@ contains
       if (.not. is_alike) return
       do i = 1, size(e%laws)
          l%laws(i, lane) = e%laws(i)
-         l%polynomial(lane, :, i) = e%laws(i)%drive%polynomial
+         l%polynomial(lane, :, i) = e%laws(i)%polynomial
          l%unit_of(lane, i) = e%unit_of(i)
       end do
       l%is_polynomial = .true.
       do k = 1, width
          do i = 1, size(e%laws)
-            if (allocated(l%laws(i, k)%splines)) l%is_polynomial = l%is_polynomial .and. size(l%laws(i, k)%splines) == 0
+            if (allocated(l%laws(i, k)%terms)) l%is_polynomial = l%is_polynomial .and. size(l%laws(i, k)%terms) == 0
          end do
       end do
       associate (b => e%blocks, x => e%blocks%numbers)

@@ -8,6 +8,7 @@ module card_numbers
    use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
       number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_words, rise_words, &
       term_parabola, driven_kinds, request_link
+   use splines, only: new_spline
    use drawn_values, only: take_drawn, drawn_drive
    use names, only: drive_name
    use numerals, only: whole
@@ -196,7 +197,7 @@ contains
             if (i == 2) x => m%pairs(k)%offset
             if (i == 3) x => m%pairs(k)%beta
          case (number_knot)
-            x => m%drives(k)%terms(n%term)%knots(i)
+            x => m%drives(k)%terms(n%term)%table%x(i)
          case (number_time)
             x => m%t0
             if (i == 2) x => m%t1
@@ -204,7 +205,7 @@ contains
             if (n%term == 0) then
                x => m%drives(k)%polynomial(i)
             else if (m%drives(k)%terms(n%term)%kind == term_table) then
-               x => m%drives(k)%terms(n%term)%values(i)
+               x => m%drives(k)%terms(n%term)%table%y(i)
             else
                x => m%drives(k)%terms(n%term)%r(i)
             end if
@@ -233,7 +234,7 @@ contains
    end subroutine set_number
 
    !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
-   !> points. Nothing is allocated.
+   !> points.
    subroutine put_number(m, n, value)
       type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: n
@@ -245,6 +246,11 @@ contains
       if (n%kind /= number_joint) then
          x => number_in(m, n)
          x = value
+         if (n%kind /= number_drive .and. n%kind /= number_knot) return
+         if (n%term == 0) return
+         associate (term => m%drives(n%subject)%terms(n%term))
+            if (term%kind == term_table) term%table = new_spline(term%table%x, term%table%y)
+         end associate
          return
       end if
       way = 0.0_wp

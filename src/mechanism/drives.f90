@@ -17,19 +17,13 @@ module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use splines, only: spline_t, new_spline, piece_at, piece_value
+   use splines, only: spline_t, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, bounds_t, bounds_of, drive_rate, joints_of
+   public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
-
-   !> A drive made ready for evaluation.
-   type :: law_t
-      type(drive_t) :: drive
-      type(spline_t), allocatable :: splines(:)   !< (terms) the splines of those that are tables, times and values
-   end type law_t
 
    !> An interval for each derivative of a law.
    type :: bounds_t
@@ -52,36 +46,21 @@ module drives
 
 contains
 
-   !> The law of `drive`, its splines solved.
-   function new_law(drive) result(law)
-      type(drive_t), intent(in) :: drive
-      type(law_t) :: law
-      integer :: i
-
-      law%drive = drive
-      if (.not. allocated(law%drive%terms)) allocate (law%drive%terms(0))
-      allocate (law%splines(size(law%drive%terms)))
-      do i = 1, size(law%splines)
-         associate (term => law%drive%terms(i))
-            if (term%kind == term_table) law%splines(i) = new_spline(term%knots, term%values)
-         end associate
-      end do
-   end function new_law
-
    !> Value, rate and acceleration (3) at the time `t`, in the drive's unit (length or rad) and the deck's unit of time.
    pure function drive_motion(law, t) result(f)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t
       real(wp) :: f(3), u
       integer :: i
 
-      associate (c => law%drive%polynomial)
+      associate (c => law%polynomial)
          f(1) = c(1) + t*(c(2) + t*c(3)/2.0_wp)
          f(2) = c(2) + t*c(3)
          f(3) = c(3)
       end associate
-      do i = 1, size(law%splines)
-         associate (term => law%drive%terms(i), r => law%drive%terms(i)%r)
+      if (.not. allocated(law%terms)) return
+      do i = 1, size(law%terms)
+         associate (term => law%terms(i), r => law%terms(i)%r)
             select case (term%kind)
             case (term_harmonic)
                u = r(2)*t + r(3)
@@ -91,7 +70,7 @@ contains
                f = f + [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
                   monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
             case (term_table)
-               f = f + piece_value(law%splines(i), piece_at(law%splines(i), t), t)
+               f = f + piece_value(term%table, piece_at(term%table, t), t)
             case (term_cycloid:term_parabola)
                u = (t - r(1))/r(2)
                f = f + r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, r(2), r(2)**2]
@@ -104,7 +83,7 @@ contains
    !> last pieces; a power that is not defined somewhere in the interval has no bounds. `one_instant`: the interval is
    !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
    pure function bounds_of(law, t1, t2, one_instant) result(b)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2
       logical, intent(in), optional :: one_instant
       type(bounds_t) :: b, of_term
@@ -115,7 +94,7 @@ contains
       to = max(t1, t2)
       ! Of the polynomial: from its values at both ends, and where its rate is zero.
       times = [from, to, from]
-      associate (c => law%drive%polynomial)
+      associate (c => law%polynomial)
          if (abs(c(3)) > 0.0_wp) times(3) = within(-c(2)/c(3), from, to)
          do k = 1, 3
             associate (t => times(k))
@@ -124,8 +103,9 @@ contains
             end associate
          end do
       end associate
-      do i = 1, size(law%splines)
-         associate (term => law%drive%terms(i))
+      if (.not. allocated(law%terms)) return
+      do i = 1, size(law%terms)
+         associate (term => law%terms(i))
             select case (term%kind)
             case (term_harmonic)
                of_term = harmonic_bounds(term%r, from, to)
@@ -139,7 +119,7 @@ contains
             case (term_table)
                ! Each piece in the interval is a cubic.
                of_term = bounds_t()
-               associate (s => law%splines(i))
+               associate (s => term%table)
                   first = piece_at(s, from)
                   last = piece_at(s, to)
                   do k = first, last
@@ -207,7 +187,7 @@ contains
             case (term_power)
                if (t > 0.0_wp) rate = rate + abs(r(1)*r(2))*t**(r(2) - 1.0_wp)
             case (term_table)
-               associate (x => term%knots, y => term%values, n => size(term%knots))
+               associate (x => term%table%x, y => term%table%y, n => size(term%table%x))
                   rate = rate + maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
                end associate
             case default
@@ -230,7 +210,7 @@ contains
          associate (r => drive%terms(i)%r)
             select case (drive%terms(i)%kind)
             case (term_table)
-               times = [times, drive%terms(i)%knots]
+               times = [times, drive%terms(i)%table%x]
             case (term_cycloid:term_parabola)
                times = [times, r(1), r(1) + r(2)]
                if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
@@ -440,7 +420,7 @@ contains
    !> or rad) and the deck's unit of time. Of a power with a negative exponent at the time `last` alone: before, the law
    !> itself is as large.
    pure function growing_sizes(law, last) result(sizes)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: last
       real(wp) :: sizes(3, 0:1)
 
@@ -450,17 +430,18 @@ contains
 
    !> The sizes (3) at the times -`t` and `t`. Between t = 0 and `last` none of them is above its chord.
    pure function sizes_at(law, t, last) result(sizes)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t, last
       real(wp) :: sizes(3), c, power, time, bend, slope
       real(wp), allocatable :: h(:)
       integer :: i, k
 
-      associate (c => abs(law%drive%polynomial))
+      associate (c => abs(law%polynomial))
          sizes = [c(1) + t*(c(2) + t*c(3)), c(2) + t*c(3), c(3)]
       end associate
-      do i = 1, size(law%drive%terms)
-         associate (term => law%drive%terms(i), r => abs(law%drive%terms(i)%r))
+      if (.not. allocated(law%terms)) return
+      do i = 1, size(law%terms)
+         associate (term => law%terms(i), r => abs(law%terms(i)%r))
             select case (term%kind)
             case (term_harmonic)
                sizes = sizes + (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
@@ -475,7 +456,7 @@ contains
                end do
             case (term_table)
                ! From the differences of its rows.
-               associate (s => law%splines(i), n => size(term%knots))
+               associate (s => term%table, n => size(term%table%x))
                   h = s%x(2:) - s%x(:n - 1)
                   bend = maxval(abs(s%m))
                   slope = maxval(abs(s%y(2:) - s%y(:n - 1))/h) + bend*maxval(h)
@@ -493,13 +474,13 @@ contains
    !> The drive of `law` does not move between the times `t1` and `t2`, by the bounds of its rate; or, if they are
    !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
    elemental logical function is_at_rest(law, t1, t2)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2
       type(bounds_t) :: b
       real(wp) :: width, from
 
       ! A law without joints rests always or never.
-      width = rest_part*maxval(abs([t1, t2, joints_of(law%drive)]))
+      width = rest_part*maxval(abs([t1, t2, joints_of(law)]))
       if (.not. width > 0.0_wp) width = 1.0_wp
       from = min(t1, t2) + width
       b = bounds_of(law, from, max(max(t1, t2) - width, from + width))

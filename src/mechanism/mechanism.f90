@@ -2,6 +2,7 @@
 !> others read it. Lengths and times are in the deck's units, angles in radians.
 module mechanism
    use kinds, only: wp, label_length, title_length
+   use splines, only: spline_t
    implicit none
    private
    public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, card_number_t, tolerance_t, &
@@ -122,7 +123,7 @@ module mechanism
    type :: term_t
       integer :: kind = term_harmonic        !< term_harmonic, ..., term_parabola
       real(wp) :: r(3) = 0.0_wp              !< R1, R2, R3 of the card; angles in radians
-      real(wp), allocatable :: knots(:), values(:)  !< (rows) of a table: times, increasing, and values
+      type(spline_t) :: table                !< (rows) of a table: times, increasing, and values; solved
    end type term_t
 
    type :: drive_t

@@ -5,7 +5,7 @@ module digits_in_doubt
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use drives, only: new_law, growing_sizes
+   use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
    use sum_errors, only: growth_in_centres
    use block_engine, only: block_engine_t
@@ -52,7 +52,7 @@ contains
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
       do i = 1, size(m%drives)
-         sizes = growing_sizes(new_law(m%drives(i)), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
+         sizes = growing_sizes(m%drives(i), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
          do k = 1, 3
             s%law = max(s%law, sizes(k, :)/s%rate**(k - 1))
          end do

@@ -18,6 +18,7 @@ module rounded_numbers
    use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number
+   use splines, only: new_spline
    use links_tree, only: tree_t, axes_t
    implicit none
    private
@@ -97,13 +98,18 @@ contains
       subroutine put(number, size_of)
          type(card_number_t), intent(in) :: number
          real(wp), intent(in) :: size_of
-         real(wp) :: by
 
-         if (.not. size_of > 0.0_wp) return
+         if (size_of > 0.0_wp) call put_number(off, number, number_value(m, number) + change_of(number, size_of))
+      end subroutine put
+
+      !> By how much the number that is rounded by `size_of` is off.
+      real(wp) function change_of(number, size_of) result(by)
+         type(card_number_t), intent(in) :: number
+         real(wp), intent(in) :: size_of
+
          by = 0.0_wp
          if (k > 0) by = roundings*epsilon(1.0_wp)*size_of*deviate(number, k)
-         call put_number(off, number, number_value(m, number) + by)
-      end subroutine put
+      end function change_of
 
       !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
       subroutine put_term(term, drive, j)
@@ -113,13 +119,14 @@ contains
          integer :: i
 
          if (term%kind == term_table) then
-            associate (x => term%knots, y => term%values)
+            associate (x => term%table%x, y => term%table%y, table => off%drives(drive)%terms(j)%table)
                do i = 1, size(y)
                   slope = 0.0_wp
                   if (i > 1) slope = abs((y(i) - y(i - 1))/(x(i) - x(i - 1)))
                   if (i < size(y)) slope = max(slope, abs((y(i + 1) - y(i))/(x(i + 1) - x(i))))
-                  call put(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
+                  table%y(i) = y(i) + change_of(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
                end do
+               table = new_spline(x, table%y)
             end associate
          else
             do i = 1, merge(1, 3, term%kind == term_power)

@@ -8,8 +8,7 @@
 module ball_numbers
    use kinds, only: wp
    use planar, only: length_of, real_vector_t => vector_t
-   use mechanism, only: mechanism_t, pair_prismatic, plane_origin
-   use drives, only: law_t
+   use mechanism, only: drive_t, mechanism_t, term_table, pair_prismatic, plane_origin
    use links_tree, only: tree_t
    use blocks, only: blocks_t, loop_angles
    use balls, only: ball_t, rounding, room
@@ -121,14 +120,15 @@ contains
    !> these knots, in the drive's unit. With r what the equations of the second derivatives M leave, which are
    !> diagonally dominant, |dM| <= max |r_i|/(h_(i-1) + h_i).
    pure function table_errors(law) result(error)
-      type(law_t), intent(in) :: law
+      type(drive_t), intent(in) :: law
       real(wp) :: error(0:2), of_m, r, h(2)
       integer :: i, k
 
       error = 0.0_wp
-      do k = 1, size(law%splines)
-         if (.not. allocated(law%splines(k)%x)) cycle
-         associate (x => law%splines(k)%x, y => law%splines(k)%y, m => law%splines(k)%m)
+      if (.not. allocated(law%terms)) return
+      do k = 1, size(law%terms)
+         if (law%terms(k)%kind /= term_table) cycle
+         associate (x => law%terms(k)%table%x, y => law%terms(k)%table%y, m => law%terms(k)%table%m)
             of_m = 0.0_wp
             do i = 2, size(x) - 1
                h = [x(i) - x(i - 1), x(i + 1) - x(i)]

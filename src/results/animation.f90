@@ -5,7 +5,7 @@ module animation
    use kinds, only: wp
    use planar, only: in_degrees, without_turns, point_of
    use scales, only: is_length
-   use drives, only: law_t, drive_motion, new_law
+   use drives, only: drive_motion
    use motion, only: mark_none
    use names, only: drive_name
    use numerals, only: full, whole
@@ -177,14 +177,12 @@ contains
       subroutine put_clock()
          real(wp) :: up(2, size(frame)), value(min(max_drives, size(c%m%drives)), frames), f(0:2)
          character(:), allocatable :: words
-         type(law_t) :: law
          integer :: k, i, y
 
          ! The values of the first drives, angles in the deck's unit. Rounding errors of a 0 are not shown.
          do i = 1, size(value, 1)
-            law = new_law(c%m%drives(i))
             do k = 1, frames
-               f = drive_motion(law, d%frame(frame(k))%t)
+               f = drive_motion(c%m%drives(i), d%frame(frame(k))%t)
                value(i, k) = f(0)
             end do
             if (c%m%degrees .and. .not. is_length(c%m%drives(i))) value(i, :) = in_degrees(value(i, :))

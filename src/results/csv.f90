@@ -12,10 +12,10 @@
 module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: request_t, request_link, request_point, request_pair, request_pole, &
+   use mechanism, only: drive_t, request_t, request_link, request_point, request_pair, request_pole, &
       request_curve, pair_prismatic
    use scales, only: is_length
-   use drives, only: law_t, new_law, drive_motion
+   use drives, only: drive_motion
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, has_number, is_due, centre_numbers, coordinates_of
    use assemblies, only: assemblies_t
@@ -67,7 +67,7 @@ module csv
 
    !> The columns of a set.
    type :: table_t
-      type(law_t), allocatable :: laws(:)           !< (drives)
+      type(drive_t), allocatable :: laws(:)           !< (drives)
       character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
       logical, allocatable :: angular(:)            !< (drives) the drive is an angle
       type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
@@ -290,7 +290,7 @@ contains
       allocate (t%laws(size(s%drives)), t%angular(size(s%drives)))
       do i = 1, size(s%drives)
          associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
-            t%laws(i) = new_law(drive)
+            t%laws(i) = drive
             t%angular(i) = .not. is_length(drive)
          end associate
       end do

@@ -6,11 +6,11 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: settings_t, request_t, request_link, request_point, request_pair, request_pole, request_curve, &
-      pair_prismatic
+   use mechanism, only: drive_t, settings_t, request_t, request_link, request_point, request_pair, request_pole, &
+      request_curve, pair_prismatic
    use points, only: centre_numbers
    use independent, only: set_t, request_of
-   use drives, only: law_t, new_law, growing_sizes
+   use drives, only: growing_sizes
    use names, only: drive_name, more
    use scales, only: characteristic_length, characteristic_rate, latest_time, is_length, shortest_step
    use numerals, only: whole, numeral_length, max_decimals
@@ -52,7 +52,7 @@ module listing_layout
    !> A drive at the head of an instant: what stands before and behind its value, and its form.
    type :: head_drive_t
       character(:), allocatable :: before, behind
-      type(law_t) :: law
+      type(drive_t) :: law
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
       real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `growing_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
@@ -125,7 +125,7 @@ contains
             n = merge(1, 2, is_length(own))
             drive%before = '   '//trim(drive_name(m, own))//' = '
             drive%behind = ' '//unit_of(d%power(n, 0), trim(merge(angle_unit(m), m%length_unit, n == 2)))
-            drive%law = new_law(own)
+            drive%law = own
             sizes = growing_sizes(drive%law, latest_time(m))
             drive%size_of = sizes(1, :)
             if (n == 2) drive%unit = l%angle

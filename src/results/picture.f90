@@ -6,7 +6,7 @@ module picture
    use mechanism, only: pair_revolute, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use planar, only: degree, direction, quarter_turn
-   use drives, only: drive_motion, new_law
+   use drives, only: drive_motion
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates, moved, distance_to
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
@@ -123,7 +123,7 @@ contains
 
       do i = 1, size(c%m%drives)
          associate (drive => c%m%drives(i), known => c%s%known)
-            f = drive_motion(new_law(drive), c%s%t)
+            f = drive_motion(drive, c%s%t)
             sense = sign(1.0_wp, f(2))
             if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
             call put_group(c%o, 'class="drives"', trim(drive_name(c%m, drive)))

@@ -5,8 +5,8 @@
 program dwells_by_chance
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, branch_request_t, term_t, term_cycloid, drive_x, instant
-   use drives, only: new_law, law_t, drive_motion
+   use mechanism, only: drive_t, mechanism_t, branch_request_t, term_t, term_cycloid, drive_x, instant
+   use drives, only: drive_motion
    use motion, only: motion_t, new_motion
    use analysis, only: analysis_t, make_analysis, advance
    use sample_mechanisms, only: four_bar, crank_slider
@@ -172,7 +172,7 @@ contains
       integer, intent(in) :: seed
       type(analysis_t) :: a
       type(motion_t) :: q
-      type(law_t) :: law
+      type(drive_t) :: law
       real(wp) :: x(4), y(4), phi(4), f(3), off, sine, allowed, t
       integer :: k, side
       logical :: finite, changes, stands
@@ -180,7 +180,7 @@ contains
       is_followed = .true.
       call make_analysis(a, s%m)
       q = new_motion(4)
-      law = new_law(s%m%drives(1))
+      law = s%m%drives(1)
       associate (rises => s%m%drives(1)%terms)
          ! A card for the way back, or one whose time is in the dwell, needs an instant there.
          changes = s%has_card

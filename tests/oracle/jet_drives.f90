@@ -50,8 +50,8 @@ contains
 
       allocate (x(0), y(0))
       if (term%kind == term_table) then
-         x = term%knots
-         y = term%values
+         x = term%table%x
+         y = term%table%y
       end if
       f = term_jet(term%kind, real(term%r, qp), x, y, t)
    end function term_of
@@ -161,7 +161,7 @@ contains
          f = term_of(term, t)
          s = abs([f%v, f%d, f%dd])*(1.0_qp + r(2))
       case (term_table)
-         associate (x => term%knots, y => term%values, n => size(term%knots))
+         associate (x => term%table%x, y => term%table%y, n => size(term%table%x))
             steepest = maxval(2.0_qp*maxval(abs(real(y, qp)))/(real(x(2:), qp) - x(:n - 1)))
             widest = maxval(real(x(2:), qp) - x(:n - 1))
             s(2) = 6.0_qp*steepest/minval(real(x(2:), qp) - x(:n - 1))
@@ -204,10 +204,10 @@ contains
       one = drive
       associate (term => one%terms(1))
          if (term%kind == term_table) then
-            allocate (c(size(term%values)))
+            allocate (c(size(term%table%y)))
             do k = 1, size(c)
-               term%values = 0.0_wp
-               term%values(k) = drive%terms(1)%values(k)
+               term%table%y = 0.0_wp
+               term%table%y(k) = drive%terms(1)%table%y(k)
                c(k) = drive_jet(one, t)
             end do
             return

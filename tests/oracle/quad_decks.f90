@@ -85,8 +85,8 @@ contains
       case (term_power)
          r(:2) = [number(m, term%r(1), turns), length(term%r(2))]
       case (term_table)
-         x = [(length(term%knots(i)), i=1, size(term%knots))]
-         y = [(number(m, term%values(i), turns), i=1, size(term%values))]
+         x = [(length(term%table%x(i)), i=1, size(term%table%x))]
+         y = [(number(m, term%table%y(i), turns), i=1, size(term%table%y))]
       case default
          r = [length(term%r(1)), length(term%r(2)), number(m, term%r(3), turns)]
       end select

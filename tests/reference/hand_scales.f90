@@ -148,9 +148,9 @@ contains
             case (term_power)
                steepest = abs(real(a%r(1), qp)*a%r(2))*t**(real(a%r(2), qp) - 1.0_qp)
             case (term_table)
-               do k = 2, size(a%knots)
-                  steepest = max(steepest, abs((real(a%values(k), qp) - a%values(k - 1)) &
-                     /(real(a%knots(k), qp) - a%knots(k - 1))))
+               do k = 2, size(a%table%x)
+                  steepest = max(steepest, abs((real(a%table%y(k), qp) - a%table%y(k - 1)) &
+                     /(real(a%table%x(k), qp) - a%table%x(k - 1))))
                end do
             case default
                steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(rise_words(a%kind)))
