@@ -5,9 +5,9 @@ module canvas
    use mechanism, only: mechanism_t
    use planar, only: direction, rotated
    use numerals, only: full, whole
-   use drawing, only: drawing_t, snapshot_t, point_place, point_velocity, joint_point, moved
-   use shapes, only: element_t, shapes_of, color_of, link_color, box
-   use svg, only: page_t, width, put_words, put_circle, put_line, put_hatch, hatch_length, put_curve, put_group, &
+   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, moved
+   use shapes, only: element_t, shapes_of, color_of, link_color
+   use svg, only: page_t, width, put_words, put_circle, put_line, put_hatch, hatch_length, put_group, &
       put_end, attribute, fitted
    use text_output, only: output_t
    use listing, only: words_of_mark
@@ -15,7 +15,7 @@ module canvas
    implicit none
    private
    public :: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_traces, put_ring, put_name
-   public :: put_foot, add_line, add_lines, cover_of
+   public :: put_foot, add_lines, add_box, cover_of
 
    !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
    type :: canvas_t
@@ -23,14 +23,11 @@ module canvas
       type(drawing_t), pointer :: d => null()     !< what is recorded of the set
       type(mechanism_t), pointer :: m => null()   !< the set
       type(snapshot_t) :: s                  !< the position that is drawn in full
-      integer, allocatable :: paths(:)       !< the numbers of points whose paths are drawn
       integer :: bottom = 0                  !< the pixel above which it ends
       real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
       real(wp) :: shift(2) = 0.0_wp
       real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !< the mechanism and its names stay between these
-      integer :: lines = 0
-      !> (5, lines or more) x, y of both ends, weight; below 0 a box, of its upper left and its lower right corner
-      real(wp), allocatable :: line(:, :)
+      real(wp), allocatable :: ink(:, :)     !< what is drawn in each cell of these: pixels of lines by their weight
    end type canvas_t
 
    !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
@@ -40,8 +37,6 @@ module canvas
    integer, parameter, public :: line_height = 17
    !> By this part of its larger side a mechanism's picture is wider on each side, at most, for centrodes.
    real(wp), parameter :: centrode_room = 0.4_wp
-   !> Places of a path that differ by no more than this part of its extent are one.
-   real(wp), parameter :: same_place = 1.0e-6_wp
    !> The rings of an instant centre and of a joint at a flagged position.
    real(wp), parameter, public :: centre_radius = 4.0_wp
    real(wp), parameter :: ring_radius = 8.0_wp
@@ -53,17 +48,15 @@ module canvas
    !> The distances of a name from its place, in pixels, and what a pixel of distance counts against a pixel of overlap.
    real(wp), parameter :: distances(*) = [9.0_wp, 14.0_wp, 21.0_wp, 30.0_wp, 42.0_wp]
    real(wp), parameter :: distance_weight = 0.25_wp
-   !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
-   real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
+   !> Pixels of the side of a cell, and pieces of a line at most: what is longer leaves the picture.
+   real(wp), parameter :: cell = 2.0_wp
+   integer, parameter :: max_pieces = 2000
+   !> What a name over a name counts in each cell, and one that leaves the picture, in pixels of overlap with a line.
+   real(wp), parameter :: over_name = 10.0_wp, outside = 500.0_wp
    !> Pixels, and overlaps of this many of them, that differ by no more are the same: rounding errors do not choose.
    real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
-   !> The control points of a cubic of a path are no farther from its ends than this part of the distance of its ends,
-   !> as in half a turn of a circle. Farther ones would draw loops that are not there.
-   real(wp), parameter :: max_control = 0.6_wp
-   !> A cubic may be so far from a place of its path, in pixels.
-   real(wp), parameter :: off_path = 0.05_wp
    !> The weight of a path against that of a bar, for names.
    real(wp), parameter :: path_weight = 0.4_wp
 
@@ -89,7 +82,6 @@ contains
       c%d => d
       c%m => d%m
       c%s = s
-      c%paths = paths_of(d)
 
       ! What is drawn: all shapes at the position in full, links at the others, paths; and centrodes, which may run to
       ! infinity, as far as the picture is wider by `centrode_room` on all sides at most.
@@ -109,10 +101,10 @@ contains
             call widen(places_of(list(i), d%flags(k)%last))
          end do
       end do
-      do i = 1, size(c%paths)
+      do i = 1, size(d%curves)
          do k = 1, d%films
-            if (d%frame(k)%known(d%m%points(c%paths(i))%link)) &
-               call widen(reshape(point_place(d%m, d%frame(k), c%paths(i)), [2, 1]))
+            if (d%frame(k)%known(d%m%points(d%curves(i))%link)) &
+               call widen(reshape(point_place(d%m, d%frame(k), d%curves(i)), [2, 1]))
          end do
       end do
       if (.not. all(low <= high)) then
@@ -148,6 +140,7 @@ contains
       end associate
       c%low = [4.0_wp, real(top + above, wp)]
       c%high = [real(width - 4, wp), real(top + above + height, wp)]
+      allocate (c%ink(int((c%high(1) - c%low(1))/cell) + 1, int((c%high(2) - c%low(2))/cell) + 1), source=0.0_wp)
 
       call put_group(c%o, 'class="set" data-set="'//whole(c%m%set_number)//'" data-scale="'//full(c%scale) &
          //'" data-x="'//fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2)) &
@@ -181,30 +174,6 @@ contains
       p = moved(p, s%place(:, shape%link))
       if (.not. s%known(shape%link)) p = p(:, :0)
    end function places_of
-
-   !> The points whose paths are drawn: those that move; of several with the same path the first.
-   pure function paths_of(d) result(list)
-      type(drawing_t), intent(in) :: d
-      integer, allocatable :: list(:)
-      real(wp) :: p(2, d%films, size(d%curves)), extent
-      integer :: i, j, k, first
-
-      allocate (list(0))
-      p = 0.0_wp
-      do i = 1, size(d%curves)
-         associate (known => [(d%frame(k)%known(d%m%points(d%curves(i))%link), k=1, d%films)])
-            first = findloc(known, .true., dim=1)
-            if (first == 0) cycle
-            do k = 1, d%films
-               p(:, k, i) = point_place(d%m, d%frame(merge(k, first, known(k))), d%curves(i))
-            end do
-         end associate
-         extent = maxval(abs(p(:, :, i)))
-         if (all(abs(p(:, :, i) - spread(p(:, first, i), 2, d%films)) <= same_place*extent)) cycle
-         if (any([(all(abs(p(:, :, j) - p(:, :, i)) <= same_place*extent), j=1, i - 1)])) cycle
-         list = [list, d%curves(i)]
-      end do
-   end function paths_of
 
    !> The pixel (2) of the place `p` (2), which is counted from the drawing's origin.
    pure function to_pixels(c, p) result(q)
@@ -245,7 +214,7 @@ contains
          call put_line(c%o, 'polyline', q, shape%attributes, shape%title)
       end select
       if (shape%weight < 0.0_wp) then
-         call add_line(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius, box)
+         call add_box(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
       else if (shape%weight > 0.0_wp) then
          call add_lines(c, q, shape%weight)
       end if
@@ -277,8 +246,8 @@ contains
       type(canvas_t), intent(inout) :: c
       integer :: i, k, point
 
-      do i = 1, size(c%paths)
-         call put_path(c, c%paths(i))
+      do i = 1, size(c%d%curves)
+         call put_path(c, c%d%curves(i))
       end do
       do k = 1, size(c%d%flags)
          associate (s => c%d%flags(k)%last)
@@ -294,79 +263,28 @@ contains
       end do
    end subroutine put_traces
 
-   !> Draws the path of point number `i` through the frames, in pieces where its place is not known. Each piece is made
-   !> of cubics with the velocities at their ends, over as many frames as come near enough.
+   !> Draws the path of point number `i` through the frames, in pieces where its place is not known.
    subroutine put_path(c, i)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i
       character(:), allocatable :: name
-      real(wp) :: p(2, c%d%films), v(2, c%d%films), t(c%d%films)   ! pixels, and pixels in a unit of time
-      real(wp) :: q(2, 3*c%d%films)                                ! ends and control points of cubics
+      real(wp) :: p(2, c%d%films)            ! pixels
       logical :: known(c%d%films + 1)
-      integer :: from, to, k, n
+      integer :: first, last
 
       name = trim(c%m%points(i)%name)
-      known = [(c%d%frame(k)%known(c%m%points(i)%link), k=1, c%d%films), .false.]
-      do k = 1, c%d%films
-         t(k) = c%d%frame(k)%t
-         p(:, k) = to_pixels(c, point_place(c%m, c%d%frame(k), i))
-         v(:, k) = c%scale*point_velocity(c%m, c%d%frame(k), i)*[1.0_wp, -1.0_wp]
-      end do
-
+      known = [(c%d%frame(last)%known(c%m%points(i)%link), last=1, c%d%films), .false.]
       call put_group(c%o, attribute('data-path', name), name)
-      n = 0
-      from = 1
-      do while (from <= c%d%films)
-         if (n == 0) q(:, 1) = p(:, from)
-         if (known(from) .and. known(from + 1)) then
-            to = from + 1
-            do while (known(to + 1))
-               if (.not. comes_near(from, to + 1)) exit
-               to = to + 1
-            end do
-            q(:, n + 1:n + 4) = cubic(from, to)
-            n = n + 3
-            call add_lines(c, p(:, from:to), path_weight)
-            from = to
-         else
-            if (n > 0) call put_curve(c%o, q(:, :n + 1), &
-               'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
-            n = 0
-            from = from + 1
-         end if
+      first = 1
+      do last = 1, c%d%films
+         p(:, last) = to_pixels(c, point_place(c%m, c%d%frame(last), i))
+         if (.not. known(last)) first = last + 1
+         if (known(last + 1) .or. last <= first) cycle
+         call put_line(c%o, 'polyline', p(:, first:last), &
+            'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
+         call add_lines(c, p(:, first:last), path_weight)
       end do
       call put_end(c%o, 'g')
-
-   contains
-
-      !> The ends and control points (2, 4) of the cubic from frame `k` to frame `l`.
-      pure function cubic(k, l) result(b)
-         integer, intent(in) :: k, l
-         real(wp) :: b(2, 4), arms(2, 2), chord
-         integer :: j
-
-         arms = (t(l) - t(k))/3.0_wp*v(:, [k, l])
-         chord = norm2(p(:, l) - p(:, k))
-         do j = 1, 2
-            arms(:, j) = min(1.0_wp, max_control*chord/max(tiny(1.0_wp), norm2(arms(:, j))))*arms(:, j)
-         end do
-         b = reshape([p(:, k), p(:, k) + arms(:, 1), p(:, l) - arms(:, 2), p(:, l)], [2, 4])
-      end function cubic
-
-      !> Whether the cubic from frame `k` to frame `l` is near the places between them, at their times.
-      pure logical function comes_near(k, l)
-         integer, intent(in) :: k, l
-         real(wp) :: b(2, 4), u
-         integer :: j
-
-         b = cubic(k, l)
-         comes_near = .true.
-         do j = k + 1, l - 1
-            u = (t(j) - t(k))/(t(l) - t(k))
-            comes_near = comes_near .and. norm2((1.0_wp - u)**3*b(:, 1) + 3.0_wp*u*(1.0_wp - u)**2*b(:, 2) &
-               + 3.0_wp*u**2*(1.0_wp - u)*b(:, 3) + u**3*b(:, 4) - p(:, j)) <= off_path
-         end do
-      end function comes_near
    end subroutine put_path
 
    !> Draws the ring of the instant centre of pole number `i` at the pixel `p` (2).
@@ -426,22 +344,42 @@ contains
       call put_end(c%o, 'g')
    end subroutine put_foot
 
-   !> Notes what names should keep clear of: a line from `p` to `q` (2), in pixels, that they should not cross; a
-   !> lighter one has less `weight`. A weight below 0: a box with the corners `p` and `q` that they should not cover.
+   !> Notes a line from `p` to `q` (2), in pixels, that names should not cross, the less the more it weighs.
    pure subroutine add_line(c, p, q, weight)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(2), q(2), weight
-      real(wp), allocatable :: longer(:, :)
+      real(wp) :: length, at(2)
+      integer :: pieces, i, k(2)
 
-      if (.not. allocated(c%line)) allocate (c%line(5, 64))
-      if (c%lines == size(c%line, 2)) then
-         allocate (longer(5, 2*c%lines))
-         longer(:, :c%lines) = c%line
-         call move_alloc(longer, c%line)
-      end if
-      c%lines = c%lines + 1
-      c%line(:, c%lines) = [p, q, weight]
+      length = norm2(q - p)
+      pieces = ceiling(min(length/cell, real(max_pieces, wp)))
+      do i = 1, pieces
+         at = p + (real(i, wp) - 0.5_wp)/real(pieces, wp)*(q - p)
+         if (any(at < c%low) .or. any(at > c%high)) cycle
+         k = cell_of(c, at)
+         c%ink(k(1), k(2)) = c%ink(k(1), k(2)) + weight*length/real(pieces, wp)
+      end do
    end subroutine add_line
+
+   !> Notes a box from its upper left corner `p` to its lower right one `q` (2), in pixels, that names should not cover.
+   pure subroutine add_box(c, p, q)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: p(2), q(2)
+
+      associate (from => cell_of(c, p), to => cell_of(c, q))
+         c%ink(from(1):to(1), from(2):to(2)) = c%ink(from(1):to(1), from(2):to(2)) + over_name
+      end associate
+   end subroutine add_box
+
+   !> The numbers (2) of the cell at the pixel `p` (2), or of the cell of the window nearest to it. Rounding errors of
+   !> whole pixels, at which lines often lie, do not choose.
+   pure function cell_of(c, p) result(k)
+      type(canvas_t), intent(in) :: c
+      real(wp), intent(in) :: p(2)
+      integer :: k(2)
+
+      k = 1 + int((min(max(p, c%low), c%high) - c%low + tie)/cell)
+   end function cell_of
 
    !> Notes the lines through the pixels `q` (2, :).
    pure subroutine add_lines(c, q, weight)
@@ -484,7 +422,7 @@ contains
          end do
       end do
       call put_words(c%o, start, 'start', attributes, name)
-      call add_line(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)], box)
+      call add_box(c, start - [0.0_wp, 2.0_wp*half(2)], start + [2.0_wp*half(1), 0.0_wp])
    end subroutine put_name
 
    !> How much of what is drawn the line through the places `p` (2, :) would cover or come near.
@@ -503,44 +441,10 @@ contains
    pure real(wp) function cover(c, low, high)
       type(canvas_t), intent(in) :: c
       real(wp), intent(in) :: low(2), high(2)
-      real(wp) :: from, to
-      integer :: i
 
-      cover = 0.0_wp
-      if (any(low < c%low) .or. any(high > c%high)) cover = outside
-      do i = 1, c%lines
-         associate (p => c%line(:2, i), q => c%line(3:4, i))
-            ! Most lines are far away, and this is asked very often.
-            if (any(max(p, q) < low) .or. any(min(p, q) > high)) cycle
-            if (c%line(5, i) < 0.0_wp) then
-               if (all(p < high) .and. all(q > low)) cover = cover + over_name
-               cycle
-            end if
-            call find_inside(p, q, low, high, from, to)
-            if (to > from) cover = cover + c%line(5, i)*((to - from)*norm2(q - p))
-         end associate
-      end do
+      associate (from => cell_of(c, low), to => cell_of(c, high))
+         cover = sum(c%ink(from(1):to(1), from(2):to(2)))
+      end associate
+      if (any(low < c%low) .or. any(high > c%high)) cover = cover + outside
    end function cover
-
-   !> Which part of the line from `p` to `q` (2) is inside the box from `low` to `high` (2): that between the parts
-   !> `from` and `to` of its length; none where `to` is not above `from`. After Liang and Barsky.
-   pure subroutine find_inside(p, q, low, high, from, to)
-      real(wp), intent(in) :: p(2), q(2), low(2), high(2)
-      real(wp), intent(out) :: from, to
-      real(wp) :: a, b
-      integer :: k
-
-      from = 0.0_wp
-      to = 1.0_wp
-      do k = 1, 2
-         if (abs(q(k) - p(k)) < tiny(1.0_wp)/epsilon(1.0_wp)) then
-            if (p(k) < low(k) .or. p(k) > high(k)) to = -1.0_wp
-            cycle
-         end if
-         a = (low(k) - p(k))/(q(k) - p(k))
-         b = (high(k) - p(k))/(q(k) - p(k))
-         from = max(from, min(a, b))
-         to = min(to, max(a, b))
-      end do
-   end subroutine find_inside
 end module canvas

@@ -4,16 +4,16 @@
 module drawing
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, &
+   use mechanism, only: mechanism_t, request_point, request_pole, pair_revolute, pair_prismatic, instant_count, &
       plane_origin, is_listed_alone
-   use planar, only: cross, direction, quarter_turn, rotated, point_of
+   use planar, only: cross, direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, point_velocity, joint_point, outline_t, outlines_of, hull, moved, distance_to
+   public :: point_place, joint_point, outline_t, outlines_of, hull, moved
 
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation leaps.
@@ -26,8 +26,7 @@ module drawing
    integer, parameter :: max_frames = 1001, max_held = 200000
    !> An animation shows at most this many positions of links. Reason: it takes about 25 bytes for each.
    integer, parameter, public :: max_positions = 45000
-   !> Frames from which a picture chooses, paths and flagged positions that it shows, and instants of flags, at most.
-   integer, parameter, public :: picture_candidates = 25
+   !> Paths and flagged positions that a picture shows, and instants of flags, at most.
    integer, parameter :: max_curves = 60, max_flags = 3, max_flagged = 1000
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
@@ -44,7 +43,7 @@ module drawing
    type :: snapshot_t
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
-      real(wp), allocatable :: velocity(:, :)   !< (3, links) their derivatives; 0 where they are not known
+      real(wp), allocatable :: rate(:)       !< (links) of phi; 0 where it is not known
       logical, allocatable :: known(:)       !< (links)
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
@@ -79,7 +78,7 @@ module drawing
       type(mechanism_t) :: m
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       type(outline_t), allocatable :: outlines(:)   !< (links)
-      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
+      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for, each path once
       integer, allocatable :: poles(:)       !< the requests of poles
       type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
@@ -116,7 +115,7 @@ contains
          film%steps = merge(intervals, 0, film%t1 > film%t0)
          every = 0
       else if (m%steps > 0) then
-         every = max(1, min(intervals, max_positions/size(m%links))/m%steps)
+         every = max(1, min(intervals, max_held/size(m%links))/m%steps)
          film%steps = every*m%steps
       end if
    end subroutine film_of
@@ -127,6 +126,7 @@ contains
       integer, intent(in) :: every
       type(drawing_t) :: d
       real(wp) :: angles(2)
+      integer, allocatable :: same(:)
       integer :: ends(2), i, k, most
 
       d%m = m
@@ -137,8 +137,13 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
             cycle
-         if (all(d%curves /= m%requests(i)%subject) .and. size(d%curves) < max_curves) &
-            d%curves = [d%curves, m%requests(i)%subject]
+         associate (point => m%requests(i)%subject, pairs => m%pairs)
+            ! Points that a revolute pair joins have one path.
+            same = [point, pack(pairs%point_i, pairs%kind == pair_revolute .and. pairs%point_j == point), &
+               pack(pairs%point_j, pairs%kind == pair_revolute .and. pairs%point_i == point)]
+            if (size(d%curves) < max_curves .and. all([(all(d%curves /= same(k)), k=1, size(same))])) &
+               d%curves = [d%curves, point]
+         end associate
       end do
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
@@ -186,8 +191,7 @@ contains
       type(snapshot_t) :: s
       integer :: i
 
-      allocate (s%place(3, size(d%m%links)), s%velocity(3, size(d%m%links)), source=0.0_wp)
-      allocate (s%centre(2, size(d%poles)), source=0.0_wp)
+      allocate (s%place(3, size(d%m%links)), s%rate(size(d%m%links)), s%centre(2, size(d%poles)), source=0.0_wp)
       allocate (s%has_centre(size(d%poles)), source=.false.)
       s%known = d%m%links%ground
       do i = 1, size(d%m%links)
@@ -255,7 +259,7 @@ contains
                   if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                   now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
                   now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
-                  if (known_of(q, i) > 0) now%velocity(:, links(i)) = q%velocity(:, i)
+                  if (known_of(q, i) > 0) now%rate(links(i)) = q%velocity(3, i)
                end do
             end associate
          end do
@@ -303,19 +307,6 @@ contains
       p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
 
-   !> Velocity (2) of point number `i` at the position `s`; 0 where it is not known.
-   pure function point_velocity(m, s, i) result(v)
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp) :: v(2)
-
-      associate (link => m%points(i)%link)
-         v = s%velocity(:2, link) &
-            + s%velocity(3, link)*quarter_turn(rotated(m%points(i)%offset, direction(s%place(3, link))))
-      end associate
-   end function point_velocity
-
    !> The point at which pair number `i` is drawn: that of the link that is drawn later, of those `known` (links); of
    !> the ground only where no other is known; 0 for none.
    pure integer function joint_point(d, known, i) result(point)
@@ -358,28 +349,6 @@ contains
          q(:, k) = point_of(position, p(:, k))
       end do
    end function moved
-
-   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise); 0
-   !> inside. A bar is longer at both ends by the part `in_line` of its length: what is in line with it is near.
-   pure real(wp) function distance_to(c, p) result(distance)
-      real(wp), intent(in) :: c(:, :), p(2)
-      real(wp), parameter :: in_line = 0.5_wp
-      real(wp) :: u(2), along, longer
-      logical :: inside
-      integer :: k, n
-
-      n = size(c, 2)
-      inside = n > 2
-      longer = merge(0.0_wp, in_line, inside)
-      distance = huge(distance)
-      do k = 1, n
-         u = c(:, 1 + modulo(k, n)) - c(:, k)
-         along = min(1.0_wp + longer, max(-longer, dot_product(p - c(:, k), u)/dot_product(u, u)))
-         distance = min(distance, norm2(p - c(:, k) - along*u))
-         inside = inside .and. cross(u, p - c(:, k)) > 0.0_wp
-      end do
-      if (inside) distance = 0.0_wp
-   end function distance_to
 
    !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.
    pure function hull(p) result(corners)

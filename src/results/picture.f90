@@ -8,15 +8,15 @@ module picture
    use planar, only: degree, direction, quarter_turn
    use drives, only: drive_motion
    use names, only: drive_name
-   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates, moved, distance_to
-   use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
+   use drawing, only: drawing_t, snapshot_t, point_place, moved
+   use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
    use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_traces, put_ring, &
-      put_name, put_foot, add_line, add_lines, cover_of, tie, line_height, centre_radius
+      put_name, put_foot, add_lines, add_box, cover_of, tie, line_height, centre_radius
    use svg, only: page_t, put_end, put_group, put_window, put_line, put_words, fitted
    use phrases
    implicit none
    private
-   public :: put_picture, put_centre, candidates, clearest, faint_frames, closes
+   public :: put_picture, clearest, faint_frames, closes
 
    !> A picture of more links or points than this has no names: they would cover it.
    integer, parameter :: max_names = 120
@@ -38,13 +38,9 @@ module picture
    !> The weight of an arrow for names, and what one farther from its place counts, in pixels of overlap.
    real(wp), parameter :: arrow_weight = 3.0_wp, away = 30.0_wp
 
-   !> A joint is crowded if it is nearer to a bar that is not its own than this part of the mechanism.
-   real(wp), parameter :: clear_distance = 0.1_wp
-   !> A later frame is taken if so many joints fewer are crowded. Reason: the first instant is what a reader expects,
-   !> and rounding errors must not choose.
-   real(wp), parameter :: much_clearer = 0.5_wp
-   !> A mechanism of more links is drawn in its first frame: the search takes joints times links.
-   integer, parameter :: max_links = 120
+   !> A later frame is taken if it is wider across by this part of its longer side. Reason: the first instant is what a
+   !> reader expects, and rounding errors must not choose.
+   real(wp), parameter :: much_wider = 0.15_wp
    !> A picture has this many faint positions at most and at least, and about this many faint links.
    integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
    !> Positions that differ by less than this part of the mechanism would cover one another; closer than the other the
@@ -60,7 +56,7 @@ contains
       type(canvas_t) :: c
       type(snapshot_t) :: s
       type(element_t), allocatable :: list(:)
-      integer, allocatable :: from(:), faint(:)
+      integer, allocatable :: faint(:)
       character(:), allocatable :: now, others
       real(wp) :: y
       integer :: best, k
@@ -68,9 +64,8 @@ contains
       s = d%now
       faint = [integer ::]
       if (size(d%own) > 0) then
-         from = candidates(d)
-         best = clearest(d, from)
-         faint = faint_frames(d, from, best)
+         best = clearest(d, d%own)
+         faint = faint_frames(d, d%own, best)
          if (d%assemblies) best = d%own(1)
          if (d%assemblies) faint = d%own(2:)
          s = d%frame(best)
@@ -245,7 +240,7 @@ contains
       p = to_pixels(c, c%s%centre(:, i))
       if (any(p < c%low) .or. any(p > c%high)) return
       call put_ring(c, i, p)
-      call add_line(c, p - centre_radius, p + centre_radius, box)
+      call add_box(c, p - centre_radius, p + centre_radius)
       call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:' &
          //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"', pole_name(c%m, c%d%poles(i)))
    end subroutine put_centre
@@ -307,70 +302,34 @@ contains
       end do
    end subroutine put_links
 
-   !> The numbers of the frames from which a picture chooses: some of those at the deck's own instants, with the last.
-   pure function candidates(d) result(list)
-      type(drawing_t), intent(in) :: d
-      integer, allocatable :: list(:)
-      integer :: n, stride
-
-      n = size(d%own)
-      stride = max(1, 1 + (n - 2)/(picture_candidates - 1))
-      list = d%own(1:n:stride)
-      if (mod(n - 1, stride) /= 0) list = [list, d%own(n)]
-   end function candidates
-
-   !> The one of the frames `list` that is drawn in full: of those of which most links are known the clearest; 0 for
-   !> none.
+   !> The one of the frames `list` that is drawn in full: of those of which most links are known the first, or one that
+   !> is much wider across; 0 for none. Reason: what is in line at the first instant is read better later.
    integer function clearest(d, list) result(best)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: list(:)
-      real(wp) :: crowded, least
+      real(wp) :: sides(2), widest
       integer :: i, known
 
       best = 0
       known = -1
-      least = huge(least)
+      widest = 0.0_wp
       do i = 1, size(list)
          associate (s => d%frame(list(i)))
+            sides = sides_of(d, s)
             if (count(s%known) < known) cycle
-            crowded = crowded_joints(d, s)
-            if (count(s%known) == known .and. crowded > least - much_clearer) cycle
+            if (count(s%known) == known .and. minval(sides) <= widest + much_wider*maxval(sides)) cycle
             known = count(s%known)
-            least = crowded
+            widest = minval(sides)
             best = list(i)
          end associate
       end do
    end function clearest
 
-   !> How many joints are crowded at the position `s`: each by 1 on another's bar, by 0 at `clear_distance` from it.
-   real(wp) function crowded_joints(d, s) result(crowded)
+   !> The sides (2) of the box that the known moving links cover at the position `s`.
+   pure function sides_of(d, s) result(sides)
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
-      real(wp) :: extent, p(2)
-      integer :: i, k, own(2), point
-
-      crowded = 0.0_wp
-      extent = extent_of(d, s)
-      if (size(d%m%links) > max_links .or. .not. extent > 0.0_wp) return
-      do i = 1, size(d%m%pairs)
-         point = joint_point(d, s%known, i)
-         if (point == 0) cycle
-         own = d%m%points([d%m%pairs(i)%point_i, d%m%pairs(i)%point_j])%link
-         p = point_place(d%m, s, point)/extent
-         do k = 1, size(d%m%links)
-            if (d%m%links(k)%ground .or. any(own == k) .or. .not. s%known(k) .or. size(d%outlines(k)%corner, 2) < 2) &
-               cycle
-            crowded = crowded + max(0.0_wp, &
-               1.0_wp - distance_to(moved(d%outlines(k)%corner, s%place(:, k))/extent, p)/clear_distance)
-         end do
-      end do
-   end function crowded_joints
-
-   !> The larger side of what the known moving links cover at the position `s`.
-   pure real(wp) function extent_of(d, s) result(extent)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      real(wp) :: low(2), high(2)
+      real(wp) :: sides(2), low(2), high(2)
       integer :: i
 
       low = huge(1.0_wp)
@@ -382,9 +341,8 @@ contains
             high = max(high, maxval(p, dim=2))
          end associate
       end do
-      extent = 0.0_wp
-      if (all(high >= low)) extent = maxval(high - low)
-   end function extent_of
+      sides = merge(high - low, 0.0_wp, high >= low)
+   end function sides_of
 
    !> Those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are like it or
    !> like one another.
@@ -425,7 +383,7 @@ contains
       distance = 1.0_wp
       if (any(d%frame(i)%known .neqv. d%frame(j)%known)) return
       distance = 0.0_wp
-      extent = extent_of(d, d%frame(i))
+      extent = maxval(sides_of(d, d%frame(i)))
       do k = 1, size(d%m%links)
          if (d%m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
          associate (p => moved(d%outlines(k)%corner, d%frame(i)%place(:, k)), &

@@ -9,7 +9,7 @@ module shapes
    use svg, only: attribute
    implicit none
    private
-   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block, box
+   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
@@ -191,7 +191,7 @@ contains
          do k = 1, d%films
             associate (now => d%frame(k), place => d%frame(k)%place(:, links(side)))
                p(:, k) = rotated(now%centre(:, i) - place(:2), direction(-place(3)))
-               turn(k) = now%velocity(3, links(2)) - now%velocity(3, links(1))
+               turn(k) = now%rate(links(2)) - now%rate(links(1))
                goes_on(k) = now%has_centre(i)
             end associate
          end do

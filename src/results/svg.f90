@@ -7,7 +7,7 @@ module svg
    use numerals, only: fixed, whole, max_decimals
    implicit none
    private
-   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, &
+   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, put_hatch, &
       put_words, put_columns, pixels, attribute, fitted
 
    !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
@@ -153,20 +153,6 @@ contains
       end do
       call put(o, '"/>')
    end subroutine put_hatch
-
-   !> Writes a curve of cubics from the place p(:, 1) (2, 3 n + 1) to every third one, with control points between them.
-   subroutine put_curve(o, p, attributes)
-      type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(:, :)
-      character(*), intent(in) :: attributes
-      integer :: i
-
-      call add(o, '<path '//attributes//' d="M'//place(p(:, 1)))
-      do i = 2, size(p, 2)
-         call add(o, trim(merge(' C', '  ', mod(i, 3) == 2))//' '//place(p(:, i)))
-      end do
-      call put(o, '"/>')
-   end subroutine put_curve
 
    !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where
    !> 'start', 'end'.
