@@ -11,14 +11,14 @@ module command_line
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text, explained, explained_fields
    public :: file_option_t, file_options
    public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table
-   public :: out_plot_table, out_plot_script, out_last
+   public :: out_plot_table, out_plot_script, out_shared, out_last
 
-   !> The outputs that are files, and `out_last`, the last of them.
+   !> The outputs that are files: up to `out_shared` those that all sets share, then, to `out_last`, those of each set.
    enum, bind(c)
       enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits
       enumerator :: out_table
       enumerator :: out_plot_table, out_plot_script
-      enumerator :: out_last = out_plot_script
+      enumerator :: out_shared = out_circuits, out_last = out_plot_script
    end enum
 
    !> An option that names the file of an output.
@@ -26,7 +26,6 @@ module command_line
       character(10) :: word = ''
       character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
       logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
-      logical :: each_set = .false.          !< each set has a file of its own
    end type file_option_t
 
    !> The options of the outputs; those of one directory name it once. A further output costs a line here and one in the
@@ -39,9 +38,9 @@ module command_line
       file_option_t('--svg', needs_motion=.true.), &
       file_option_t('--animate', needs_motion=.true.), &
       file_option_t('--circuits', needs_motion=.true.), &
-      file_option_t('--table', needs_motion=.true., each_set=.true.), &
-      file_option_t('--plot', 'table.csv', needs_motion=.true., each_set=.true.), &
-      file_option_t('--plot', 'plot.gp', needs_motion=.true., each_set=.true.)]
+      file_option_t('--table', needs_motion=.true.), &
+      file_option_t('--plot', 'table.csv', needs_motion=.true.), &
+      file_option_t('--plot', 'plot.gp', needs_motion=.true.)]
 
    !> A word of the command.
    type :: word_t

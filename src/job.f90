@@ -18,7 +18,7 @@ module job
    use text_output, only: put, turn_lost
    use processes, only: processor_count, report, end_process
    use command_line
-   use outputs, only: outputs_t, open_outputs, flush_files, close_outputs, is_over, set_suffix
+   use outputs, only: outputs_t, open_outputs, open_set_outputs, flush_files, close_outputs, is_over, set_suffix
    use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
@@ -40,13 +40,12 @@ module job
    use lane_state, only: lanes_t
    use phrases, only: phrase_t, phrase, say_broken_set, say_broken_variant, say_broken_off
    use numerals, only: whole
-   use convergence, only: convergence_t
-   use branch_certificate, only: branch_t
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
-      set_record, set_errors, set_closing_diagnostics
+      set_closing_diagnostics
    use analysis, only: redundancy_error
+   use error_estimate, only: largest_errors
    implicit none
    private
    public :: run_job
@@ -96,8 +95,8 @@ contains
          if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
             allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
             'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
-         do i = 1, out_last
-            if (file_options(i)%each_set .and. allocated(options%files(i)%text)) call fail(failure, status_rejected, &
+         do i = out_shared + 1, out_last
+            if (allocated(options%files(i)%text)) call fail(failure, status_rejected, &
                'OPTION '//trim(file_options(i)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
          end do
       end if
@@ -132,7 +131,8 @@ contains
             call run_sets(sets, findings, o)
          end do
          call end_progress(o%progress)
-         call close_outputs(o, failure)
+         call close_outputs(o, 1, out_shared)
+         if (allocated(o%failure)) call move_alloc(o%failure, failure)
          status = max(status, o%status)
       end if
       if (allocated(failure)) then
@@ -147,7 +147,7 @@ contains
       ! without a word, unless other outputs were asked for, which end there too.
       if (signal_received() > 0) then
          status = status_signal + signal_received()
-      else if (broken_pipe_kills .and. allocated(o%files)) then
+      else if (broken_pipe_kills) then
          if (any(o%files%error == broken_pipe)) then
             status = status_signal + signal_pipe
             if (count(o%asked) == 1) message = ''
@@ -184,9 +184,9 @@ contains
       integer :: i, k, before
 
       if (o%asked(out_csv) .and. o%options%share == 1 .and. o%own_first == 1) &
-         call csv_head(o%files(out_csv, 0), o%options%errors, o%varies)
+         call csv_head(o%files(out_csv), o%options%errors, o%varies)
       do k = out_svg, out_circuits
-         if (o%asked(k)) call begin_page(o%files(k, 0), pages(k))
+         if (o%asked(k)) call begin_page(o%files(k), pages(k))
       end do
       before = o%first - 1
       ! Where no set has variants, those before the part at hand need not be passed over.
@@ -198,7 +198,7 @@ contains
                call run_set(sets(i), i, o%own_first - before, o%own_last - before, findings(i), o)
             before = before + count
          end associate
-         if (is_over(o, i)) then
+         if (is_over(o)) then
             if (before > o%own_last) then
                call break_off(o, sets(i), say_broken_variant, o%own_last - before + sets(i)%variants)
             else if (i < o%last) then
@@ -217,7 +217,7 @@ contains
          end if
       end do
       do k = out_svg, out_circuits
-         if (o%asked(k)) call end_page(o%files(k, 0), pages(k))
+         if (o%asked(k)) call end_page(o%files(k), pages(k))
       end do
    end subroutine run_sets
 
@@ -257,6 +257,7 @@ contains
       integer, intent(in) :: i, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
+      type(failure_t), allocatable :: failure
       type(variant_row_t) :: counts
       type(set_analysis_t) :: a
       type(answers_t) :: asked
@@ -265,25 +266,28 @@ contains
       if (o%asked(out_listing) .and. first <= 1) then
          o%layout = new_layout(a%now)
          call find_groups(m, findings)
-         call listing_head(o%files(out_listing, 0), m, findings)
+         call listing_head(o%files(out_listing), m, findings)
       end if
       ! It is as large as the deck, and only the head of the listing has it.
       if (allocated(m%echo)) deallocate (m%echo)
       if (o%options%check) return
       if (first <= 1) then
-         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, o%options%errors)
+         call open_set_outputs(o%options, set_suffix(o%first, o%last, i), o, failure)
+         if (allocated(failure)) call move_alloc(failure, o%failure)
+         if (allocated(o%failure)) return
+         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m, o%options%errors)
          if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(a%now)
-         if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
-         if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
+         if (o%asked(out_table)) call table_head(o%files(out_table), o%table)
+         if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table), o%table)
          if (o%asked(out_plot_script)) &
-            call put_script(o%files(out_plot_script, i), m, o%table, set_suffix(o%first, o%last, i))
+            call put_script(o%files(out_plot_script), m, o%table, set_suffix(o%first, o%last, i))
          ! An output that takes nothing is known before anything is computed.
-         call flush_files(o, 0, 0)
-         call flush_files(o, i, i)
+         call flush_files(o)
       end if
       if (m%variants == 0) then
          call run_motion(a, i, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) o%status = status_flagged
+         call close_outputs(o, out_shared + 1, out_last)
       else
          call run_variants(a%now, i, max(1, first), min(m%variants, last), o%variations(i), o)
       end if
@@ -306,26 +310,26 @@ contains
       full = any([(any(m%parts(k)%requests%every > 0), k=lbound(m%parts, 1), m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
-      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
+      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
-         call put_note_of_shares(o%files(out_listing, 0), m)
-         call put_variant_heads(o%files(out_listing, 0), summary)
+         call put_note_of_shares(o%files(out_listing), m)
+         call put_variant_heads(o%files(out_listing), summary)
       end if
       if (are_together(m, full, o)) then
          call run_together()
       else
          do while (n <= last)
             row = new_row(summary, v, n)
-            if (o%asked(out_listing) .and. full) call put_variant(o%files(out_listing, 0), layout, summary, m, row)
+            if (o%asked(out_listing) .and. full) call put_variant(o%files(out_listing), layout, summary, m, row)
             call run_variant(variant, row)
-            if (is_over(o, i)) exit
-            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
+            if (is_over(o)) exit
+            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing), summary)
             call write_row(row)
             n = n + 1
          end do
       end if
       if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
-      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing, 0), m)
+      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing), m)
 
    contains
 
@@ -346,7 +350,7 @@ contains
             end do
             call run_lanes(runs(:count), lanes)
             do k = 1, count
-               if (is_over(o, i)) return
+               if (is_over(o)) return
                if (runs(k)%row%rejected == '') call fill_row(summary, runs(k)%s%now, runs(k)%asked, runs(k)%row)
                if (runs(k)%row%rejected /= '') call fill_row(summary, m, runs(k)%asked, runs(k)%row)
                call write_row(runs(k)%row)
@@ -397,7 +401,7 @@ contains
          if (row%rejected == '') then
             call new_set_motion(variant, a%now, findings)
             if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
-            if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, o%options%errors)
+            if (o%asked(out_log)) call log_head(o%files(out_log), variant, o%options%errors)
             call run_motion(a, i, findings, full, o, row, asked)
             call fill_row(summary, a%now, asked, row)
          else
@@ -409,8 +413,8 @@ contains
       subroutine write_row(row)
          type(variant_row_t), intent(in) :: row
 
-         if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
-         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
+         if (o%asked(out_summary)) call summary_row(o%files(out_summary), summary, m, row)
+         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing), layout, summary, m, row)
          call write_in_turn(o)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
          if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
@@ -438,8 +442,6 @@ contains
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(listing_state_t) :: state
-      type(convergence_t) :: record
-      type(branch_t) :: branch
       real(wp), allocatable :: errors(:)     ! for the log; not allocated where they are not asked for
       integer, allocatable :: every(:)       ! rows are printed at each so many instants
       logical :: lists, due
@@ -464,26 +466,28 @@ contains
             if (shown .or. o%options%errors) call sample_set(a, o%options%errors, shown)
          end associate
          if (lists .and. (due .or. has_words(a%now))) &
-            call listing_instant(o%files(out_listing, 0), o%layout, a%now, k, state)
-         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), a%now, k, o%varies, a%assemblies)
-         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, a%now)
-         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, a%now)
+            call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
+         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table), o%table, a%now)
+         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table), o%table, a%now)
          if (o%asked(out_log)) then
-            call set_record(a, record, branch)
-            if (o%options%errors) errors = set_errors(a)
-            call log_instant(o%files(out_log, 0), k, instant(a%now, k), record, branch, errors)
+            do n = 1, size(a%list)
+               if (o%options%errors) errors = largest_errors(a%now%parts(n), a%now%errors(n), a%now%motions(n), &
+                  a%estimators(n)%sizes%length, a%estimators(n)%sizes%rate)
+               call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch, errors)
+            end do
          end if
          call write_in_turn(o)
 
          call take_instant(asked, a, k, due)
          if (o%progress%shown .and. a%now%variants == 0) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(a%now) - 1)
-         if (.not. is_over(o, i)) cycle
+         if (.not. is_over(o)) cycle
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return
       end do
-      if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, a)
-      if (lists) call listing_end(o%files(out_listing, 0), a%now, row%solved, row%flagged, a%certificate_counts, &
+      if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
+      if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))
    end subroutine run_motion
 
@@ -498,7 +502,7 @@ contains
       if (o%ended) return
       o%ended = .true.
       if (.not. o%asked(out_listing)) return
-      call put(o%files(out_listing, 0), '')
-      call put(o%files(out_listing, 0), ' *** '//phrase(words, m%polish)//' '//whole(number))
+      call put(o%files(out_listing), '')
+      call put(o%files(out_listing), ' *** '//phrase(words, m%polish)//' '//whole(number))
    end subroutine break_off
 end module job

@@ -1,16 +1,15 @@
-!> The files that a job writes: those that all sets share, and those of which each set has its own.
+!> The files that a job writes: those that all sets share, and those of which each set has its own, open while it is
+!> computed.
 module outputs
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
-   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
-      abandon_output, has_failed
-   use system_calls, only: identity_t, identity_of, make_directory, rmdir, last_error, reason_of, &
-      signal_received
+   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed
+   use system_calls, only: make_directory, last_error, reason_of, signal_received
    use numerals, only: whole
-   use command_line, only: options_t, file_options, out_last
+   use command_line, only: options_t, file_options, out_shared, out_last
    implicit none
    private
-   public :: outputs_t, share_of_job_t, open_outputs, flush_files, forget_files, close_outputs, is_over, set_suffix
+   public :: outputs_t, share_of_job_t, open_outputs, open_set_outputs, flush_files, close_outputs, is_over, set_suffix
 
    !> The part of a job in several processes that this process computes; `shares` divides the job.
    type :: share_of_job_t
@@ -32,9 +31,8 @@ module outputs
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
       integer, allocatable :: asked_list(:)                 !< the numbers of those
-      !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
-      type(output_t), allocatable :: files(:, :)
-      character(:), allocatable :: made_directory           !< that was not there before
+      type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the set at hand
+      type(failure_t), allocatable :: failure               !< of the last file that could not be opened or written
       type(share_of_job_t) :: share
       !> The sets that this process computes now; where the deck has VARY cards, numbers of variants, counted through
       !> all sets.
@@ -44,153 +42,133 @@ module outputs
 
 contains
 
-   !> Opens the outputs that `options` ask for, for the sets `first` to `last` of the deck's `count`. Errors:
-   !> status_system; status_rejected where two of them are one file, or would be one after another on standard output.
+   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of the sets `first` to
+   !> `last` of the deck's `count` can be opened. Errors: status_system; status_rejected where two of them are one file,
+   !> or would be one after another on standard output.
    subroutine open_outputs(options, first, last, count, o, failure)
       type(options_t), intent(in) :: options
       integer, intent(in) :: first, last, count
-      class(outputs_t), intent(inout), target :: o
+      class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
-      type(output_t), pointer :: all_files(:)
-      logical :: made, exists
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
       o%asked_list = pack([(k, k=1, out_last)], o%asked)
-      allocate (o%files(out_last, 0:merge(last, 0, any(o%asked .and. file_options%each_set))))
       do k = 1, out_last
          if (.not. o%asked(k)) cycle
-         if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) then
-            ! What else is wrong with a directory shows when its files are opened.
-            call make_directory(options%files(k)%text, made, exists)
-            if (made) o%made_directory = options%files(k)%text
-            if (.not. exists) call fail(failure, status_system, 'DIRECTORY '//options%files(k)%text &
-               //' CANNOT BE MADE ('//capitals(reason_of(last_error()))//')')
-         end if
-         if (first < last .and. file_options(k)%each_set .and. .not. allocated(failure)) &
-            call check_table_of_one(options%files(k)%text)
-         do i = merge(first, 0, file_options(k)%each_set), merge(last, 0, file_options(k)%each_set)
-            if (allocated(failure)) exit
-            call open_output(o%files(k, i), path_of(set_suffix(first, last, i)), failure)
-         end do
+         if (allocated(failure)) exit
+         associate (path => options%files(k)%text)
+            if (k <= out_shared) then
+               call open_output(o%files(k), path, failure)
+            else if (len_trim(file_options(k)%in_directory) > 0) then
+               ! What else is wrong with a directory shows when its files are opened.
+               if (.not. make_directory(path)) call fail(failure, status_system, 'DIRECTORY '//path &
+                  //' CANNOT BE MADE ('//capitals(reason_of(last_error()))//')')
+            else if (first < last) then
+               ! The tables of several sets would be mixed on standard output or a device.
+               if (len(path) == 0) then
+                  call refuse('STANDARD OUTPUT')
+               else if (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1) then
+                  call refuse('FILE '//path)
+               end if
+            end if
+         end associate
       end do
-      all_files(1:size(o%files)) => o%files
-      if (.not. allocated(failure)) call check_apart(all_files, options%deck, failure)
-      if (.not. allocated(failure)) return
-      do i = 1, size(all_files)
-         call abandon_output(all_files(i))
+
+      if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
+      do i = first, last
+         if (allocated(failure)) exit
+         call open_set_outputs(options, set_suffix(first, last, i), o, failure)
+         call abandon_output(o%files(out_shared + 1:))
       end do
-      if (allocated(o%made_directory)) i = rmdir(o%made_directory//c_null_char)
+      if (allocated(failure)) call abandon_output(o%files)
 
    contains
 
-      !> Rejects standard output, a pipe, and a device other than /dev/null as `path` for the tables of `count` sets:
-      !> they would be mixed. Under /dev no file is made. Errors: status_rejected.
-      subroutine check_table_of_one(path)
-         character(*), intent(in) :: path
-         type(identity_t) :: id
-         character(:), allocatable :: name
+      !> Rejects `name` as the file of several tables. Errors: status_rejected.
+      subroutine refuse(name)
+         character(*), intent(in) :: name
 
-         name = 'STANDARD OUTPUT'
-         if (len(path) > 0) then
-            if (is_null_device(path)) return
-            id = identity_of(path=path)
-            if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
-            name = 'FILE '//path
-         end if
          call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count) &
             //' WITH --sets K/'//whole(count))
-      end subroutine check_table_of_one
+      end subroutine refuse
 
-      !> The path of output number `k`, in which files of a set have the `suffix`; '' is standard output. /dev/null
-      !> takes the files of all sets.
-      function path_of(suffix) result(path)
-         character(*), intent(in) :: suffix
+   end subroutine open_outputs
+
+   !> Opens the outputs of the set whose files have the `suffix`. Errors: as for `open_outputs`.
+   subroutine open_set_outputs(options, suffix, o, failure)
+      type(options_t), intent(in) :: options
+      character(*), intent(in) :: suffix
+      class(outputs_t), intent(inout) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: k
+
+      if (.not. any(o%asked(out_shared + 1:))) return
+      do k = out_shared + 1, out_last
+         if (o%asked(k) .and. .not. allocated(failure)) call open_output(o%files(k), path(), failure)
+      end do
+      if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
+
+   contains
+
+      !> The path of output number `k`; '' is standard output.
+      function path()
          character(:), allocatable :: path
          integer :: dot
 
          path = options%files(k)%text
          if (len_trim(file_options(k)%in_directory) > 0) path = path//'/'//trim(file_options(k)%in_directory)
          if (len(path) == 0) return
-         if (is_null_device(path)) return
          dot = index(path, '.', back=.true.)
          ! A name without an extension ends with the suffix.
          if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
          path = path(:dot - 1)//suffix//path(dot:)
-      end function path_of
-   end subroutine open_outputs
-
-   !> Whether `path` leads to the device that takes everything and keeps nothing.
-   logical function is_null_device(path)
-      character(*), intent(in) :: path
-      type(identity_t) :: a, b
-
-      a = identity_of(path=path)
-      b = identity_of(path='/dev/null')
-      is_null_device = a%device_or_pipe .and. a%inode == b%inode .and. all(a%device == b%device)
-   end function is_null_device
+      end function path
+   end subroutine open_set_outputs
 
    !> What the names of files have before their extension for set number `i`, where the job has more than one set, those
-   !> from `first` to `last`; '' for files that all sets share (0).
+   !> from `first` to `last`.
    pure function set_suffix(first, last, i) result(suffix)
       integer, intent(in) :: first, last, i
       character(:), allocatable :: suffix
 
       suffix = ''
-      if (first < last .and. i > 0) suffix = '-'//whole(i)
+      if (first < last) suffix = '-'//whole(i)
    end function set_suffix
 
-   !> Writes at once what there is for the files of the sets from `first` to `last`, or for those that all sets share
-   !> (0).
-   subroutine flush_files(o, first, last)
+   !> Writes at once what there is.
+   subroutine flush_files(o)
       class(outputs_t), intent(inout) :: o
-      integer, intent(in) :: first, last
-      integer :: k, i
+      integer :: k
 
-      do i = first, min(last, ubound(o%files, 2))
-         do k = 1, out_last
-            if (allocated(o%files(k, i)%buffer)) call flush_output(o%files(k, i))
-         end do
+      do k = 1, out_last
+         if (allocated(o%files(k)%buffer)) call flush_output(o%files(k))
       end do
    end subroutine flush_files
 
-   !> Leaves the files of the sets from `first` to `last` to other processes.
-   subroutine forget_files(o, first, last)
+   !> Closes the outputs number `first` to `last`; o%failure becomes that of the last one that could not be written.
+   subroutine close_outputs(o, first, last)
       class(outputs_t), intent(inout) :: o
       integer, intent(in) :: first, last
-      integer :: i
+      type(failure_t), allocatable :: failure
+      integer :: k
 
-      do i = first, min(last, ubound(o%files, 2))
-         call forget_output(o%files(:, i))
-      end do
-   end subroutine forget_files
-
-   !> Closes all outputs; `failure`: that of the last one that could not be written.
-   subroutine close_outputs(o, failure)
-      class(outputs_t), intent(inout) :: o
-      type(failure_t), allocatable, intent(out) :: failure
-      type(failure_t), allocatable :: other
-      integer :: k, i
-
-      do i = 0, ubound(o%files, 2)
-         do k = 1, out_last
-            if (.not. allocated(o%files(k, i)%buffer)) cycle
-            call close_output(o%files(k, i), other)
-            if (allocated(other)) call move_alloc(other, failure)
-         end do
+      do k = first, last
+         if (.not. allocated(o%files(k)%buffer)) cycle
+         call close_output(o%files(k), failure)
+         if (allocated(failure)) call move_alloc(failure, o%failure)
       end do
    end subroutine close_outputs
 
-   !> What follows in set number `i` need not be computed: a write has failed, or a signal has come.
-   logical function is_over(o, i)
+   !> What follows need not be computed: an output has failed, or a signal has come.
+   logical function is_over(o)
       class(outputs_t), intent(in) :: o
-      integer, intent(in) :: i
       integer :: k
 
-      is_over = signal_received() > 0
+      is_over = signal_received() > 0 .or. allocated(o%failure)
       ! Only what was asked for: this is asked after every instant.
       do k = 1, size(o%asked_list)
-         if (has_failed(o%files(o%asked_list(k), merge(i, 0, file_options(o%asked_list(k))%each_set)))) is_over = .true.
+         if (has_failed(o%files(o%asked_list(k)))) is_over = .true.
       end do
    end function is_over
 end module outputs

@@ -19,8 +19,9 @@ module shares
       lseek, from_here, change_lock, locked, unlocked
    use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
    use text_output, only: held_length, write_held, release_output, has_failed, turn_lost
+   use command_line, only: out_shared
    use progress, only: progress_t, show_progress
-   use outputs, only: outputs_t, share_of_job_t, flush_files, forget_files
+   use outputs, only: outputs_t, share_of_job_t
    implicit none
    private
    public :: run_shares, next_part, write_in_turn
@@ -55,7 +56,7 @@ contains
       character(4096) :: block
       character(:), allocatable :: said
       type(poll_t) :: list(1)
-      integer :: children(processes), started, taken, k, n
+      integer :: children(processes), started, k, n
       integer(c_int) :: ends(2), ended, ignored
       logical :: closed
 
@@ -75,8 +76,8 @@ contains
             if (s%is_child) then
                s%is_parent = .false.
                ! Files that it computes no part of are left as they are.
-               o%files(:, 0)%emptied = .true.
-               allocate (s%waiting(0), s%lengths(size(o%files, 1), 0))
+               o%files%emptied = .true.
+               allocate (s%waiting(0), s%lengths(out_shared, 0))
                return
             end if
             if (children(k) < 0) started = k - 1
@@ -120,9 +121,7 @@ contains
          end if
 
          ! The children have written these files.
-         taken = min(count_of(s%taken), part_count(s))
-         if (taken > 0) o%files(:, 0)%emptied = .true.
-         call forget_files(o, s%first, first_of(s, taken + 1) - 1)
+         if (count_of(s%taken) > 0) o%files%emptied = .true.
          if (s%taken >= 0) closed = close_descriptor(s%taken)
          if (s%done >= 0) closed = close_descriptor(s%done)
       end associate
@@ -132,14 +131,12 @@ contains
    !> variants. False where there is none, or the job is over; then all is written.
    logical function next_part(o)
       class(outputs_t), intent(inout) :: o
-      integer :: before, k
+      integer :: k
 
       next_part = .not. o%share%is_parent
       if (o%share%is_parent) return
-      associate (s => o%share, files => o%files(:, 0))
-         before = merge(o%own_last, s%first - 1, s%part > 0)
+      associate (s => o%share, files => o%files(:out_shared))
          if (s%is_child .and. s%part > 0) then
-            call flush_files(o, o%own_first, o%own_last)
             if (goes_on(o)) then
                s%lengths = reshape([s%lengths, held_length(files) - sum(s%lengths, 2)], &
                   [size(files), size(s%waiting) + 1])
@@ -175,10 +172,7 @@ contains
          o%own_first = first_of(s, s%part)
          o%own_last = first_of(s, s%part + 1) - 1
 
-         if (.not. s%is_child) return
-         ! The sets between are those of other processes.
-         call forget_files(o, before + 1, merge(o%own_first - 1, s%last, next_part))
-         if (.not. next_part) call write_what_may_be(o, -1)
+         if (s%is_child .and. .not. next_part) call write_what_may_be(o, -1)
       end associate
    end function next_part
 
@@ -187,7 +181,7 @@ contains
       class(outputs_t), intent(inout) :: o
 
       if (.not. o%share%held) return
-      if (maxval(held_length(o%files(:, 0))) >= o%share%look) call write_what_may_be(o, max_held)
+      if (maxval(held_length(o%files(:out_shared))) >= o%share%look) call write_what_may_be(o, max_held)
    end subroutine write_in_turn
 
    !> Writes the parts whose turn has come; waits for it as long as an output holds more than `most` characters. An
@@ -198,7 +192,7 @@ contains
       integer(c_long) :: done
       integer :: part, k
 
-      associate (s => o%share, files => o%files(:, 0))
+      associate (s => o%share, files => o%files(:out_shared))
          do while (size(s%waiting) > 0 .or. s%held)
             if (any(has_failed(files))) exit
             part = s%part
@@ -236,12 +230,8 @@ contains
    !> The run has not ended before its time, and no write has failed.
    logical function goes_on(o)
       class(outputs_t), intent(in) :: o
-      integer :: i
 
-      goes_on = .not. (o%ended .or. any(has_failed(o%files(:, 0))))
-      do i = o%own_first, min(o%own_last, ubound(o%files, 2))
-         if (any(has_failed(o%files(:, i)))) goes_on = .false.
-      end do
+      goes_on = .not. (o%ended .or. allocated(o%failure) .or. any(has_failed(o%files)))
    end function goes_on
 
    !> How many parts there are; one where there is nothing to compute.

@@ -10,7 +10,7 @@ module system_calls
    private
    public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
-   public :: make_directory, rmdir, isatty
+   public :: make_directory, isatty
    public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
@@ -19,8 +19,7 @@ module system_calls
    type :: identity_t
       integer(c_int32_t) :: device(2) = 0  !< major and minor number
       integer(c_int64_t) :: inode = 0
-      logical :: regular = .false.         !< not a device, not a pipe, and not missing
-      logical :: device_or_pipe = .false.  !< neither regular nor a directory, and not missing
+      logical :: regular = .false.         !< not a device, not a pipe, not a directory, and not missing
    end type identity_t
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
@@ -32,7 +31,7 @@ module system_calls
    !> Read and write for all, of a directory also its use, less the user's mask.
    integer(c_int), parameter :: permissions = int(o'666', c_int), directory_permissions = int(o'777', c_int)
    !> Kinds of files within a mode.
-   integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000'), kind_directory = int(o'040000')
+   integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000')
 
    integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
    integer(c_int), parameter :: watched(2) = [signal_interrupt, signal_terminate]
@@ -110,11 +109,6 @@ module system_calls
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: mode
       end function mkdir
-      !> rmdir(2): removes an empty directory.
-      integer(c_int) function rmdir(path) bind(c)
-         import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
-      end function rmdir
       !> unlink(2): removes a file.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
@@ -166,7 +160,6 @@ contains
       id%device = facts%device
       id%inode = facts%inode
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular
-      id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
    end function identity_of
 
    !> Whether `a` and `b` are one regular file. A device, pipe or terminal may be used twice without harm.
@@ -234,16 +227,13 @@ contains
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
-   !> Makes the directory `path`. `made`: it was not there before; `exists`: now there is one, or a file of that name;
-   !> if not, see `last_error`.
-   subroutine make_directory(path, made, exists)
+   !> Makes the directory `path`; false, see `last_error`, if then there is neither one nor a file of that name.
+   logical function make_directory(path)
       character(*), intent(in) :: path
-      logical, intent(out) :: made, exists
 
-      made = mkdir(path//c_null_char, directory_permissions) == 0
-      exists = made
-      if (.not. made) exists = last_error() == file_exists
-   end subroutine make_directory
+      make_directory = mkdir(path//c_null_char, directory_permissions) == 0
+      if (.not. make_directory) make_directory = last_error() == file_exists
+   end function make_directory
 
    !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
    !> next file would take their descriptors, and what is printed would go into it.

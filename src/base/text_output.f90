@@ -8,7 +8,7 @@ module text_output
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
-   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
+   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
    public :: held_length, write_held, release_output, has_failed, turn_lost, replaced
 
    integer, parameter :: block_length = 65536
@@ -176,6 +176,7 @@ contains
       type(failure_t), allocatable, intent(out) :: failure
 
       call write_held(o, held_length(o))
+      deallocate (o%buffer)
       if (len(o%path) > 0) then
          if (.not. close_descriptor(o%descriptor) .and. .not. has_failed(o)) o%error = last_error()
       else
@@ -185,19 +186,13 @@ contains
       call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
 
-   !> Leaves an output to another process, which writes and closes it.
-   elemental subroutine forget_output(o)
-      type(output_t), intent(inout) :: o
-
-      if (allocated(o%buffer)) deallocate (o%buffer)
-   end subroutine forget_output
-
-   !> Closes an output without writing: the file is as it was before, and removed if it did not exist.
-   subroutine abandon_output(o)
+   !> Closes an output without writing, if it is open: the file is as it was before, and removed if it did not exist.
+   impure elemental subroutine abandon_output(o)
       type(output_t), intent(inout) :: o
       logical :: closed
 
       if (.not. allocated(o%buffer)) return
+      deallocate (o%buffer)
       if (len(o%path) == 0 .or. o%descriptor < 0) return
       closed = close_descriptor(o%descriptor)
       if (o%made) call remove_file(o%path)

@@ -91,11 +91,10 @@ contains
    !> `varies`, the number of the variant behind that of the set.
    subroutine csv_head(o, errors, varies)
       type(output_t), intent(inout) :: o
-      logical, intent(in) :: errors
-      logical, intent(in), optional :: varies
+      logical, intent(in) :: errors, varies
 
       call add(o, 'set,')
-      if (present(varies)) call add(o, trim(merge('variant,', '        ', varies)))
+      if (varies) call add(o, 'variant,')
       call add(o, 'step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
       if (errors) call add(o, ',ex,ey,ephi,evx,evy,evphi,eax,eay,eaphi')
       call put(o, '')
@@ -108,7 +107,7 @@ contains
       type(output_t), intent(inout) :: o
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
-      logical, intent(in), optional :: varies
+      logical, intent(in) :: varies
       type(assemblies_t), intent(in), optional :: assemblies(:)
       character(:), allocatable :: start
       type(row_t) :: row, other
@@ -121,9 +120,7 @@ contains
       integer :: i, k
 
       start = whole(s%set_number)//','
-      if (present(varies)) then
-         if (varies) start = start//whole(s%variant)//','
-      end if
+      if (varies) start = start//whole(s%variant)//','
       start = start//whole(step)//','//full(s%motions(1)%t)//','
       asked = s%errors(1)%asked
       error = 0.0_wp

@@ -4,10 +4,8 @@ module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, request_pole, instant
    use structure, only: findings_t
-   use convergence, only: convergence_t, is_solved, gather
-   use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
-   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
-      largest_errors
+   use branch_certificate, only: certificate_counts_t, count_in, worst_branch
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
@@ -21,7 +19,7 @@ module set_analysis
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
-      prove_set, set_record, set_errors, set_bounds, set_closing_diagnostics
+      prove_set, set_bounds, set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -213,39 +211,6 @@ contains
             largest_bounds(s%now%proofs(c)%links, s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
       end do
    end function set_bounds
-
-   !> How the instant was found, and on which branch: of several mechanisms the worst.
-   pure subroutine set_record(s, record, branch)
-      type(set_analysis_t), intent(in) :: s
-      type(convergence_t), intent(out) :: record
-      type(branch_t), intent(out) :: branch
-      type(convergence_t) :: one
-      integer :: c
-
-      record = s%list(1)%convergence
-      branch = worst_branch(s%list%branch)
-      do c = 2, size(s%list)
-         one = s%list(c)%convergence
-         record%kantorovich_ratio = max(record%kantorovich_ratio, one%kantorovich_ratio)
-         record%rate = max(record%rate, one%rate)
-         ! How one ended that was not solved is not covered by one that was.
-         if (is_solved(one) .and. .not. is_solved(record)) one%ended = record%ended
-         call gather(one, record)
-      end do
-   end subroutine set_record
-
-   !> The largest errors (0:2) of any row, in the characteristic length and rate of its mechanism.
-   pure function set_errors(s) result(largest)
-      type(set_analysis_t), intent(in) :: s
-      real(wp) :: largest(0:2)
-      integer :: c
-
-      largest = 0.0_wp
-      do c = 1, size(s%list)
-         largest = max(largest, largest_errors(s%now%parts(c), s%now%errors(c), s%now%motions(c), &
-            s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
-      end do
-   end function set_errors
 
    !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed, in
    !> their order.

@@ -233,6 +233,7 @@ rejected '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv 
 rejected '--plot, and one of its files' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/plot_yoke" \
    --csv "$w/plot_yoke/plot-2.gp"
 rejected 'a command with --plot' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/a" --csv "$w/b" --log "$w/b"
+rmdir "$w/a"
 equal 'no file is made by what is refused' '' "$(ls "$w"/a "$w"/a.x "$w"/a-* "$w/b" "$w/own-2.deck" 2> /dev/null)"
 if [ -w /dev/full ]; then
    "$kinmat" "$w/own-1.deck" --sets 1/2 --table /dev/full > "$w/out" 2> "$w/err"
