@@ -15,7 +15,7 @@ module numerals
    private
    public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length, significant
    public :: put_whole, put_with_point, put_minus, put_exponent, max_decimals
-   public :: nearest_whole, decide_whole, first_digits, leading_digits, tens
+   public :: nearest_whole, tens
 
    !> Digits that tell any two reals apart: 17 for 53 bits.
    integer, parameter :: significant = 2 + int(digits(1.0_wp)*log10(2.0))
@@ -157,15 +157,11 @@ contains
       character(:), allocatable :: text
       character(40) :: field
       character(12) :: form
+      integer(int64) :: n
       integer :: order
 
-      order = 0
-      if (abs(x) > 0.0_wp) then
-         ! Rounding may make it the next power of ten.
-         write (form, '("(es30.", i0, "e4)")') digits - 1
-         write (field, form) x
-         read (field(index(field, 'E') + 1:), *) order
-      end if
+      ! Rounding may make it the next power of ten.
+      call first_digits(abs(x), digits, n, order)
       if (abs(x) > 0.0_wp .and. (abs(x) < from .or. abs(x) >= to)) then
          write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
       else
@@ -206,7 +202,7 @@ contains
       real(wp), intent(in) :: x
       character(full_length), intent(out) :: text
       integer, intent(out) :: length
-      integer(int64) :: n
+      integer(int64) :: n, upper, first
       integer :: e
       logical :: sure
       character(20) :: form
@@ -222,7 +218,11 @@ contains
          end if
          call leading_digits(abs(x), significant, n, e, sure)
          if (sure) then
-            call put_leading(n, number(:significant + 1))
+            ! No pair of digits of one half needs the result of the other: that is faster.
+            upper = n/tens(8)
+            call put_digits(upper, number(3:10), first)
+            call put_digits(n - tens(8)*upper, number(11:18))
+            number(:2) = achar(48 + int(first))//'.'
             number(significant + 2:significant + 3) = merge('E-', 'E+', e < 0)
             call put_digits(int(abs(e), int64), number(significant + 4:))
             return
@@ -290,37 +290,6 @@ contains
       text(point:point) = '.'
       call put_whole(rest, text(:point - 1), first)
    end subroutine put_with_point
-
-   !> Writes the 17 digits of `n`, a point after the first.
-   pure subroutine put_leading(n, text)
-      integer(int64), intent(in) :: n
-      character(18), intent(inout) :: text
-      integer(int64), parameter :: eight = 10_int64**8
-      integer(int64) :: upper, first
-
-      upper = n/eight
-      first = upper/eight
-      text(1:1) = achar(48 + int(first))
-      text(2:2) = '.'
-      call put_eight(int(upper - eight*first), text(3:10))
-      call put_eight(int(n - eight*upper), text(11:18))
-   end subroutine put_leading
-
-   !> Writes the eight digits of `n` < 10**8. No pair of digits needs the result of another: that is faster.
-   pure subroutine put_eight(n, text)
-      integer, intent(in) :: n
-      character(8), intent(inout) :: text
-      integer :: upper, lower, first, third
-
-      upper = n/10000
-      lower = n - 10000*upper
-      first = upper/100
-      third = lower/100
-      text(1:2) = pairs(2*first + 1:2*first + 2)
-      text(3:4) = pairs(2*(upper - 100*first) + 1:2*(upper - 100*first) + 2)
-      text(5:6) = pairs(2*third + 1:2*third + 2)
-      text(7:8) = pairs(2*(lower - 100*third) + 1:2*(lower - 100*third) + 2)
-   end subroutine put_eight
 
    !> The whole number nearest to `x` 10**`k`, x >= 0, the even one of two equally near; at least 10**12 if it has more
    !> than 12 digits.
