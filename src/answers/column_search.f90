@@ -10,12 +10,12 @@
 module column_search
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, find_node, move_node, is_known, beside_joint
-   use zero_search, only: sample_t, column_t, find_zero, find_turn, look, differ_in_sign, noise_part
-   use extremes, only: extremes_t, offer, note_velocity, note_interval, alike
+   use nodes, only: node_t, sample_t, look, move_node, is_known, beside_joint
+   use zero_search, only: column_t, find_zero, find_turn, look_at_column, differ_in_sign, noise_part
+   use extremes, only: extremes_t, coordinate_t, offer_sample, note_velocity, note_interval, alike
    implicit none
    private
-   public :: add_node, search_waiting, jerk_at_first, misses_by, overlooked
+   public :: find_node, add_node, search_waiting, jerk_at_first, misses_by, overlooked
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
@@ -44,6 +44,23 @@ module column_search
 
 contains
 
+   !> Finds the `node` of mechanism `c` at the last instant of `s` or a time `t` between the instants. `always`: see
+   !> `look`.
+   subroutine find_node(x, s, c, t, always, node)
+      type(extremes_t), intent(in) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      real(wp), intent(in) :: t
+      logical, intent(in) :: always
+      type(node_t), intent(out) :: node
+
+      associate (track => x%tracks(c))
+         node%t = t
+         allocate (node%at(size(track%coordinates)))
+         call look(s, track%requests, track%coordinates%row, track%coordinates%column, t, node%at, always)
+      end associate
+   end subroutine find_node
+
    !> Takes `node` of mechanism `c` away, and searches between it and the last one of which all is known. Two parts of
    !> one length, from an instant with an even number on, are searched together, if accelerations are simple there: the
    !> node between them is the one in the middle, and no motion is looked for. The result does not depend on where
@@ -57,7 +74,7 @@ contains
       logical :: is_searched
 
       associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
-         if (.not. is_known(node, track%rows)) then
+         if (.not. is_known(node)) then
             call search_waiting(x, s, c)
             call take_node(x, c, node, .true.)
             return
@@ -109,28 +126,30 @@ contains
       type(node_t), intent(in) :: nodes(3)
       logical, intent(in) :: anyway
       logical, intent(out) :: simple
-      real(wp) :: jerk(3, size(x%asked), 2), f(3, 0:2), open, h
-      integer :: i, j, k
+      real(wp) :: jerk(2, size(x%tracks(c)%coordinates)), f(3, 0:2), noise(0:2), open, h
+      integer :: i, k
 
       h = nodes(3)%t - nodes(1)%t
       simple = .true.
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            do j = 1, x%columns(q)
-               do k = 1, 3
-                  f(k, :) = nodes(k)%value(j, :, q)*[1.0_wp, h, h**2]
-               end do
-               open = max(noise_of(x, nodes, q, j, 0), noise_part*maxval(abs(f(:, 0))))
-               jerk(j, q, 1) = jerk_at_first(f, open)/h**3
-               ! From the last to the first the rates have the other sign, and so has their second derivative.
-               f = f(3:1:-1, :)
-               f(:, 1) = -f(:, 1)
-               jerk(j, q, 2) = -jerk_at_first(f, open)/h**3
-               ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
-               open = overlooked*x%size_of(j, 2, q) + errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(h) &
-                  + noise_of(x, nodes, q, j, 2))
-               simple = simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], jerk(j, q, :)*h, open)
+      do i = 1, size(x%tracks(c)%coordinates)
+         associate (size_of => x%tracks(c)%coordinates(i)%size_of)
+            ! What rounding may leave open, at most.
+            noise = 0.0_wp
+            do k = 1, 3
+               associate (at => nodes(k)%at(i))
+                  f(k, :) = at%f*[1.0_wp, h, h**2]
+                  noise = max(noise, at%error, max(noise_part, epsilon(1.0_wp)*at%growth)*size_of)
+               end associate
             end do
+            open = max(noise(0), noise_part*maxval(abs(f(:, 0))))
+            jerk(1, i) = jerk_at_first(f, open)/h**3
+            ! From the last to the first the rates have the other sign, and so has their second derivative.
+            f = f(3:1:-1, :)
+            f(:, 1) = -f(:, 1)
+            jerk(2, i) = -jerk_at_first(f, open)/h**3
+            ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
+            open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
+            simple = simple .and. is_simple([(nodes(k)%at(i)%f(2), k=1, 3)], jerk(:, i)*h, open)
          end associate
       end do
       if (.not. (simple .or. anyway)) return
@@ -154,19 +173,13 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
       logical, intent(in) :: next
-      type(sample_t) :: sample
-      integer :: i, j, k
+      integer :: i, k
 
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            do j = 1, x%columns(q)
-               sample = sample_of(node, q, j)
-               do k = 0, node%known(q)
-                  call offer(x, q, j, k, sample, .false.)
-               end do
-               if (next .and. sample%exists) call note_velocity(x, q, j, sample)
-            end do
-         end associate
+      do i = 1, size(node%at)
+         do k = 0, node%at(i)%known
+            call offer_sample(x%tracks(c)%coordinates(i), k, node%at(i), .false., x%step)
+         end do
+         if (next .and. node%at(i)%known == 2) call note_velocity(x%tracks(c)%coordinates(i), node%at(i))
       end do
    end subroutine take_node
 
@@ -188,9 +201,9 @@ contains
             return
          end if
          nodes(1) = a
-         call find_node(x%asked, track%rows, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
+         call find_node(x, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
          nodes(3) = b
-         if (.not. is_known(nodes(2), track%rows)) then
+         if (.not. is_known(nodes(2))) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
@@ -209,57 +222,45 @@ contains
    end subroutine search_part
 
    !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`, where
-   !> their accelerations have the derivatives `jerk` (3, asked, 2).
+   !> their accelerations have the derivatives `jerk` (2, coordinates) at the ends.
    subroutine search_columns(x, s, c, nodes, jerk)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(:)
-      real(wp), intent(in) :: jerk(:, :, :)
+      real(wp), intent(in) :: jerk(:, :)
       type(sample_t) :: points(size(nodes))
       type(sample_t), allocatable :: path(:), found(:)
       type(column_t) :: column
-      integer :: i, j, k
+      integer :: i, k
       logical :: turns
 
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            do j = 1, x%columns(q)
-               points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
-               ! A velocity, an acceleration or its derivative at both ends has different signs.
-               turns = differ_in_sign(jerk(j, q, 1), jerk(j, q, 2)) .or. any([(differ_in_sign(minval(points%f(k)), &
-                  maxval(points%f(k))), k=1, 2)])
-               if (.not. turns) then
-                  do k = 1, size(points)
-                     call note_velocity(x, q, j, points(k))
-                  end do
-                  cycle
-               end if
-               column = column_t(x%asked(q), j, min(max_part*abs(nodes(3)%t - nodes(1)%t), &
-                  max(difference_part*x%step, difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))))
+      do i = 1, size(x%tracks(c)%coordinates)
+         associate (one => x%tracks(c)%coordinates(i))
+            points = [(nodes(k)%at(i), k=1, size(nodes))]
+            ! A velocity, an acceleration or its derivative at both ends has different signs.
+            turns = differ_in_sign(jerk(1, i), jerk(2, i)) .or. any([(differ_in_sign(minval(points%f(k)), &
+               maxval(points%f(k))), k=1, 2)])
+            if (turns) then
+               column = column_t(one%request, one%column, min(max_part*abs(nodes(3)%t - nodes(1)%t), &
+                  max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
                do k = 0, 2
-                  column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
+                  column%noise(k) = max(noise_part*one%size_of(k), maxval(points%error(k)))
                end do
-               column%flat = 2.0_wp*max(alike*x%size_of(j, 2, q), column%noise(2))
-               call search_column(s, column, points, jerk(j, q, :), path, found)
+               column%flat = 2.0_wp*max(alike*one%size_of(2), column%noise(2))
+               call search_column(s, column, points, jerk(:, i), path, found)
                do k = 1, size(found)
-                  call offer(x, q, j, found(k)%order, found(k), .true.)
+                  call offer_sample(one, found(k)%order, found(k), .true., x%step)
                end do
-               do k = 1, size(path)
-                  call note_velocity(x, q, j, path(k))
-               end do
+            else
+               path = points
+            end if
+            do k = 1, size(path)
+               call note_velocity(one, path(k))
             end do
          end associate
       end do
    end subroutine search_columns
-
-   !> Column `j` of row `q` of `node`.
-   pure type(sample_t) function sample_of(node, q, j) result(sample)
-      type(node_t), intent(in) :: node
-      integer, intent(in) :: q, j
-
-      sample = sample_t(node%t, node%value(j, :, q), node%error(j, :, q), node%known(q) == 2)
-   end function sample_of
 
    !> What is `found` of column `c` between the first and the last of three `points`: an extreme of the acceleration,
    !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at most;
@@ -281,8 +282,8 @@ contains
       open = errors_by_rates*(c%noise(1)/length + c%noise(2))/length
       if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk)) > open) &
          call find_turn(s, c, points, jerk, turn)
-      if (.not. turn%exists) call turn_by_ends(s, c, points, jerk, open, turn)
-      if (turn%exists) then
+      if (turn%known < 2) call turn_by_ends(s, c, points, jerk, open, turn)
+      if (turn%known == 2) then
          turn%error = max(turn%error, points(1)%error, points(3)%error)
          turn%order = 2
          found = [turn]
@@ -298,7 +299,7 @@ contains
                if (differ_in_sign(path(last)%f(order), path(i)%f(order))) then
                   call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
                   zero%order = order - 1
-                  if (zero%exists) found = [found, zero]
+                  if (zero%known == 2) found = [found, zero]
                end if
             end if
             last = i
@@ -326,7 +327,7 @@ contains
       if (maxval(points%f(2)) - minval(points%f(2)) <= c%flat) return
       part = jerk(1)/(jerk(1) - jerk(2))
       length = points(3)%t - points(1)%t
-      call look(s, c, points(1)%t + part*length, turn, .false.)
+      call look_at_column(s, c, points(1)%t + part*length, turn, .false.)
       turn%t_error = abs(length)*min(2.0_wp, open/change)
       ! No parabola through values at equal distances gets above them by more than an eighth of their second difference.
       ! These are bounds, and masks allow for a hundred errors: a tenth of a bound is enough.
@@ -356,17 +357,6 @@ contains
       jerk = sum(by_rates*f(:, 1:))
       if (abs(by_values - jerk) > sum(abs(by_all(:, 0)))*open) jerk = by_values
    end function jerk_at_first
-
-   !> What rounding may leave open, at most, of derivative number `k` of column `j` of row `q` at the `nodes`.
-   pure real(wp) function noise_of(x, nodes, q, j, k) result(noise)
-      type(extremes_t), intent(in) :: x
-      type(node_t), intent(in) :: nodes(3)
-      integer, intent(in) :: q, j, k
-      integer :: i
-
-      noise = max(noise_part, epsilon(1.0_wp)*maxval(nodes%growth))*x%size_of(j, k, q)
-      noise = max(noise, maxval([(nodes(i)%error(j, k, q), i=1, 3)]))
-   end function noise_of
 
    !> The cubic with the values `f`(1) and `f`(3) and the derivatives `d` at the ends of an interval of the length 1 has
    !> about the value `f`(2) in the middle, and one extreme inside at most; what is less than `open` counts for nothing.

@@ -8,10 +8,10 @@ module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, one_sided_t, find_node, is_known, times_between, beside_joint, limits_of, places, &
+   use nodes, only: node_t, extreme_t, is_known, times_between, beside_joint, limits_of, places, &
       places_beside
-   use extremes, only: extremes_t, offer_limits, note_end, note_interval
-   use column_search, only: add_node, search_waiting
+   use extremes, only: extremes_t, offer, badly_known, note_end, note_interval
+   use column_search, only: find_node, add_node, search_waiting
    implicit none
    private
    public :: note_instant
@@ -45,11 +45,11 @@ contains
       if (k > s%now%steps) return
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c))
-            if (size(track%rows) == 0) cycle
-            call find_node(x%asked, track%rows, s, c, s%now%motions(c)%t, .false., now)
+            if (size(track%coordinates) == 0) cycle
+            call find_node(x, s, c, s%now%motions(c)%t, .false., now)
             now%begins_pair = mod(k, 2) == 0
-            known = is_known(now, track%rows)
-            is_lost = any(now%known(track%rows) < 0)
+            known = is_known(now)
+            is_lost = any(now%at%known < 0)
             if (k == 0) then
                track%start = s%now%motions(c)
             else if (starts) then
@@ -170,49 +170,44 @@ contains
          real(wp), intent(in) :: other
          real(wp), intent(out) :: beside(places)
          type(node_t) :: near(places)
-         type(one_sided_t) :: limits, best
-         real(wp) :: times(places), least_error
-         integer :: i, try
+         type(extreme_t), dimension(0:2, size(x%tracks(c)%coordinates)) :: limits, best
+         real(wp) :: times(places), sizes(0:2), error, least_error
+         integer :: i, k, try
 
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
             do i = 1, places
-               call find_node(x%asked, x%tracks(c)%rows, s, c, times(i), .true., near(i))
-               if (.not. is_known(near(i), x%tracks(c)%rows)) exit
+               call find_node(x, s, c, times(i), .true., near(i))
+               if (.not. is_known(near(i))) exit
             end do
             if (i <= places) cycle
-            limits = limits_of(near, at%is_change, x%size_of)
-            if (largest_error(limits) < least_error) then
-               least_error = largest_error(limits)
+
+            ! The largest error of those that have a bound, in characteristic values or as a part of larger ones. What
+            ! is badly known counts for nothing.
+            error = 0.0_wp
+            do k = 1, size(limits, 2)
+               associate (size_of => x%tracks(c)%coordinates(k)%size_of, one => limits(:, k))
+                  one = limits_of([(near(i)%at(k), i=1, places)], at%t, at%is_change, size_of)
+                  sizes = max(size_of, abs(one%value))
+                  error = max(error, maxval(one%error/sizes, mask=one%has_bound))
+                  one%exists = one%error <= badly_known*sizes .or. .not. one%has_bound
+               end associate
+            end do
+            if (error < least_error) then
+               least_error = error
                best = limits
                beside = times
             end if
             if (least_error < well_known) exit
          end do
-         if (.not. allocated(best%value)) then
-            beside = times
-            return
-         end if
-         do i = 1, size(x%tracks(c)%rows)
-            call offer_limits(x, x%tracks(c)%rows(i), at%t, best)
+         if (least_error >= huge(1.0_wp)) beside = times
+         do k = 1, size(best, 2)
+            do i = 0, 2
+               if (best(i, k)%exists) call offer(x%tracks(c)%coordinates(k), i, best(i, k), 0.0_wp)
+            end do
          end do
       end subroutine take_limits
-
-      !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or
-      !> as a part of larger ones.
-      pure real(wp) function largest_error(limits) result(largest)
-         type(one_sided_t), intent(in) :: limits
-         integer :: i
-
-         largest = 0.0_wp
-         do i = 1, size(x%tracks(c)%rows)
-            associate (q => x%tracks(c)%rows(i))
-               largest = max(largest, maxval(limits%error(:, :, q)/max(x%size_of(:, :, q), &
-                  abs(limits%value(:, :, q))), mask=limits%has_bound(:, :, q)))
-            end associate
-         end do
-      end function largest_error
 
       !> Takes a node at the time `t`; `always`: see `find_node`.
       subroutine look_at(t, always)
@@ -220,8 +215,8 @@ contains
          logical, intent(in) :: always
          type(node_t) :: node
 
-         call find_node(x%asked, x%tracks(c)%rows, s, c, t, always, node)
-         if (is_known(node, x%tracks(c)%rows)) then
+         call find_node(x, s, c, t, always, node)
+         if (is_known(node)) then
             call add_node(x, s, c, node)
          else
             call note_interval(x%gaps, x%way, t, t, 0.0_wp)

@@ -10,13 +10,13 @@ module extremes
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
-   use nodes, only: node_t, one_sided_t, order_along
-   use zero_search, only: sample_t, noise_part
+   use nodes, only: node_t, sample_t, extreme_t, order_along
+   use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, extreme_t, track_t, gap_t, value_at_t, least, greatest, outward, extreme_words, rows_asked, &
-      new_extremes, offer, offer_limits, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
-      column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, alike
+   public :: extremes_t, coordinate_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
+      new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
+      column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -42,21 +42,41 @@ module extremes
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
-   !> In the deck's units and rad.
-   type :: extreme_t
-      logical :: exists = .false.
-      logical :: has_bound = .true.                    !< false: the number grows without bound before the time `t`
-      logical :: is_located = .false.                  !< at a zero of a derivative, not at a node
+   !> A coordinate at the time `t`.
+   type :: place_t
       real(wp) :: t = 0.0_wp, value = 0.0_wp
-      real(wp) :: t_error = 0.0_wp, error = 0.0_wp     !< what rounding leaves open of both
-   end type extreme_t
+   end type place_t
 
-   !> The way that the rows of one independent mechanism have come.
+   !> Places (1:n and room).
+   type :: place_list_t
+      type(place_t), allocatable :: list(:)
+      integer :: n = 0
+   end type place_list_t
+
+   !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
+   type :: coordinate_t
+      integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
+      integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
+      logical :: is_angle = .false.
+      real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
+      real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
+      type(extreme_t) :: found(least:greatest, 0:2)
+      type(place_list_t) :: places                     !< nodes and extremes, if it may dwell
+      !> How it has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest` since that,
+      !> at this `speed`, where it was before the first, and where it has reversed.
+      integer :: first_sign = 0, last_sign = 0
+      type(place_t) :: start, slowest
+      real(wp) :: speed = huge(1.0_wp)
+      type(place_list_t) :: reversals
+   end type coordinate_t
+
+   !> The way that the coordinates of one independent mechanism have come.
    type :: track_t
-      integer, allocatable :: rows(:)                  !< those asked for
+      integer, allocatable :: requests(:)              !< of the set, those asked for
+      type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
-      type(motion_t), allocatable :: start              !< the motion at the first instant
+      type(motion_t), allocatable :: start             !< the motion at the first instant
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
       logical :: at_change = .false.                   !< the last instant is at a change point
@@ -74,50 +94,21 @@ module extremes
       real(wp) :: from = 0.0_wp, to = 0.0_wp
    end type gap_t
 
-   !> The coordinate `column` of the asked row number `asked` at the time `t`.
-   type :: value_at_t
-      integer :: asked = 0, column = 0
-      real(wp) :: t = 0.0_wp, value = 0.0_wp
-   end type value_at_t
-
-   !> Places (1:n and room).
-   type :: place_list_t
-      type(value_at_t), allocatable :: list(:)
-      integer :: n = 0
-   end type place_list_t
-
-   !> How a coordinate has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest`
-   !> since that, at this `speed`, and where it was before the first.
-   type :: reversals_t
-      integer :: first_sign = 0, last_sign = 0
-      type(value_at_t) :: start, slowest
-      real(wp) :: speed = huge(1.0_wp)
-   end type reversals_t
-
    !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
    !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
    type :: strokes_t
       type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
-      type(value_at_t), allocatable :: reversals(:)
+      type(place_t), allocatable :: reversals(:)
       real(wp) :: times(2) = 0.0_wp
       real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and what is unknown of it
    end type strokes_t
 
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
-      integer, allocatable :: part(:)                  !< (asked) their independent mechanisms
-      integer, allocatable :: columns(:)               !< (asked) of their rows
-      logical, allocatable :: is_angle(:, :)           !< (3, asked) a column holds angles
-      real(wp), allocatable :: dwell(:, :)             !< (3, asked) its dwells within this distance; 0: not asked for
-      real(wp), allocatable :: size_of(:, :, :)        !< (3, 0:2, asked) characteristic value of each number
-      type(extreme_t), allocatable :: found(:, :, :, :) !< (least:greatest, 3, 0:2, asked)
-      type(reversals_t), allocatable :: course(:, :)      !< (3, asked)
-      type(place_list_t) :: reversals                      !< of all coordinates
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
       type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
       type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
-      type(place_list_t) :: places                         !< nodes and extremes of what may dwell
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
@@ -144,43 +135,48 @@ contains
    subroutine new_extremes(s, x)
       class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
-      type(request_t) :: request
       real(wp) :: length, rate, fastest
-      integer :: i, c, k, q, n
+      integer :: i, c, n, q, k
 
       x%asked = rows_asked(s)
-      n = size(x%asked)
-      x%part = s%rows(x%asked)%part
       x%run = s%t1 - s%t0
       x%way = sign(1.0_wp, x%run)
       x%step = abs(x%run)/real(s%steps, wp)
-      allocate (x%is_angle(3, n), x%dwell(3, n), x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n))
-      allocate (x%gaps(0), x%open(0), x%tracks(s%count), x%columns(n), x%course(3, n))
-      allocate (x%places%list(8), x%reversals%list(8))
-      do q = 1, n
-         request = request_of(s, x%asked(q))
-         x%columns(q) = coordinates_of(request%kind)
-         x%is_angle(:, q) = [(is_angle(s%parts(x%part(q)), request, c), c=1, 3)]
-         x%dwell(:, q) = merge(request%dwell(2), request%dwell(1), x%is_angle(:, q))
-      end do
+      allocate (x%gaps(0), x%open(0), x%tracks(s%count))
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%parts(c))
-            track%rows = pack([(q, q=1, n)], x%part == c)
+            track%requests = pack(x%asked, s%rows(x%asked)%part == c)
+            length = characteristic_length(own)
+            rate = characteristic_rate(own, length)
+            allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(track%requests(q))%number)%kind), &
+               q=1, size(track%requests))])))
+            n = 0
+            do q = 1, size(track%requests)
+               associate (request => own%requests(s%rows(track%requests(q))%number))
+                  do i = 1, coordinates_of(request%kind)
+                     n = n + 1
+                     associate (one => track%coordinates(n))
+                        one%request = track%requests(q)
+                        one%part = c
+                        one%row = q
+                        one%column = i
+                        one%is_angle = is_angle(own, request, i)
+                        one%dwell = request%dwell(merge(2, 1, one%is_angle))
+                        one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
+                     end associate
+                  end do
+               end associate
+            end do
+
             allocate (track%joints(0))
             fastest = 0.0_wp
-            if (size(track%rows) == 0) cycle
-            do i = 1, size(own%drives)
+            do i = 1, merge(size(own%drives), 0, n > 0)
                track%joints = [track%joints, joints_of(own%drives(i))]
                if (allocated(own%drives(i)%terms)) fastest = max(fastest, maxval(abs(own%drives(i)%terms%r(2)), &
                   mask=own%drives(i)%terms%kind == term_harmonic))
             end do
             track%joints = track%joints(order_along(track%joints, x%way))
-            length = characteristic_length(own)
-            rate = characteristic_rate(own, length)
             track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
-            do k = 0, 2
-               x%size_of(:, k, track%rows) = merge(1.0_wp, length, x%is_angle(:, track%rows))*rate**k
-            end do
          end associate
       end do
    end subroutine new_extremes
@@ -206,103 +202,84 @@ contains
       if (request%kind == request_pair) column = merge(3, 1, is_angle)
    end function column_of
 
-   !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest; a place is kept, if its dwells
-   !> are asked for. A value `at_zero` of the next derivative has its time from that, and replaces a node's beside it.
-   pure subroutine offer(x, q, c, k, sample, at_zero)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: q, c, k
+   !> Derivative number `k` of `sample` may be an extreme of the coordinate `c`; a place is kept, if its dwells are
+   !> asked for. `at_zero`: the sample is at a zero of the next derivative. `step` of TIME.
+   pure subroutine offer_sample(c, k, sample, at_zero, step)
+      type(coordinate_t), intent(inout) :: c
+      integer, intent(in) :: k
       type(sample_t), intent(in) :: sample
       logical, intent(in) :: at_zero
+      real(wp), intent(in) :: step
+
+      call offer(c, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, sample%error(k)), step)
+      if (k == 0 .and. c%dwell > 0.0_wp) call add_place(c%places, place_t(sample%t, sample%f(0)))
+   end subroutine offer_sample
+
+   !> The value `e` of derivative number `k` of the coordinate `c` may be the least or the greatest. One that is located
+   !> replaces that of a node less than a `step` beside it.
+   pure subroutine offer(c, k, e, step)
+      type(coordinate_t), intent(inout) :: c
+      integer, intent(in) :: k
+      type(extreme_t), intent(in) :: e
+      real(wp), intent(in) :: step
       real(wp) :: gain, open
       integer :: which
       logical :: better
 
       do which = least, greatest
-         associate (e => x%found(which, c, k, q))
-            if (.not. e%has_bound) cycle
-            gain = (sample%f(k) - e%value)*outward(which)
-            open = alike*x%size_of(c, k, q) + e%error + sample%error(k)
-            better = .not. e%exists .or. gain > open
-            if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -open &
-               .and. abs(sample%t - e%t) <= x%step
+         associate (best => c%found(which, k))
+            if (.not. best%has_bound) cycle
+            gain = (e%value - best%value)*outward(which)
+            open = alike*c%size_of(k) + best%error + e%error
+            better = .not. best%exists .or. gain > open
+            if (e%is_located .and. .not. (better .or. best%is_located)) better = gain >= -open &
+               .and. abs(e%t - best%t) < step
             ! Of a value of which almost nothing is known, the least that it can be counts.
-            if (e%error > badly_known*x%size_of(c, k, q) .and. abs(sample%t - e%t) > e%t_error) &
-               better = better .or. gain + e%error > sample%error(k)
+            if (best%error > badly_known*c%size_of(k) .and. abs(e%t - best%t) > best%t_error) &
+               better = better .or. gain + best%error > e%error
             ! A one-sided limit is known less well than the number itself.
-            better = better .or. (abs(sample%t - e%t) <= 0.0_wp .and. sample%error(k) < e%error)
-            if (better) e = extreme_t(exists=.true., is_located=at_zero, t=sample%t, &
-               value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
+            better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
+            if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
+            if (better) best = e
          end associate
       end do
-      if (k == 0 .and. x%dwell(c, q) > 0.0_wp) call add_place(x%places, value_at_t(q, c, sample%t, sample%f(0)))
    end subroutine offer
 
    !> Adds `place` to `p`.
    pure subroutine add_place(p, place)
       type(place_list_t), intent(inout) :: p
-      type(value_at_t), intent(in) :: place
+      type(place_t), intent(in) :: place
 
+      if (.not. allocated(p%list)) allocate (p%list(8))
       if (p%n == size(p%list)) p%list = [p%list, p%list]
       p%n = p%n + 1
       p%list(p%n) = place
    end subroutine add_place
 
-   !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known.
-   pure subroutine offer_limits(x, row, t, limits)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: row
-      real(wp), intent(in) :: t
-      type(one_sided_t), intent(in) :: limits
-      real(wp) :: gain
-      integer :: which, c, k
-
-      do k = 0, 2
-         do c = 1, x%columns(row)
-            do which = least, greatest
-               associate (e => x%found(which, c, k, row), value => limits%value(c, k, row), &
-                          error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
-                  gain = (value - e%value)*outward(which)
-                  if (.not. e%has_bound) cycle
-                  if (error > badly_known*max(x%size_of(c, k, row), abs(value)) .and. has_bound) cycle
-                  if (has_bound) then
-                     if (e%exists .and. gain <= alike*x%size_of(c, k, row) + e%error + error) cycle
-                  else
-                     if ((value > 0.0_wp) .neqv. which == greatest) cycle
-                  end if
-                  e = extreme_t(exists=.true., has_bound=has_bound, is_located=.true., t=t, value=value, error=error)
-               end associate
-            end do
-         end do
-      end do
-   end subroutine offer_limits
-
-   !> Takes the velocity of column `c` of row `q` in the next `sample` along the run: where its sign has changed the
+   !> Takes the velocity of the coordinate `c` in the next `sample` along the run: where its sign has changed the
    !> coordinate has reversed, at its slowest place between.
-   pure subroutine note_velocity(x, q, c, sample)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: q, c
+   pure subroutine note_velocity(c, sample)
+      type(coordinate_t), intent(inout) :: c
       type(sample_t), intent(in) :: sample
       real(wp) :: speed
       integer :: this
 
       speed = abs(sample%f(1))
-      if (speed <= noise_part*x%size_of(c, 1, q)) speed = 0.0_wp
-      associate (course => x%course(c, q), place => value_at_t(q, c, sample%t, sample%f(0)))
-         if (speed < course%speed) then
-            course%slowest = place
-            course%speed = speed
-         end if
-         if (speed <= 0.0_wp) return
-         this = merge(1, -1, sample%f(1) > 0.0_wp)
-         if (course%first_sign == 0) then
-            course%first_sign = this
-            course%start = course%slowest
-         end if
-         if (course%last_sign == -this) call add_place(x%reversals, course%slowest)
-         course%last_sign = this
-         course%slowest = place
-         course%speed = speed
-      end associate
+      if (speed <= noise_part*c%size_of(1)) speed = 0.0_wp
+      if (speed < c%speed) then
+         c%slowest = place_t(sample%t, sample%f(0))
+         c%speed = speed
+      end if
+      if (speed <= 0.0_wp) return
+      this = merge(1, -1, sample%f(1) > 0.0_wp)
+      if (c%first_sign == 0) then
+         c%first_sign = this
+         c%start = c%slowest
+      end if
+      if (c%last_sign == -this) call add_place(c%reversals, c%slowest)
+      c%last_sign = this
+      c%slowest = place_t(sample%t, sample%f(0))
+      c%speed = speed
    end subroutine note_velocity
 
    !> Takes the motion `last` of mechanism `c`, `m`, at the end of the run.
@@ -356,63 +333,58 @@ contains
       is_covered = .not. any(abs(x%gaps%to - x%gaps%from) > 0.0_wp)
    end function is_covered
 
-   !> After the last instant: all links of the mechanism of row `q` are where they were at the first, but for whole
-   !> turns, and as fast.
-   pure logical function is_cyclic(x, q)
+   !> After the last instant: all links of mechanism `c` are where they were at the first, but for whole turns, and as
+   !> fast.
+   pure logical function is_cyclic(x, c)
       type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q
+      integer, intent(in) :: c
 
-      is_cyclic = is_covered(x) .and. all(x%tracks(x%part(q))%closure <= closes_to)
+      is_cyclic = is_covered(x) .and. all(x%tracks(c)%closure <= closes_to)
    end function is_cyclic
 
-   !> Derivative `k` of column `c` of row `q` has a least and a greatest value that differ by more than rounding can
-   !> make, or one of them is not known.
-   pure logical function varies(x, q, c, k)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c, k
+   !> Derivative `k` of the coordinate `c` has a least and a greatest value that differ by more than rounding can make,
+   !> or one of them is not known.
+   pure logical function varies(c, k)
+      type(coordinate_t), intent(in) :: c
+      integer, intent(in) :: k
 
-      associate (e => x%found(:, c, k, q))
+      associate (e => c%found(:, k))
          varies = .not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
-            > unseen(k)*x%size_of(c, k, q) + above_errors*sum(e%error)
+            > unseen(k)*c%size_of(k) + above_errors*sum(e%error)
       end associate
    end function varies
 
-   !> The strokes of column `c` of row `q` after the last instant, in the shortest part of a cyclic run after which its
+   !> The strokes of the coordinate `c` after the last instant, in the shortest part of a cyclic run after which its
    !> reversals repeat.
-   pure type(strokes_t) function strokes_of(x, q, c) result(strokes)
+   pure type(strokes_t) function strokes_of(x, c) result(strokes)
       type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c
-      type(value_at_t), allocatable :: all_of(:)
+      type(coordinate_t), intent(in) :: c
+      type(place_t), allocatable :: all_of(:)
       real(wp), allocatable :: change(:)
       real(wp) :: period, phase
       integer :: n, in_period
 
-      associate (e => x%found(:, c, 0, q))
+      associate (e => c%found(:, 0))
          strokes%length = extreme_t(value=e(greatest)%value - e(least)%value, error=sum(e%error), &
-            exists=all(e%exists .and. e%has_bound) .and. varies(x, q, c, 0))
-      end associate
-      associate (list => x%reversals%list(:x%reversals%n))
-         all_of = pack(list, list%asked == q .and. list%column == c)
-      end associate
-      associate (course => x%course(c, q))
-         if (course%first_sign /= course%last_sign) all_of = [course%start, all_of]
-      end associate
-      n = size(all_of)
-      strokes%in_run = n
-      strokes%reversals = all_of(:0)
-      if (n == 0 .or. .not. is_cyclic(x, q)) return
-      do in_period = 2, n, 2
-         if (mod(n, in_period) /= 0) cycle
-         period = x%run*in_period/n
-         change = all_of(in_period + 1:)%value - all_of(:n - in_period)%value
-         if (x%is_angle(c, q)) change = without_turns(change)
-         if (all(abs(change) <= closes_to*x%size_of(c, 0, q)) .and. all(abs(all_of(in_period + 1:)%t &
-            - all_of(:n - in_period)%t - period) <= closes_to*abs(x%run))) exit
-      end do
-      if (in_period > n) return
-      strokes%reversals = all_of(:in_period)
-      if (in_period > 2) return
-      associate (e => x%found(:, c, 0, q))
+            exists=all(e%exists .and. e%has_bound) .and. varies(c, 0))
+         allocate (all_of(0))
+         if (c%first_sign /= c%last_sign) all_of = [c%start]
+         if (c%reversals%n > 0) all_of = [all_of, c%reversals%list(:c%reversals%n)]
+         n = size(all_of)
+         strokes%in_run = n
+         strokes%reversals = all_of(:0)
+         if (n == 0 .or. .not. is_cyclic(x, c%part)) return
+         do in_period = 2, n, 2
+            if (mod(n, in_period) /= 0) cycle
+            period = x%run*in_period/n
+            change = all_of(in_period + 1:)%value - all_of(:n - in_period)%value
+            if (c%is_angle) change = without_turns(change)
+            if (all(abs(change) <= closes_to*c%size_of(0)) .and. all(abs(all_of(in_period + 1:)%t &
+               - all_of(:n - in_period)%t - period) <= closes_to*abs(x%run))) exit
+         end do
+         if (in_period > n) return
+         strokes%reversals = all_of(:in_period)
+         if (in_period > 2) return
          phase = modulo((e(greatest)%t - e(least)%t)/period, 1.0_wp)
          strokes%times = abs(period)*[phase, 1.0_wp - phase]
          if (minval(strokes%times) <= 0.0_wp) return

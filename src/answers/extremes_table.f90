@@ -12,7 +12,7 @@ module extremes_table
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
+   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
       is_cyclic, is_covered, ratio_decimals, closes_to, column_of, varies
    use dwells, only: dwell_t
    use phrases
@@ -37,7 +37,8 @@ contains
       type(listing_state_t) :: table
       type(digits_t) :: d
       type(request_t) :: request
-      integer :: q, c, k, drive
+      type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
+      integer :: q, c, k, part, drive
       logical :: moves, goes_on(size(x%tracks))
       character(:), allocatable :: driven, line
 
@@ -45,22 +46,24 @@ contains
       moves = .false.
       goes_on = .false.
       do q = 1, size(x%asked)
-         if (.not. any([((varies(x, q, c, k), c=1, x%columns(q)), k=0, 2)])) cycle
+         part = s%rows(x%asked(q))%part
+         own = pack(x%tracks(part)%coordinates, x%tracks(part)%coordinates%request == x%asked(q))
+         if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
-         d = l%own(x%part(q))
-         call put_heads(o, l, x%part(q), request%kind, table)
+         d = l%own(part)
+         call put_heads(o, l, part, request%kind, table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
          if (drive > size(l%drives)) drive = 0
-         associate (own => s%parts(x%part(q)))
-            if (drive > 0) driven = trim(drive_name(own, own%drives(1)))
-            call put_subject(subject_name(own, request%kind, request%subject))
+         associate (m => s%parts(part))
+            if (drive > 0) driven = trim(drive_name(m, m%drives(1)))
+            call put_subject(subject_name(m, request%kind, request%subject))
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
-               if (w%asked == q) call put_at(phrase(say_dwell, s%polish)//'  '//column_name(w%column)//'  ' &
-                  //extreme_words(w%which)//' +- '//number_text(w%distance, 0.0_wp, x%is_angle(w%column, q), 0), &
+               if (w%request == x%asked(q)) call put_at(phrase(say_dwell, s%polish)//'  '//column_name(own(w%column)) &
+                  //'  '//extreme_words(w%which)//' +- '//number_text(w%distance, 0.0_wp, own(w%column)%is_angle, 0), &
                   [w%from, w%to], w%error)
             end associate
          end do
@@ -87,11 +90,11 @@ contains
 
    contains
 
-      !> The rows of asked row `q`, that of a link, point or pair of this `name`.
+      !> The rows of a link, point or pair of this `name`.
       subroutine put_subject(name)
          character(*), intent(in) :: name
-         character(numeral_length), dimension(3, 0:2) :: value, time, place
-         type(strokes_t) :: strokes(x%columns(q))
+         character(numeral_length), dimension(size(own), 0:2) :: value, time, place
+         type(strokes_t) :: strokes(size(own))
          character(:), allocatable :: line
          real(wp) :: error
          integer :: which, c, k, i
@@ -106,15 +109,15 @@ contains
             time = ''
             place = ''
             do k = 0, 2
-               do c = 1, x%columns(q)
-                  if (.not. varies(x, q, c, k)) cycle
-                  associate (e => x%found(which, c, k, q))
+               do c = 1, size(own)
+                  if (.not. varies(own(c), k)) cycle
+                  associate (e => own(c)%found(which, k))
                      if (.not. e%exists) then
                         value(c, k) = trim(adjustl(l%none))
                         cycle
                      end if
                      value(c, k) = phrase(say_unbounded, s%polish)
-                     if (e%has_bound) value(c, k) = number_text(e%value, e%error, x%is_angle(c, q), k)
+                     if (e%has_bound) value(c, k) = number_text(e%value, e%error, own(c)%is_angle, k)
                      time(c, k) = time_text(l, e%t, e%t_error)
                      if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
                   end associate
@@ -128,30 +131,30 @@ contains
          ! The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times
          ! of both strokes and their ratio, or a line for each dead centre if there are more than two.
          value = ''
-         do c = 1, x%columns(q)
-            strokes(c) = strokes_of(x, q, c)
+         do c = 1, size(own)
+            strokes(c) = strokes_of(x, own(c))
             associate (length => strokes(c)%length)
-               if (length%exists) value(c, 0) = number_text(length%value, length%error, x%is_angle(c, q), 0)
+               if (length%exists) value(c, 0) = number_text(length%value, length%error, own(c)%is_angle, 0)
             end associate
          end do
          if (any(value /= '')) call put_fields(phrase(say_stroke, s%polish), value)
-         do c = 1, x%columns(q)
+         do c = 1, size(own)
             if (value(c, 0) == '') cycle
             if (strokes(c)%ratio > 0.0_wp) then
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
-               error = sum(x%found(:, c, 0, q)%t_error)
-               line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
+               error = sum(own(c)%found(:, 0)%t_error)
+               line = '  '//column_name(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
                   //known_text(strokes(c)%ratio, ratio_decimals, 0, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
             end if
-            if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, q)) goes_on(x%part(q)) = .true.
+            if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, part)) goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
-                  call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(c)//'  ' &
-                     //number_text(dead(i)%value, 0.0_wp, x%is_angle(c, q), 0), [dead(i)%t], [0.0_wp])
+                  call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(own(c))//'  ' &
+                     //number_text(dead(i)%value, 0.0_wp, own(c)%is_angle, 0), [dead(i)%t], [0.0_wp])
                end do
             end associate
          end do
@@ -200,36 +203,35 @@ contains
          if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
 
-      !> The name of column `c`.
+      !> The name of the coordinate `c`.
       pure function column_name(c) result(name)
-         integer, intent(in) :: c
+         type(coordinate_t), intent(in) :: c
          character(:), allocatable :: name
 
          if (request%kind == request_pair) then
             name = phrase(say_slide, s%polish)
-            if (x%is_angle(c, q)) name = phrase(say_angle, s%polish)
+            if (c%is_angle) name = phrase(say_angle, s%polish)
          else
             name = 'X'
-            if (c == 2) name = 'Y'
-            if (c == 3) name = phrase(say_phi, s%polish)
+            if (c%column == 2) name = 'Y'
+            if (c%column == 3) name = phrase(say_phi, s%polish)
          end if
       end function column_name
 
-      !> A row of `fields` (3, 0:2), with a label before it.
+      !> A row of `fields` (own coordinates, 0:2), with a label before it.
       subroutine put_fields(label, fields)
          character(*), intent(in) :: label
-         character(numeral_length), intent(in) :: fields(3, 0:2)
+         character(numeral_length), intent(in) :: fields(:, 0:)
          character(row_length) :: line
-         integer :: column, c, k
+         integer :: c, k, column, last
 
          line = '  '//label
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
-            do c = 1, x%columns(q)
-               column = column_of(request, x%is_angle(c, q), c)
-               associate (last => name_length + numeral_length*l%column(column, k, request%kind))
-                  line(last - numeral_length + 1:last) = adjustr(fields(c, k))
-               end associate
+            do c = 1, size(own)
+               column = column_of(request, own(c)%is_angle, own(c)%column)
+               last = name_length + numeral_length*l%column(column, k, request%kind)
+               line(last - numeral_length + 1:last) = adjustr(fields(c, k))
             end do
          end do
          table%masked = table%masked .or. index(line(name_length + 1:), unknown_digit) > 0

@@ -12,8 +12,8 @@ module nodes
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, find_node, move_node, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, &
-      places, places_beside
+   public :: sample_t, node_t, extreme_t, look, move_node, is_known, times_between, beside_joint, order_along, &
+      limits_of, places, places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
@@ -34,68 +34,79 @@ module nodes
    !> numbers below the second, in characteristic ones.
    real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
 
-   !> The rows at one time, of the requests of one independent mechanism.
+   !> A coordinate of a row at one time, in the deck's unit or rad.
+   type :: sample_t
+      real(wp) :: t = 0.0_wp            !< time
+      real(wp) :: f(0:2) = 0.0_wp       !< value, rate, acceleration
+      real(wp) :: error(0:2) = 0.0_wp   !< of them, where digits of a table could be in doubt
+      integer :: known = -1             !< as in `row_t`; 2: all of `f`
+      real(wp) :: growth = 0.0_wp       !< by which roundings grow where no digits could be in doubt
+      real(wp) :: t_error = 0.0_wp      !< of the time of a zero
+      integer :: order = 0              !< of the derivative that has an extreme there
+   end type sample_t
+
+   !> The coordinates of one independent mechanism at one time.
    type :: node_t
-      real(wp) :: t = 0.0_wp                           !< time
-      integer, allocatable :: known(:)                 !< (asked) as in `row_t`; -1 of those of other mechanisms
-      real(wp), allocatable :: value(:, :, :)          !< (3, 0:2, asked) in the deck's units and rad
-      real(wp), allocatable :: error(:, :, :)          !< of them, where digits of a table could be in doubt
-      real(wp) :: growth = 0.0_wp                      !< by which roundings grow where they could not
-      logical :: begins_pair = .false.                 !< it is an instant of TIME with an even number
+      real(wp) :: t = 0.0_wp                   !< time
+      logical :: begins_pair = .false.         !< it is an instant of TIME with an even number
+      type(sample_t), allocatable :: at(:)     !< (coordinates)
    end type node_t
 
-   !> The limits (3, 0:2, asked) on one side of a time.
-   type :: one_sided_t
-      logical, allocatable :: has_bound(:, :, :)
-      real(wp), allocatable :: value(:, :, :)          !< the limit; of what has none, a value with its sign
-      real(wp), allocatable :: error(:, :, :)          !< of the limit
-   end type one_sided_t
+   !> The least or the greatest value of a number, or what may be that. In the deck's unit or rad.
+   type :: extreme_t
+      logical :: exists = .false.
+      logical :: has_bound = .true.                    !< false: the number grows without bound before the time `t`
+      logical :: is_located = .false.                  !< at a zero of a derivative or as a limit, not at a node
+      real(wp) :: t = 0.0_wp, value = 0.0_wp           !< of what has no bound, a value with its sign
+      real(wp) :: t_error = 0.0_wp, error = 0.0_wp     !< what rounding leaves open of both
+   end type extreme_t
 
 contains
 
-   !> Finds the rows of the requests asked(these), all of mechanism `c`, at the last instant of `s` or a time `t`
-   !> between the instants. `always`: their errors too where no digit of a table is in doubt.
-   subroutine find_node(asked, these, s, c, t, always, node)
-      integer, intent(in) :: asked(:), these(:), c
+   !> The coordinates `at` of one mechanism at the last instant of `s` or a time `t` between the instants: each is a
+   !> column (1 to 3) of a row, one of those of the `requests` of the set. `always`: their errors too where no digit of
+   !> a table is in doubt; without it no errors are estimated.
+   subroutine look(s, requests, row, column, t, at, always)
       type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: requests(:), row(:), column(:)
       real(wp), intent(in) :: t
-      logical, intent(in) :: always
-      type(node_t), intent(out) :: node
-      type(row_t) :: rows(size(these))
-      real(wp) :: error(3, 0:2, size(these))
+      type(sample_t), intent(out) :: at(size(row))
+      logical, intent(in), optional :: always
+      type(row_t) :: rows(size(requests))
+      real(wp) :: error(3, 0:2, size(requests)), growth
       integer :: i
       logical :: is_found
 
-      node%t = t
-      allocate (node%known(size(asked)), source=-1)
-      allocate (node%value(3, 0:2, size(asked)), node%error(3, 0:2, size(asked)), source=0.0_wp)
-      call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
-      node%known(these) = rows%known
-      node%error(:, :, these) = error
-      do i = 1, size(these)
-         node%value(:, :, these(i)) = rows(i)%value
+      associate (part => s%now%rows(requests(1))%part)
+         if (present(always)) then
+            call rows_at(s, part, requests, t, rows, is_found, always, error, growth)
+         else
+            call rows_at(s, part, requests, t, rows, is_found)
+            error = 0.0_wp
+            growth = 0.0_wp
+         end if
+      end associate
+      do i = 1, size(row)
+         at(i) = sample_t(t, rows(row(i))%value(column(i), :), error(column(i), :, row(i)), rows(row(i))%known, growth)
       end do
-   end subroutine find_node
+   end subroutine look
 
    !> Moves the node `from`, which is of no use then, `to` another place: nothing is allocated.
    pure subroutine move_node(from, to)
       type(node_t), intent(inout) :: from, to
 
       to%t = from%t
-      to%growth = from%growth
       to%begins_pair = from%begins_pair
-      call move_alloc(from%known, to%known)
-      call move_alloc(from%value, to%value)
-      call move_alloc(from%error, to%error)
+      call move_alloc(from%at, to%at)
    end subroutine move_node
 
-   !> All of the motion of the `rows` of `node` is known, and of no number all digits are open: such a one
-   !> cannot be told to be an extreme, nor to be none.
-   pure logical function is_known(node, rows)
+   !> All of the motion of `node` is known, and of no number all digits are open: such a one cannot be told to be an
+   !> extreme, nor to be none.
+   pure logical function is_known(node)
       type(node_t), intent(in) :: node
-      integer, intent(in) :: rows(:)
+      integer :: i
 
-      is_known = all(node%known(rows) == 2) .and. all(node%error(:, :, rows) < nothing_known)
+      is_known = all(node%at%known == 2) .and. all([(all(node%at(i)%error < nothing_known), i=1, size(node%at))])
    end function is_known
 
    !> The times of the nodes between `t1` and `t2`, instants of a run of the time `run`, in their order: at each of the
@@ -163,32 +174,24 @@ contains
       times = t + sign(nearest, from - t)*[(i**2, i=1, places)]
    end function places_beside
 
-   !> The limits at the time beside which the `nodes` are, a change point or a limit; `size_of` (3, 0:2, asked):
-   !> characteristic values.
-   pure function limits_of(nodes, is_change, size_of) result(limits)
-      type(node_t), intent(in) :: nodes(places)
+   !> The limits (0:2) of a coordinate, its rate and its acceleration at the time `t`, a change point or a limit of the
+   !> motion, from its samples `at` the places beside it; `size_of` (0:2): characteristic values.
+   pure function limits_of(at, t, is_change, size_of) result(limits)
+      type(sample_t), intent(in) :: at(places)
+      real(wp), intent(in) :: t, size_of(0:2)
       logical, intent(in) :: is_change
-      real(wp), intent(in) :: size_of(:, 0:, :)
-      type(one_sided_t) :: limits
+      type(extreme_t) :: limits(0:2)
       real(wp), dimension(places) :: f, five, four
-      integer :: q, c, k, i
+      integer :: k
 
       five = merge(in_time, in_root, is_change)
       four = merge(four_in_time, four_in_root, is_change)
-      allocate (limits%value, limits%error, mold=nodes(1)%value)
-      allocate (limits%has_bound(3, 0:2, size(size_of, 3)))
-      do q = 1, size(size_of, 3)
-         do k = 0, 2
-            do c = 1, 3
-               f = [(nodes(i)%value(c, k, q), i=1, places)]
-               limits%value(c, k, q) = dot_product(five, f)
-               limits%error(c, k, q) = 2.0_wp*abs(dot_product(five - four, f)) &
-                  + maxval([(nodes(i)%error(c, k, q), i=1, places)])
-               limits%has_bound(c, k, q) = is_change .or. abs(f(1)) < growth*abs(f(2)) &
-                  .or. abs(f(1)) < small*size_of(c, k, q)
-               if (.not. limits%has_bound(c, k, q)) limits%value(c, k, q) = f(1)
-            end do
-         end do
+      do k = 0, 2
+         f = at%f(k)
+         limits(k) = extreme_t(exists=.true., is_located=.true., t=t, value=dot_product(five, f), &
+            error=2.0_wp*abs(dot_product(five - four, f)) + maxval(at%error(k)))
+         limits(k)%has_bound = is_change .or. abs(f(1)) < growth*abs(f(2)) .or. abs(f(1)) < small*size_of(k)
+         if (.not. limits(k)%has_bound) limits(k)%value = f(1)
       end do
    end function limits_of
 end module nodes

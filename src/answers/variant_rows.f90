@@ -258,7 +258,7 @@ contains
       type(answers_t), intent(in) :: asked
       type(variant_row_t), intent(inout) :: r
       type(strokes_t) :: strokes
-      integer :: n, i, q, which
+      integer :: n, i, k, which
 
       n = s%numbers + 1
       call next(cell_t(cell_count, real(r%solved, wp)))
@@ -300,24 +300,27 @@ contains
          real(asked%assemblies, wp)))
       if (set%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
       do i = 1, size(s%extremes%columns)
-         associate (c => s%extremes%columns(i))
-            q = findloc(asked%extremes%asked, c%request, dim=1)
-            do which = least, greatest
-               associate (e => asked%extremes%found(which, c%coordinate, c%order, q))
-                  if (e%exists) then
-                     r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
-                     if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
-                     r%cells(n + 2) = cell_t(cell_number, e%t)
-                     r%cells(n + 3) = drive_cell(set, first_drive(set, c%request), e%t)
-                  end if
-               end associate
-               n = n + 3
-            end do
-            if (c%order > 0) cycle
-            strokes = strokes_of(asked%extremes, q, c%coordinate)
-            ! It may be small: then the rounding of the difference counts.
-            if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, strokes%length%error &
-               + rounding*maxval(abs(asked%extremes%found(:, c%coordinate, 0, q)%value)))
+         associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
+            k = findloc(asked%extremes%tracks(part)%coordinates%request == c%request &
+               .and. asked%extremes%tracks(part)%coordinates%column == c%coordinate, .true., dim=1)
+            associate (one => asked%extremes%tracks(part)%coordinates(k))
+               do which = least, greatest
+                  associate (e => one%found(which, c%order))
+                     if (e%exists) then
+                        r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
+                        if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
+                        r%cells(n + 2) = cell_t(cell_number, e%t)
+                        r%cells(n + 3) = drive_cell(set, first_drive(set, c%request), e%t)
+                     end if
+                  end associate
+                  n = n + 3
+               end do
+               if (c%order > 0) cycle
+               strokes = strokes_of(asked%extremes, one)
+               ! It may be small: then the rounding of the difference counts.
+               if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
+                  strokes%length%error + rounding*maxval(abs(one%found(:, 0)%value)))
+            end associate
             if (strokes%ratio > 0.0_wp) r%cells(n + 2) = cell_t(cell_number, strokes%ratio, strokes%error)
             n = n + 2
          end associate

@@ -2,11 +2,11 @@
 !> alone, in a bracket that holds the zero from the first to the last.
 module zero_search
    use kinds, only: wp
-   use points, only: row_t
-   use set_analysis, only: set_analysis_t, rows_at
+   use set_analysis, only: set_analysis_t
+   use nodes, only: sample_t, look
    implicit none
    private
-   public :: sample_t, column_t, look, find_zero, find_turn, differ_in_sign, noise_part
+   public :: column_t, look_at_column, find_zero, find_turn, differ_in_sign, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
@@ -27,17 +27,6 @@ module zero_search
    !> estimate of errors.
    real(wp), parameter :: well_known = 65536.0_wp*epsilon(1.0_wp)
 
-   !> A number of a row at one time, in the deck's units and rad.
-   type :: sample_t
-      real(wp) :: t = 0.0_wp
-      real(wp) :: f(0:2) = 0.0_wp   !< value, rate, acceleration
-      real(wp) :: error(0:2) = 0.0_wp   !< of them, where it is asked for
-      logical :: exists = .false.
-      real(wp) :: t_error = 0.0_wp      !< of the time of a zero
-      real(wp) :: growth = 0.0_wp       !< of roundings, where errors are asked for
-      integer :: order = 0              !< of the derivative that has an extreme there
-   end type sample_t
-
    !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
    !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives.
    type :: column_t
@@ -50,30 +39,21 @@ module zero_search
 contains
 
    !> The column `c` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
-   subroutine look(s, c, t, sample, with_errors)
+   subroutine look_at_column(s, c, t, sample, with_errors)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
       real(wp), intent(in) :: t
       type(sample_t), intent(out) :: sample
       logical, intent(in), optional :: with_errors
-      type(row_t) :: row(1)
-      real(wp) :: error(3, 0:2, 1)
+      type(sample_t) :: at(1)
 
-      sample%t = t
-      associate (part => s%now%rows(c%request)%part)
-         if (present(with_errors)) then
-            call rows_at(s, part, [c%request], t, row, sample%exists, with_errors, error, sample%growth)
-            sample%error = error(c%column, :, 1)
-         else
-            call rows_at(s, part, [c%request], t, row, sample%exists)
-         end if
-      end associate
-      sample%f = row(1)%value(c%column, :)
-   end subroutine look
+      call look(s, [c%request], [1], [c%column], t, at, with_errors)
+      sample = at(1)
+   end subroutine look_at_column
 
    !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
    !> opposite signs there. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
-   !> 1971). Where a time between has no motion, the nearest known one is the zero. `zero`%exists is false where the
+   !> 1971). Where a time between has no motion, the nearest known one is the zero. `zero`%known is -1 where the
    !> signs were the same.
    subroutine find_zero(s, c, order, level, a, b, zero)
       type(set_analysis_t), intent(inout) :: s
@@ -87,7 +67,7 @@ contains
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
 
-      if (.not. (a%exists .and. b%exists)) return
+      if (min(a%known, b%known) < 2) return
       t1 = a%t
       t2 = b%t
       g1 = a%f(order) - level
@@ -102,8 +82,8 @@ contains
          if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
          if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
          last = t
-         call look(s, c, t, at)
-         if (.not. at%exists) then
+         call look_at_column(s, c, t, at)
+         if (at%known < 2) then
             width = abs(t2 - t1)
             t = t2
             exit
@@ -134,7 +114,7 @@ contains
    !> The extreme `turn` of the acceleration of column `c` between the first and the last of three `points`, at which
    !> its derivative `jerk` (2) has different signs: that of the polynomial through accelerations at five times about
    !> it, beginning where the parabola of the derivative with the change of the accelerations is zero. Where the fourth
-   !> difference counts, the times are too far apart. `turn`%exists is false where it is not found.
+   !> difference counts, the times are too far apart. `turn`%known is -1 where it is not found.
    subroutine find_turn(s, c, points, jerk, turn)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -156,8 +136,8 @@ contains
             if ((first - a%t)*step < 0.0_wp) first = a%t
             if ((b%t - 4.0_wp*step - first)*step < 0.0_wp) first = b%t - 4.0_wp*step
             do k = 0, 4
-               call look(s, c, first + k*step, at)
-               if (.not. at%exists) return
+               call look_at_column(s, c, first + k*step, at)
+               if (at%known < 2) return
                f(k) = at%f(2)
             end do
             ! Newton's formula of forward differences.
@@ -199,7 +179,7 @@ contains
       do i = 1, 2
          ! An estimate takes nine solutions. A level that a coordinate passes has its error.
          estimated = order == 0 .or. i == 2
-         call look(s, c, t, zero, estimated)
+         call look_at_column(s, c, t, zero, estimated)
          open = zero%error(order)
          if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(order)
          zero%t_error = abs(ends(2) - ends(1))

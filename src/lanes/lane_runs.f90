@@ -23,7 +23,7 @@ module lane_runs
    use lane_sines, only: width
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
    use lane_steps, only: judgement_t, solve_lanes, accept_lanes, keep_lane
-   use lane_watch, only: watch_t, new_watch, look_on, fine_prediction
+   use lane_watch, only: watched_t, look_on, fine_prediction
    implicit none
    private
    public :: lane_run_t, renew_run, begin_run, run_lanes, width
@@ -42,8 +42,8 @@ module lane_runs
       type(variant_row_t) :: row
       type(answers_t) :: asked
       type(set_analysis_t) :: s
-      type(watch_t) :: watch
-      type(row_t), allocatable :: rows(:)   !< room for those that EXTREMES ask for
+      type(watched_t), allocatable :: watch(:)   !< (coordinates) of those that EXTREMES ask for
+      type(row_t), allocatable :: rows(:)   !< room for theirs
       integer :: at = -1                    !< the last instant solved
       integer :: counted = -1               !< the last instant that the row has counted
       integer :: noted = -1                 !< the last instant that EXTREMES have taken
@@ -79,7 +79,10 @@ contains
       type(lane_run_t), intent(inout) :: r
 
       call new_answers(r%s, .false., r%asked)
-      if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
+      if (r%asked%extremes_asked) then
+         if (allocated(r%watch)) deallocate (r%watch)
+         allocate (r%watch(size(r%asked%extremes%tracks(1)%coordinates)))
+      end if
       r%at = -1
       r%counted = -1
       r%noted = -1
@@ -280,7 +283,7 @@ contains
             call find_row(now%parts(1), now%motions(1), now%parts(1)%requests(asked(i)), r%rows(i))
          end do
       end associate
-      call look_on(r%watch, r%asked%extremes, r%rows, steps)
+      call look_on(r%watch, r%asked%extremes%tracks(1)%coordinates, r%rows, steps)
    end subroutine show_rows
 
    !> The engine goes on with `r`, where lane `i` has not found the next instant (`is_refused`) or extremes may be in

@@ -5,66 +5,56 @@ module lane_watch
    use kinds, only: wp
    use points, only: row_t
    use zero_search, only: noise_part
-   use extremes, only: extremes_t, alike
+   use extremes, only: coordinate_t, alike
    use column_search, only: misses_by, overlooked
    implicit none
    private
-   public :: watch_t, new_watch, look_on, fine_prediction
+   public :: watched_t, look_on, fine_prediction
 
    !> Steps are short where the prediction from three motions is off by less, in rad or the unit of length: its error is
    !> that of the seventh order.
    real(wp), parameter :: fine_prediction = 1.0e-6_wp
 
-   !> What is known of the rows (asked) at the last instant: signs are -1, 0 or 1.
-   type :: watch_t
-      integer, allocatable :: signs(:, :, :)        !< (3, 2, asked) of velocity and acceleration
-      integer, allocatable :: trend(:, :)           !< (3, asked) of the change of the acceleration
-      real(wp), allocatable :: acceleration(:, :)   !< (3, asked) from which the next change counts
-      real(wp), allocatable :: differences(:, :, :) !< (0:3, 3, asked) of accelerations at the last instants: the value
-   end type watch_t
+   !> What is known of a coordinate at the last instant: signs are -1, 0 or 1.
+   type :: watched_t
+      integer :: signs(2) = 0                 !< of velocity and acceleration
+      integer :: trend = 0                    !< of the change of the acceleration
+      real(wp) :: acceleration = 0.0_wp       !< from which the next change counts
+      real(wp) :: differences(0:3) = 0.0_wp   !< of accelerations at the last instants: the value, ...
+   end type watched_t
 
 contains
 
-   !> Nothing is known of the rows of `x`.
-   function new_watch(x) result(w)
-      type(extremes_t), intent(in) :: x
-      type(watch_t) :: w
-
-      associate (n => size(x%asked))
-         allocate (w%signs(3, 2, n), w%trend(3, n), source=0)
-         allocate (w%acceleration(3, n), w%differences(0:3, 3, n), source=0.0_wp)
-      end associate
-   end function new_watch
-
-   !> Takes the `rows` (asked) of the next instant. `steps`: in so many of the last steps one of them may have turned: a
-   !> sign changes in the last one, an acceleration that begins to rise may have been at its least before that.
-   pure subroutine look_on(w, x, rows, steps)
-      type(watch_t), intent(inout) :: w
-      type(extremes_t), intent(in) :: x
+   !> Takes the `rows` of the next instant, of which `list` has the coordinates, and `w` (coordinates) what is known of
+   !> them. `steps`: in so many of the last steps one of them may have turned: a sign changes in the last one, an
+   !> acceleration that begins to rise may have been at its least before that.
+   pure subroutine look_on(w, list, rows, steps)
+      type(watched_t), intent(inout) :: w(:)
+      type(coordinate_t), intent(in) :: list(:)
       type(row_t), intent(in) :: rows(:)
       integer, intent(out) :: steps
-      integer :: q, c, k, now
-      real(wp) :: change
+      integer :: i, k, now
+      real(wp) :: f(0:2), change
 
       steps = 0
-      do q = 1, size(rows)
-         do c = 1, x%columns(q)
+      do i = 1, size(list)
+         f = rows(list(i)%row)%value(list(i)%column, :)
+         associate (one => w(i), size_of => list(i)%size_of)
             do k = 1, 2
                now = 0
-               if (abs(rows(q)%value(c, k)) > noise_part*x%size_of(c, k, q)) &
-                  now = merge(1, -1, rows(q)%value(c, k) > 0.0_wp)
-               if (now /= w%signs(c, k, q)) steps = max(1, steps)
-               w%signs(c, k, q) = now
+               if (abs(f(k)) > noise_part*size_of(k)) now = merge(1, -1, f(k) > 0.0_wp)
+               if (now /= one%signs(k)) steps = max(1, steps)
+               one%signs(k) = now
             end do
-            if (.not. is_simple(w%differences(:, c, q), rows(q)%value(c, 2), overlooked*x%size_of(c, 2, q))) steps = 2
-            call take_difference(rows(q)%value(c, 2), w%differences(:, c, q))
-            change = rows(q)%value(c, 2) - w%acceleration(c, q)
-            if (.not. abs(change) > alike*x%size_of(c, 2, q)) cycle
+            if (.not. is_simple(one%differences, f(2), overlooked*size_of(2))) steps = 2
+            call take_difference(f(2), one%differences)
+            change = f(2) - one%acceleration
+            if (.not. abs(change) > alike*size_of(2)) cycle
             now = merge(1, -1, change > 0.0_wp)
-            if (now /= w%trend(c, q)) steps = 2
-            w%trend(c, q) = now
-            w%acceleration(c, q) = rows(q)%value(c, 2)
-         end do
+            if (now /= one%trend) steps = 2
+            one%trend = now
+            one%acceleration = f(2)
+         end associate
       end do
    end subroutine look_on
 
