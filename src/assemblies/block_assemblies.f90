@@ -28,21 +28,24 @@ module block_assemblies
    !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
    real(wp), parameter :: grid = 2.0_wp**26
 
-   !> What was found of one block. Of the paths: paths = finite + infinite + failed + partial.
+   !> What was found of one block: the positions of the last search, and the counts and findings of all searches.
+   !> paths = finite + infinite + failed + partial.
    type :: block_positions_t
       real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
       integer, allocatable :: sign_of(:)        !< (positions) of the determinant; 0: singular
-      logical, allocatable :: is_open(:)        !< (positions) redundant equations agree there, but not their rates
-      integer :: group = 0                      !< unknowns of a group: see max_group
+      logical, allocatable :: rates_open(:)     !< (positions) redundant equations agree there, but not their rates
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0
       integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
+      integer :: real = 0                       !< positions
+      logical :: is_wide = .false.              !< too wide: not solved
+      logical :: is_open = .false.              !< rates are open in some position
       logical :: moves = .false.                !< some positions are not separate: it can move with its drives held
    end type block_positions_t
 
 contains
 
-   !> All positions `found` of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
-   !> change. `tolerance`, `w`: as of `solve_block`; `largest_group`: more unknowns of a group are not solved, see
+   !> Finds all positions of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
+   !> change. `found`: of this search and those before. `tolerance`, `w`: as of `solve_block`; `largest_group`: more unknowns of a group are not solved, see
    !> `max_group`; `start`: of the paths, see `follow_paths`.
    subroutine find_positions(b, i, tolerance, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
@@ -52,37 +55,42 @@ contains
       type(state_t), intent(inout) :: s
       integer, intent(in) :: largest_group
       type(path_start_t), allocatable, intent(inout) :: start
-      type(block_positions_t), intent(out) :: found
+      type(block_positions_t), intent(inout) :: found
       type(convergence_t) :: c
       type(block_form_t) :: f
       type(ends_t) :: ends
+      logical :: moves
       integer :: k
 
-      allocate (found%x(b%list(i)%shape%n, 0), found%sign_of(0), found%is_open(0))
+      found%x = reshape([real(wp) ::], [b%list(i)%shape%n, 0])
+      found%sign_of = [integer ::]
+      found%rates_open = [logical ::]
       if (b%list(i)%direct) then
          call solve_block(b, i, tolerance, w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
-         found%is_open = [.false.]
+         found%rates_open = [.false.]
          return
       end if
       call make_form(b, i, s, f)
-      found%group = f%system%p
-      found%moves = f%is_lacking
-      if (f%is_lacking .or. f%is_impossible .or. found%group > largest_group) return
+      found%is_wide = found%is_wide .or. f%system%p > largest_group
+      found%moves = found%moves .or. f%is_lacking
+      if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
+      moves = .false.
       if (f%system%p == 0) then
          ends%paths = 1
          allocate (ends%list(1))
          ends%list(1)%x = [(1.0_dp, 0.0_dp)]
          ends%list(1)%y = ends%list(1)%x
       else if (f%system%p == 1) then
-         call solve_quadratic(f%system, ends, found%moves)
+         call solve_quadratic(f%system, ends, moves)
       else
-         call follow_paths(f%system, start, ends, found%moves)
+         call follow_paths(f%system, start, ends, moves)
       end if
-      found%paths = ends%paths
-      found%infinite = ends%infinite
-      found%failed = ends%failed
+      found%moves = found%moves .or. moves
+      found%paths = found%paths + ends%paths
+      found%infinite = found%infinite + ends%infinite
+      found%failed = found%failed + ends%failed
       do k = 1, size(ends%list)
          found%finite = found%finite + 1
          if (solves_all(f, ends%list(k))) then
@@ -91,6 +99,8 @@ contains
             call leave_out(found%partial)
          end if
       end do
+      found%real = found%real + size(found%sign_of)
+      found%is_open = found%is_open .or. any(found%rates_open)
 
    contains
 
@@ -127,7 +137,7 @@ contains
          end do
          found%x = reshape([found%x, x], [size(x), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
-         found%is_open = [found%is_open, c%rates_open]
+         found%rates_open = [found%rates_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
       end subroutine take_end
 

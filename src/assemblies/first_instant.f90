@@ -187,7 +187,7 @@ contains
          call note_position(every%x(:, k), every%sign_of(k) == 0)
       end do
       ! There is one more if that of Newton's method is none of them.
-      found%are_all = .not. (every%moves .or. every%group > max_group .or. every%failed > 0) &
+      found%are_all = .not. (every%moves .or. every%is_wide .or. every%failed > 0) &
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
       call set_values(e%blocks, i, start, e%state)

@@ -34,17 +34,12 @@ module assemblies
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate: the root of the sum of `squared_distances`
    end type assembly_t
 
-   !> What was found of a block that iterates, in all assemblies of what it builds on. Of its paths: see
-   !> `block_positions_t`.
-   type :: assembly_block_t
+   !> What was found of a block that iterates, in all assemblies of what it builds on.
+   type, extends(block_positions_t) :: assembly_block_t
       integer :: block = 0                      !< its number
       integer, allocatable :: links(:)          !< that its unknowns turn or move
       integer :: unknowns = 0                   !< of the block
-      integer :: paths = 0, finite = 0, infinite = 0, failed = 0, partial = 0, real = 0
-      logical :: is_wide = .false.              !< too wide: not solved
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
-      logical :: is_open = .false.              !< these agree in some position, but not in their rates
-      logical :: moves = .false.                !< it can move with its drives held: its positions are not separate
    end type assembly_block_t
 
    type :: assemblies_t
@@ -190,7 +185,7 @@ contains
       type(block_positions_t) :: found(size(e%blocks%list))
       type(prover_t) :: p
       type(placed_t) :: q
-      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, i, k
+      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
       call make_prover(p, m, e)
@@ -202,10 +197,10 @@ contains
       i = 1
       do while (i >= 1)
          if (i > size(found)) then
-            if (size(a%list) == max_assemblies) a%are_more = .true.
-            if (a%are_more) return
-            call prove_position(p, e, t, [(k, k=1, size(found))], q, is_proved)
-            is_proved = is_proved .and. .not. any([(found(k)%is_open(chosen(k)), k=1, size(found))])
+            a%are_more = size(a%list) == max_assemblies
+            if (a%are_more) exit
+            call prove_position(p, e, e%state, t, [(k, k=1, size(found))], 0, q, failed)
+            is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
             call note_assembly(e, found, chosen, is_proved, a)
             i = i - 1
             cycle
@@ -213,7 +208,6 @@ contains
          if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
             call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i)%paths, found(i))
             seen(i) = choice
-            call count_paths(i, found(i), a)
          end if
          chosen(i) = chosen(i) + 1
          if (chosen(i) > size(found(i)%sign_of)) then
@@ -226,30 +220,10 @@ contains
          changed(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) = choice
          i = i + 1
       end do
-   end subroutine search
-
-   !> Adds what was `found` of block `i` to its counts.
-   pure subroutine count_paths(i, found, a)
-      integer, intent(in) :: i
-      type(block_positions_t), intent(in) :: found
-      type(assemblies_t), intent(inout) :: a
-      integer :: k
-
       do k = 1, size(a%blocks)
-         associate (one => a%blocks(k))
-            if (one%block /= i) cycle
-            one%paths = one%paths + found%paths
-            one%finite = one%finite + found%finite
-            one%infinite = one%infinite + found%infinite
-            one%failed = one%failed + found%failed
-            one%partial = one%partial + found%partial
-            one%real = one%real + size(found%sign_of)
-            one%moves = one%moves .or. found%moves
-            one%is_open = one%is_open .or. any(found%is_open)
-            one%is_wide = one%is_wide .or. found%group > max_group
-         end associate
+         a%blocks(k)%block_positions_t = found(a%blocks(k)%block)
       end do
-   end subroutine count_paths
+   end subroutine search
 
    !> Puts the assembly that `e` has now among the others, the nearest first; of those that are alike in the order in
    !> which they were found.

@@ -15,7 +15,7 @@ module ball_numbers
    use ball_equations, only: vector_t, ball_numbers_t
    implicit none
    private
-   public :: new_ball_numbers, around, angle_errors, table_errors
+   public :: new_ball_numbers, around, angle_errors, point_error, table_errors
 
    !> Of a number of the deck: so many roundings, those of its decimals and units.
    real(wp), parameter, public :: of_number = 4.0_wp*rounding
@@ -104,9 +104,7 @@ contains
             associate (point => abs(p%terms(1, i)), pair => abs(p%terms(2, i)))
                if (point > 0) then
                   o = t%orientation(m%points(point)%link)
-                  sums(o) = sums(o) + norm2(m%points(point)%offset)*(of_number + of_vector + count*rounding + angle(o))
-                  if (m%links(m%points(point)%link)%ground) sums(o) = sums(o) + (of_number + count*rounding) &
-                     *(norm2(m%links(m%points(point)%link)%position(:2)) + norm2(plane_origin(m)))
+                  sums(o) = sums(o) + point_error(m, point, of_vector + angle(o), count*rounding)
                else
                   o = t%orientation(m%points(m%pairs(pair)%point_i)%link)
                   sums(o) = sums(o) + abs(m%pairs(pair)%offset)*(of_number + of_vector + count*rounding + angle(o))
@@ -115,6 +113,19 @@ contains
          end do
       end associate
    end subroutine add_terms
+
+   !> What is open of the vector to `point` from the origin of its link or, on the ground, from that of the motion; in
+   !> the deck's unit of length. `turned`: of its turned part; `summed`: of all its parts, where they are added up.
+   pure real(wp) function point_error(m, point, turned, summed) result(error)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: point
+      real(wp), intent(in) :: turned, summed
+
+      associate (link => m%links(m%points(point)%link))
+         error = norm2(m%points(point)%offset)*(of_number + turned + summed)
+         if (link%ground) error = error + (norm2(link%position(:2)) + norm2(plane_origin(m)))*(of_number + summed)
+      end associate
+   end function point_error
 
    !> (0:2) By how much the splines of the tables of `law` and their derivatives can differ from the exact ones through
    !> these knots, in the drive's unit. With r what the equations of the second derivatives M leave, which are

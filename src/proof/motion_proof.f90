@@ -7,14 +7,15 @@ module motion_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, max_unknowns, take_state, &
-      prove_block
-   use link_bounds, only: link_vectors_t, link_vectors, bound_links
    use drives, only: drive_motion
-   use block_engine, only: block_engine_t
+   use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
+   use block_engine, only: block_engine_t
    use convergence, only: convergence_t, is_solved
+   use balls, only: ball_t
+   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, max_unknowns
    use tube_proof, only: tube_t, new_tube, prove_tube
+   use link_bounds, only: link_vectors_t, link_vectors, bound_links
    implicit none
    private
    public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_proof_t, prove_step
@@ -38,7 +39,6 @@ module motion_proof
 
    !> What the proofs of a mechanism need and keep.
    type :: motion_prover_t
-      logical :: is_ready = .false.
       logical :: has_begun = .false.              !< a position is proved
       type(prover_t) :: prover
       type(link_vectors_t), allocatable :: links(:)
@@ -53,8 +53,9 @@ module motion_proof
       logical :: has_step = .false.               !< a step leads to it from a position that was proved
       type(step_proof_t) :: step
       real(wp) :: gap = 0.0_wp                    !< of redundant equations at the instant, at most, in block units
-      !> (3, 0:2, links) bounds of their errors, in the deck's units and rad, where they are asked for
-      real(wp), allocatable :: links(:, :, :)
+      !> (3, 0:2, links) place, angle and their derivatives, where they are asked for, in the deck's units and rad
+      type(ball_t), allocatable :: links(:, :, :)
+      real(wp) :: largest(2, 0:2) = 0.0_wp        !< the largest errors of lengths and angles in them
       integer, allocatable :: failed(:)           !< the links of the block that is not proved
       integer :: too_many = 0                     !< its unknowns, if they are too many
    end type motion_proof_t
@@ -71,42 +72,41 @@ contains
       logical, intent(in) :: bounded
       type(motion_proof_t), intent(inout) :: found
       integer, allocatable :: block_of(:)         !< of the ground, none, and of each unknown
-      integer :: k, i
+      integer :: failed, i
 
       found%taken = .true.
       found%is_proved = .false.
       found%has_step = .false.
       found%step = step_proof_t()
-      if (.not. p%is_ready) then
+      if (.not. allocated(p%links)) then
          call make_prover(p%prover, m, e)
          p%links = link_vectors(m, e)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
-         p%is_ready = .true.
          allocate (found%links(3, 0:2, size(m%links)))
       end if
       if (allocated(found%failed)) deallocate (found%failed)
       if (q%known < 2) return
-      call prove_position(p%prover, e, q%t, e%needed, p%at(p%now), found%is_proved, &
-         merge(2, 0, bounded))
-      if (found%is_proved) then
-         if (bounded) call bound_links(p%links, e, p%prover%balls, q, found%links)
-         found%gap = maxval(p%at(p%now)%gap(e%needed))
-         found%has_step = p%has_begun
-         if (found%has_step) &
-            call prove_step(p%prover, e, e%needed, p%at(3 - p%now), p%at(p%now), found%step)
-         p%now = 3 - p%now
-         p%has_begun = .true.
-         if (.not. found%has_step .or. found%step%is_proved) return
-         k = found%step%block
-      else
-         k = e%needed(findloc(p%at(p%now)%is_proved(e%needed), .false., dim=1))
-      end if
-      if (k == 0) return
+
+      associate (here => p%at(p%now), before => p%at(3 - p%now))
+         call prove_position(p%prover, e, e%state, q%t, e%needed, merge(2, 0, bounded), here, failed)
+         found%is_proved = failed == 0
+         if (found%is_proved) then
+            if (bounded) call bound_links(p%links, m, e, here%ball_state_t, q, found%links, found%largest)
+            found%gap = here%gap
+            found%has_step = p%has_begun
+            if (found%has_step) call prove_step(p%prover, e, e%needed, before, here, found%step)
+            failed = found%step%block
+         end if
+      end associate
+      if (found%is_proved) p%now = 3 - p%now
+      p%has_begun = p%has_begun .or. found%is_proved
+      if (holds(found)) return
+
       block_of = [0, e%blocks%block_of]
-      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%orientation_of) == k)
-      if (e%blocks%list(k)%shape%n > max_unknowns .or. found%step%is_broken_off) &
-         found%too_many = e%blocks%list(k)%shape%n
+      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%orientation_of) == failed)
+      if (e%blocks%list(failed)%shape%n > max_unknowns .or. found%step%is_broken_off) &
+         found%too_many = e%blocks%list(failed)%shape%n
    end subroutine prove_motion
 
    !> All is proved that is asked for.
@@ -118,13 +118,14 @@ contains
 
    !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.
    subroutine prove_step(p, e, list, from, to, proof)
-      type(prover_t), intent(inout) :: p
+      type(prover_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
       type(workspace_t), allocatable :: work            ! few steps need it
+      type(state_t) :: s
 
       tube = new_tube(e%blocks, size(e%laws))
       proof%is_proved = .true.
@@ -137,11 +138,10 @@ contains
          type(placed_t), intent(in) :: from, to
          real(wp), intent(in) :: shortest
          type(placed_t), allocatable :: middle
-         logical :: is_found
 
          proof%tries = proof%tries + 1
          call prove_tube(p, e, list, from, to, tube)
-         if (tube%is_proved) then
+         if (tube%block == 0) then
             proof%parts = proof%parts + 1
             proof%radius = max(proof%radius, maxval(tube%radius))
             return
@@ -153,36 +153,36 @@ contains
          if (.not. proof%is_proved) return
          allocate (middle)
          middle = new_placed(e%blocks, size(e%laws))
-         call solve_middle(proof%t, middle, is_found)
-         proof%is_proved = is_found
+         call solve_middle(from, to, middle, proof%is_proved)
          if (proof%is_proved) call prove_part(from, middle, shortest)
          if (proof%is_proved) call prove_part(middle, to, shortest)
       end subroutine prove_part
 
-      !> The position `middle` at `t`, from where p%state is; `is_found`: it is proved.
-      subroutine solve_middle(t, middle, is_found)
-         real(wp), intent(in) :: t
+      !> The position `middle` at proof%t, in the middle between `from` and `to`; `is_found`: it is proved.
+      subroutine solve_middle(from, to, middle, is_found)
+         type(placed_t), intent(in) :: from, to
          type(placed_t), intent(inout) :: middle
          logical, intent(out) :: is_found
          type(convergence_t) :: c
-         integer :: i, k
+         integer :: i, k, failed
 
+         if (.not. allocated(work)) then
+            work = new_workspace(e%blocks)
+            s = new_state(e%blocks, size(e%laws))
+         end if
          do i = 1, size(e%laws)
-            p%state%drive_value(0:2, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+            s%drive_value(:, i) = drive_motion(e%laws(i), proof%t)*e%unit_of(i)
          end do
+         s%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
+            + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
          is_found = .false.
-         if (.not. allocated(work)) work = new_workspace(e%blocks)
          do k = 1, size(list)
             c = convergence_t()
-            call solve_block(e%blocks, list(k), e%tolerance, work, p%state, c)
+            call solve_block(e%blocks, list(k), e%tolerance, work, s, c)
             if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          end do
-         call take_state(p, e, t, middle)
-         do k = 1, size(list)
-            call prove_block(p, e%blocks, list(k), 0, middle)
-            if (.not. middle%is_proved(list(k))) return
-         end do
-         is_found = .true.
+         call prove_position(p, e, s, proof%t, list, 0, middle, failed)
+         is_found = failed == 0
       end subroutine solve_middle
    end subroutine prove_step
 end module motion_proof

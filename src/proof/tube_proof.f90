@@ -17,21 +17,21 @@ module tube_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
-   use block_state, only: set_direction
    use block_engine, only: block_engine_t
    use balls, only: ball_t, rounding, room
-   use ball_equations, only: unknown_t, set_ball, set_radius, ball_accelerations
-   use position_proof, only: prover_t, placed_t, contract, find_ball, subtract_product, of_time
+   use ball_equations, only: ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, ball_accelerations
+   use position_proof, only: prover_t, placed_t, block_work_t, contract, find_ball, subtract_product, of_time
    implicit none
    private
    public :: tube_t, new_tube, prove_tube
 
    !> The tube, in the units of the blocks.
    type :: tube_t
-      logical :: is_proved = .false.
-      integer :: block = 0                        !< that is not
+      integer :: block = 0                        !< the first that is not proved; 0: all are
       real(wp), allocatable :: radius(:)          !< (0:unknowns)
-      real(wp), allocatable :: drive(:)           !< (drives) the laws are no farther from the drives' cubics
+      type(ball_state_t) :: curve                 !< holds the curves and, of blocks that are proved, their tubes
+      !> The same, but for rates of radius(:) and of how far laws are from the drives' cubics, about 0.
+      type(ball_state_t) :: balls
    end type tube_t
 
 contains
@@ -42,62 +42,66 @@ contains
       integer, intent(in) :: drives
       type(tube_t) :: tube
 
-      allocate (tube%radius(0:b%unknowns), tube%drive(0:drives), source=0.0_wp)
+      allocate (tube%radius(0:b%unknowns), source=0.0_wp)
+      tube%curve = new_ball_state(b, drives)
+      tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of the blocks `list`, in solving order, between the positions `from` and `to`. If that fails,
-   !> p%state is then in the middle of the curve.
+   !> Proves the motion of the blocks `list`, in solving order, between the positions `from` and `to`.
    subroutine prove_tube(p, e, list, from, to, tube)
-      type(prover_t), intent(inout) :: p
+      type(prover_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
       logical :: unbounded(0:size(e%laws))
       type(ball_t) :: c(0:2)
-      real(wp) :: h
-      integer :: i, k, j, u
+      real(wp) :: h, radius
+      integer :: k, j
 
       h = to%t - from%t
       tube%radius = 0.0_wp
-      ! As in `take_state`.
-      p%curve%u(:) = unknown_t()
-      p%balls%u(:) = unknown_t()
+      ! As in `prove_position`.
+      tube%curve%u(:) = unknown_t()
+      tube%balls%u(:) = unknown_t()
       call bound_drives()
 
       do k = 1, size(list)
-         i = list(k)
-         associate (block => e%blocks%list(i))
-            tube%block = i
-            do j = block%first, block%last
-               u = e%blocks%unknown(j)
-               c = cubic(h, from%x(:1, u), to%x(:1, u))
-               call set_ball(e%blocks, u, c(0), p%curve)
-               p%curve%u(u)%rate = c(1)
-               p%curve%u(u)%acceleration = c(2)
-               p%balls%u(u) = p%curve%u(u)
+         tube%block = list(k)
+         associate (block => e%blocks%list(list(k)), &
+            own => e%blocks%unknown(e%blocks%list(list(k))%first:e%blocks%list(list(k))%last))
+            if (any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))) return
+            do j = 1, size(own)
+               associate (u => own(j))
+                  c = cubic(h, [from%u(u)%value%mid, from%u(u)%rate%mid], [to%u(u)%value%mid, to%u(u)%rate%mid])
+                  call set_ball(e%blocks, u, c(0), tube%curve)
+                  tube%curve%u(u)%rate = c(1)
+                  tube%curve%u(u)%acceleration = c(2)
+                  tube%balls%u(u) = tube%curve%u(u)
+               end associate
             end do
-            tube%is_proved = .not. any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))
-            if (tube%is_proved .and. block%direct) then
+            if (block%direct) then
                ! The unknown is another one and a drive, and so are their cubics.
                associate (row => e%blocks%rows(block%first_row))
-                  call note_radius(u, (ends_open(block%first_row) + tube%radius(row%other) &
-                     + tube%drive(row%drive))*room)
+                  radius = (ends_open(block%first_row) + tube%radius(row%other) &
+                     + tube%balls%drive(1, row%drive)%radius)*room
                end associate
-            else if (tube%is_proved) then
-               call prove_block(e%blocks, e%blocks%unknown(block%first:block%last))
+            else
+               call prove_block(e%blocks, list(k), own, radius)
             end if
+            if (radius < 0.0_wp) return
+
+            tube%radius(own) = radius
+            do j = 1, size(own)
+               associate (u => own(j))
+                  call set_radius(e%blocks, u, (tube%curve%u(u)%value%radius + radius)*room, tube%curve)
+                  tube%balls%u(u) = tube%curve%u(u)
+                  tube%balls%u(u)%rate = ball_t(0.0_wp, radius)
+               end associate
+            end do
          end associate
-         if (.not. tube%is_proved) exit
       end do
-      if (tube%is_proved) return
-      do k = 1, size(list)
-         do j = e%blocks%list(list(k))%first, e%blocks%list(list(k))%last
-            u = e%blocks%unknown(j)
-            p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*h*(from%x(1, u) - to%x(1, u))
-            call set_direction(e%blocks, u, p%state)
-         end do
-      end do
+      tube%block = 0
 
    contains
 
@@ -118,13 +122,12 @@ contains
             law = bounds_of(e%laws(i), earliest, max(from%t, to%t) + late)
             unbounded(i) = max(abs(law%low(2)), abs(law%high(2))) >= huge(1.0_wp)
             if (unbounded(i)) cycle
-            c = cubic(h, from%drive(:1, i), to%drive(:1, i))
+            c = cubic(h, from%drive(:1, i)%mid, to%drive(:1, i)%mid)
             change = max(0.0_wp, law%high(2)*e%unit_of(i) - c(2)%mid, c(2)%mid - law%low(2)*e%unit_of(i)) + c(2)%radius
-            tube%drive(i) = (0.125_wp*h**2*(change + p%table_error(2, i)) &
-               + 4.0_wp*max(from%drive_error(0, i), to%drive_error(0, i)) &
-               + 2.0_wp*(abs(h)*max(from%drive_error(1, i), to%drive_error(1, i)) &
-               + 2.0_wp*late*max(abs(from%drive(1, i)), abs(to%drive(1, i)))))*room
-            p%balls%drive(1, i) = ball_t(0.0_wp, tube%drive(i))
+            tube%balls%drive(1, i) = ball_t(0.0_wp, (0.125_wp*h**2*(change + p%table_error(2, i)) &
+               + 4.0_wp*max(from%drive(0, i)%radius, to%drive(0, i)%radius) &
+               + 2.0_wp*abs(h)*max(from%drive(1, i)%radius, to%drive(1, i)%radius) &
+               + 4.0_wp*late*max(abs(from%drive(1, i)%mid), abs(to%drive(1, i)%mid)))*room)
          end do
       end subroutine bound_drives
 
@@ -136,42 +139,25 @@ contains
             + 0.25_wp*abs(h)*max(from%open(1, row), to%open(1, row)))*room
       end function ends_open
 
-      !> Unknown `u` is known up to the `radius` of its tube.
-      subroutine note_radius(u, radius)
-         integer, intent(in) :: u
-         real(wp), intent(in) :: radius
-
-         tube%radius(u) = radius
-         call set_radius(e%blocks, u, (p%curve%u(u)%value%radius + radius)*room, p%curve)
-         p%balls%u(u) = p%curve%u(u)
-         p%balls%u(u)%rate = ball_t(0.0_wp, radius)
-      end subroutine note_radius
-
-      !> The block at hand of the blocks `b`, with the unknowns `own`, whose earlier blocks are proved.
-      subroutine prove_block(b, own)
+      !> Finds the `radius` of the tube of block `i` of the blocks `b`, with the unknowns `own`, whose earlier blocks
+      !> are proved; -1: none is proved.
+      subroutine prove_block(b, i, own, radius)
          type(blocks_t), intent(in) :: b
-         integer, intent(in) :: own(:)
-         real(wp) :: radius
+         integer, intent(in) :: i, own(:)
+         real(wp), intent(out) :: radius
+         type(block_work_t) :: w
+         logical :: exists
          integer :: k
 
-         associate (w => p%work(i))
-            tube%is_proved = allocated(w%a)
-            if (.not. tube%is_proved) return
-            call contract(b, p%numbers, i, p%curve, w, tube%is_proved)
-            if (.not. tube%is_proved) return
-            call ball_accelerations(b, i, p%curve, w%v)
-            call subtract_product(2, p%curve%u(:), own, w)
-            do k = 1, size(w%open)
-               w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
-            end do
-
-            call find_ball(b, p%numbers, i, p%balls, w, radius, maxval(tube%radius))
-            tube%is_proved = radius >= 0.0_wp
-            if (.not. tube%is_proved) return
-            do k = 1, size(own)
-               call note_radius(own(k), radius)
-            end do
-         end associate
+         radius = -1.0_wp
+         call contract(b, p%numbers, i, tube%curve, w, exists)
+         if (.not. exists) return
+         call ball_accelerations(b, i, tube%curve, w%v)
+         call subtract_product(2, tube%curve%u, own, w)
+         do k = 1, size(w%open)
+            w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
+         end do
+         call find_ball(b, p%numbers, i, tube%balls, w, radius, maxval(tube%radius))
       end subroutine prove_block
    end subroutine prove_tube
 

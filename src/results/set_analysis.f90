@@ -8,7 +8,6 @@ module set_analysis
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
-   use link_bounds, only: largest_bounds
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: diagnostic_t, diagnostic_unused, motion_t, new_motion
@@ -207,8 +206,10 @@ contains
 
       largest = 0.0_wp
       do c = 1, size(s%list)
-         if (s%now%proofs(c)%is_proved) largest = max(largest, &
-            largest_bounds(s%now%proofs(c)%links, s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
+         if (.not. s%now%proofs(c)%is_proved) cycle
+         associate (found => s%now%proofs(c)%largest, sizes => s%estimators(c)%sizes)
+            largest = max(largest, max(found(1, :)/sizes%length, found(2, :))/sizes%rate**[0, 1, 2])
+         end associate
       end do
    end function set_bounds
 

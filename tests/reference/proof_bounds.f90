@@ -10,6 +10,7 @@ program proof_bounds
    use deck, only: read_deck
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
+   use balls, only: ball_t
    use link_bounds, only: row_bound
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
@@ -139,7 +140,7 @@ contains
    subroutine weigh(m, q, links, exact, below)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: links(:, 0:, :)
+      type(ball_t), intent(in) :: links(:, 0:, :)
       type(body_t), intent(in) :: exact(:)
       integer, intent(inout) :: below
       real(wp) :: bound(3, 0:2), off(3, 0:2)
