@@ -5,16 +5,16 @@ module block_assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use blocks, only: blocks_t, loop_angles
-   use block_state, only: state_t, set_values, values_of
+   use blocks, only: blocks_t
+   use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
    use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
    use homotopy, only: follow_paths
-   use block_bilinear, only: block_form_t, make_form, solves_all, real_values, given
+   use block_bilinear, only: block_form_t, make_form, solves_all, real_values
    implicit none
    private
-   public :: block_positions_t, find_positions, add_turns, max_group
+   public :: block_positions_t, find_positions, max_group
 
    !> Unknowns of a group at most: C(12, 6) = 924 paths.
    integer, parameter :: max_group = 6
@@ -45,8 +45,8 @@ module block_assemblies
 contains
 
    !> Finds all positions of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
-   !> change. `found`: of this search and those before. `tolerance`, `w`: as of `solve_block`; `largest_group`: more unknowns of a group are not solved, see
-   !> `max_group`; `start`: of the paths, see `follow_paths`.
+   !> change. `found`: of this search and those before. `tolerance`, `w`: as of `solve_block`; `largest_group`: more
+   !> unknowns of a group are not solved, see `max_group`; `start`: of the paths, see `follow_paths`.
    subroutine find_positions(b, i, tolerance, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -117,7 +117,8 @@ contains
          ! The digits of a position do not show from which start its path came.
          x = anint(grid*x)/grid
          call set_values(b, i, x, s)
-         call add_turns(b, i, s, x)
+         call add_turns(b, i, s)
+         x = values_of(b, i, s)
          ! At a singular solution Newton's method would lose the way.
          do k = 1, merge(singular_steps, 0, e%is_singular)
             call gauss_newton_step(b, i, s, residual)
@@ -157,40 +158,4 @@ contains
             b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
       end function apart
    end subroutine find_positions
-
-   !> Adds to the angles of block `i` the whole turns that its drives ask for between two of them, in `x` and in `s`; on
-   !> entry `s` has the values `x`. Angles that are joined by such drives turn together.
-   subroutine add_turns(b, i, s, x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: x(:)
-      real(wp) :: turns(0:size(x)), off
-      integer :: group(0:size(x)), joins, to, m, k
-
-      ! By column; those of column 0 are known, and of group 0 what is joined to these.
-      turns = 0.0_wp
-      group = [(k, k=0, size(x))]
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
-            off = given(b, i, g%row_x, s) - s%u(g%orientation)%value - turns(g%orientation_column) &
-               + s%u(g%less)%value + turns(g%less_column)
-            joins = group(g%orientation_column)
-            to = group(g%less_column)
-         end associate
-         if (joins == 0) then
-            off = -off
-            joins = to
-            to = 0
-         end if
-         if (joins == to) cycle
-         where (group == joins)
-            turns = turns + (off - without_turns(off))
-            group = to
-         end where
-      end do
-      x = x + turns(1:)
-      call set_values(b, i, x, s)
-   end subroutine add_turns
 end module block_assemblies

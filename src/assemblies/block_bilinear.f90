@@ -9,12 +9,12 @@ module block_bilinear
    use planar, only: length_of
    use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
-   use block_state, only: state_t
+   use block_state, only: state_t, given
    use block_equations, only: find_known_parts
    use bilinear, only: bilinear_t, path_end_t, rounding
    implicit none
    private
-   public :: block_form_t, make_form, solves_all, real_values, given
+   public :: block_form_t, make_form, solves_all, real_values
 
    !> The system of a block, from whose solutions its unknowns follow.
    type :: block_form_t
@@ -143,17 +143,6 @@ contains
          d%projections = [d%projections, one]
       end subroutine add
    end subroutine add_loop
-
-   !> The value that row `row` of block `i` requires: its constant and its drive's value.
-   pure real(wp) function given(b, i, row, s)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, row
-      type(state_t), intent(in) :: s
-
-      associate (k => b%list(i)%first_row + row - 1)
-         given = b%numbers%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
-      end associate
-   end function given
 
    !> The factor of unknown `u`, in column `column` of its block: 1 for a direction of the block, otherwise the known
    !> direction.

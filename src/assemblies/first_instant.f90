@@ -10,13 +10,13 @@ module first_instant
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent
    use motion, only: motion_t, new_motion
    use blocks, only: largest_known, blocks_below
-   use block_state, only: set_values, values_of
+   use block_state, only: set_values, values_of, add_turns
    use block_solver, only: solve_block
    use link_motion, only: move_links
    use levenberg_marquardt, only: levenberg_marquardt_solve
    use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, is_certain
    use block_branches, only: is_short_and_right
-   use block_assemblies, only: block_positions_t, find_positions, add_turns
+   use block_assemblies, only: block_positions_t, find_positions
    implicit none
    private
    public :: solve_first, solve_instant, measure_closure_error, places_of, squared_distances, alike, equal
@@ -216,7 +216,8 @@ contains
             y = merge(start + without_turns(x - start), x, is_angle)
          end associate
          call set_values(e%blocks, i, y, e%state)
-         call add_turns(e%blocks, i, e%state, y)
+         call add_turns(e%blocks, i, e%state)
+         y = values_of(e%blocks, i, e%state)
          q = new_motion(size(places, 2))
          call move_links(e%chain, e%state, e%length, q, finite, .true.)
          square = squared_distances(q%position, guess, e%blocks%numbers%span)

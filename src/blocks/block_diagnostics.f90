@@ -14,8 +14,7 @@ module block_diagnostics
    use singularity, only: judge_blocks
    implicit none
    private
-   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, &
-      diagnostic_at_change, links_of
+   public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, links_of
 
    !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
    !> was meant.
@@ -34,48 +33,36 @@ module block_diagnostics
 
 contains
 
-   !> What there is to say of the first motion `found`: redundant equations, close assemblies, what can still move where
-   !> the Jacobian is `singular`; and the angle that was estimated the worst.
+   !> What there is to say of the first motion `found`: which equations are redundant; what can still move where the
+   !> Jacobian is `singular`; where another assembly is about as near to the initial guess or may be nearer; and the
+   !> angle that was estimated the worst.
    function start_diagnostics(e, found, singular) result(list)
       type(block_engine_t), intent(inout) :: e
       type(motion_t), intent(in) :: found
       logical, intent(in) :: singular
       type(diagnostic_t), allocatable :: list(:)
       real(wp) :: off(size(found%position, 2))
-      integer :: link
+      integer :: k, link
 
-      list = assembly_diagnostics(e, singular)
+      allocate (list(0))
+      if (e%blocks%redundant > 0) list = redundancies(e)
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k))
+            if (e%blocks%list(i)%direct) cycle
+            if (singular) then
+               call add_mobility(e, i, list)
+               cycle
+            end if
+            if (e%choice(i)%is_close) list = [list, new_diagnostic(diagnostic_second, links_of(e, i))]
+            if (e%choice(i)%is_incomplete) list = [list, new_diagnostic(diagnostic_incomplete, links_of(e, i))]
+         end associate
+      end do
       off = without_turns(found%position(3, :) - e%estimate(3, :))
       link = maxloc(abs(off), mask=e%is_found, dim=1)
       if (link == 0) return
       if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
-
-   !> Which equations are redundant, what can still move where the Jacobian is `singular`, and where another
-   !> assembly is about as near to the initial guess or may be nearer.
-   function assembly_diagnostics(e, singular) result(list)
-      type(block_engine_t), intent(inout) :: e
-      logical, intent(in) :: singular
-      type(diagnostic_t), allocatable :: list(:)
-      integer :: k
-
-      allocate (list(0))
-      if (e%blocks%redundant > 0) list = redundancies(e)
-      do k = 1, size(e%needed)
-         associate (block => e%blocks%list(e%needed(k)))
-            if (block%direct) cycle
-            if (singular) then
-               call add_mobility(e, e%needed(k), list)
-               cycle
-            end if
-            if (e%choice(e%needed(k))%is_close) &
-               list = [list, new_diagnostic(diagnostic_second, links_of(e, e%needed(k)))]
-            if (e%choice(e%needed(k))%is_incomplete) &
-               list = [list, new_diagnostic(diagnostic_incomplete, links_of(e, e%needed(k)))]
-         end associate
-      end do
-   end function assembly_diagnostics
 
    !> Each pair and drive with redundant equations, once, and how many it has.
    function redundancies(e) result(list)

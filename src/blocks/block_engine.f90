@@ -12,15 +12,14 @@ module block_engine
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
-   use planar, only: without_turns
-   use blocks, only: blocks_t, numbers_t, loop_angles, moving_blocks, needed_blocks, iterated_unknowns, largest_known
+   use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
-   use block_state, only: state_t, new_state, set_direction, set_values
+   use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
    use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
-   use link_motion, only: chain_t, new_chain, put_chain, move_links, move_found_links, mark_links, missing_nothing, &
-      missing_rates, missing_all
+   use link_motion, only: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+      missing_all
    implicit none
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
@@ -116,7 +115,7 @@ contains
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
-         e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
+         e%chain = new_chain(m, t, axes, wanted_links(m), unit)
       end associate
       e%orientation_of = t%orientation
       e%is_found = wanted_links(m) .and. t%orientation > 0
@@ -146,7 +145,7 @@ contains
       call move_alloc(x, e%blocks%numbers)
       e%length = e%blocks%numbers%equations%length
       associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)
-         call put_chain(m, b%tree, axes, b%orientations, e%chain, b%numbers%unit)
+         call put_chain(m, b%tree, axes, b%numbers%unit, e%chain)
       end associate
       call put_laws(e, m)
    end subroutine put_mechanism
@@ -222,6 +221,7 @@ contains
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(inout) :: c
+      integer :: k
 
       if (.not. e%blocks%solvable) then
          c = convergence_t(ended=ended_singular)
@@ -236,40 +236,17 @@ contains
          if (.not. c%keeps_signs) e%crossed = .false.
          if (c%keeps_signs) call solve_each(e, e%moving, follows, c)
       else
-         call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
+         ! Whole turns that a drive asks for close nothing, and would have to be travelled.
          e%state%u%value = e%estimated
+         do k = 1, size(e%needed)
+            if (.not. e%blocks%list(e%needed(k))%direct) call add_turns(e%blocks, e%needed(k), e%state)
+         end do
+         e%estimated(:) = e%state%u%value
          e%choice = choice_t()
          e%choice%is_certain = e%blocks%list%direct
          call solve_each(e, e%needed, follows, c)
       end if
    end subroutine solve_blocks
-
-   !> Takes whole turns off the `estimated` angles (0:unknowns) of the blocks `list`, where a drive with a value of
-   !> `drive_value` (0:drives) fixes them: they close nothing, and would have to be travelled.
-   pure subroutine remove_turns(b, list, drive_value, estimated)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
-      real(wp), intent(in) :: drive_value(0:)
-      real(wp), intent(inout) :: estimated(0:)
-      real(wp) :: off
-      integer :: k, m
-
-      do k = 1, size(list)
-         associate (block => b%list(list(k)))
-            if (block%direct) cycle
-            do m = block%first_loop, block%last_loop
-               associate (g => b%loops(m))
-                  if (g%kind /= loop_angles .or. g%orientation > b%orientations .or. g%orientation_column == 0) cycle
-                  associate (row => block%first_row + g%row_x - 1)
-                     off = estimated(g%orientation) - estimated(g%less) - b%numbers%rows(row)%constant &
-                        - drive_value(b%rows(row)%drive)
-                  end associate
-                  estimated(g%orientation) = estimated(g%orientation) - (off - without_turns(off))
-               end associate
-            end do
-         end associate
-      end do
-   end subroutine remove_turns
 
    !> No other position can be nearer to the guess than the one that `c` is of: two of them are at least 2/(|J^-1|
    !> Lipschitz constant) apart.
@@ -400,6 +377,7 @@ contains
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
+      type(state_t) :: s                                !< with numbers for what is lost, too
       integer :: missing(0:e%blocks%unknowns), k, i
       logical :: finite
 
@@ -413,8 +391,12 @@ contains
          if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
             call solve_direct(e%blocks, i, e%state)
       end do
+      s = e%state
+      do k = 1, e%blocks%unknowns
+         if (missing(k) > missing_nothing) s%u(k) = unknown_t()
+      end do
       call mark_links(e%chain, missing, found)
-      call move_found_links(e%chain, found%link_known < 2, e%state, e%length, found, finite)
+      call move_links(e%chain, s, e%length, found, finite)
    end subroutine get_driven_links
 
    !> Finds the state `s` of the motion that is followed; at the first instant that of the deck's estimate, but for what

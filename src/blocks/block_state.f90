@@ -2,11 +2,12 @@
 module block_state
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, loop_state_t
-   use blocks, only: blocks_t
+   use planar, only: without_turns
+   use blocks, only: blocks_t, loop_angles
    implicit none
    private
    public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, rotate_direction, set_values, &
-      set_derivatives, values_of, largest_drive_rate
+      set_derivatives, values_of, given, add_turns, largest_drive_rate
 
    !> Values alone: no factors, no scratch.
    type :: state_t
@@ -98,6 +99,51 @@ contains
 
       x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
    end function values_of
+
+   !> The value that row `row` of block `i` requires: its constant and its drive's value.
+   pure real(wp) function given(b, i, row, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, row
+      type(state_t), intent(in) :: s
+
+      associate (k => b%list(i)%first_row + row - 1)
+         given = b%numbers%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
+      end associate
+   end function given
+
+   !> Adds to the angles of block `i` the whole turns that its drives ask for between two of them. Angles that are
+   !> joined by such drives turn together.
+   pure subroutine add_turns(b, i, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp) :: turns(0:b%list(i)%shape%n), off
+      integer :: group(0:b%list(i)%shape%n), joins, to, m, k
+
+      ! By column; those of column 0 are known, and of group 0 what is joined to these.
+      turns = 0.0_wp
+      group = [(k, k=0, b%list(i)%shape%n)]
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
+            off = given(b, i, g%row_x, s) - s%u(g%orientation)%value - turns(g%orientation_column) &
+               + s%u(g%less)%value + turns(g%less_column)
+            joins = group(g%orientation_column)
+            to = group(g%less_column)
+         end associate
+         if (joins == 0) then
+            off = -off
+            joins = to
+            to = 0
+         end if
+         if (joins == to) cycle
+         where (group == joins)
+            turns = turns + (off - without_turns(off))
+            group = to
+         end where
+      end do
+      call set_values(b, i, values_of(b, i, s) + turns(1:), s)
+   end subroutine add_turns
 
    !> The largest rate of a drive, in radians or its block's unit of length by time; 0 without drives.
    pure real(wp) function largest_drive_rate(s) result(rate)

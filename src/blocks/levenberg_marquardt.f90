@@ -3,11 +3,12 @@
 !> block's closure error.
 module levenberg_marquardt
    use kinds, only: wp
-   use block_matrix, only: shape_t, entries_of, work_length, solve_first
+   use block_matrix, only: shape_t, work_length, solve_first
    use convergence, only: convergence_t, note_closure_error
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense
+   use block_rank, only: residual_of
    implicit none
    private
    public :: levenberg_marquardt_solve
@@ -31,13 +32,6 @@ module levenberg_marquardt
    !> Equations that shall close count so many times as much as others: what is left of them goes with the square.
    real(wp), parameter :: stiff(2) = [30.0_wp, 1.0e3_wp]
 
-   !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown.
-   type :: room_t
-      type(shape_t) :: shape, damped
-      real(wp), allocatable :: a(:), b(:), r(:), d(:), work(:), x(:), best(:)
-      integer, allocatable :: pivots(:)
-   end type room_t
-
 contains
 
    !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
@@ -50,56 +44,47 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: reached
-      type(room_t) :: w
-      real(wp), allocatable :: start(:)
-      real(wp) :: least, found
+      real(wp), dimension(b%list(i)%shape%n) :: start, best
+      real(wp) :: weights(b%list(i)%shape%rows), least, found
       integer :: k
 
       reached = .false.
-      associate (block => b%list(i))
-         if (block%shape%n == 0 .or. block%shape%n > max_unknowns) return
-         w%shape = shape_t(rows=block%shape%rows, n=block%shape%n)
-         w%damped = shape_t(rows=block%shape%rows + block%shape%n, n=block%shape%n)
-      end associate
-      allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
-      allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%pivots(w%shape%n))
+      if (size(start) == 0 .or. size(start) > max_unknowns) return
       start = values_of(b, i, s)
       call find_known_parts(b, i, s)
-      w%best = start
+      best = start
+      weights = 1.0_wp
       least = huge(least)
       do k = 0, max_starts - 1
          call set_values(b, i, around(start, k), s)
-         call descend(b, i, near, spread(1.0_wp, 1, w%shape%rows), w, s, found)
+         call descend(b, i, near, weights, s, found)
          if (found < least) then
             least = found
-            w%best = values_of(b, i, s)
+            best = values_of(b, i, s)
          end if
          if (least <= near) exit
       end do
-      call set_values(b, i, w%best, s)
-      call assemble_dense(b, i, s, w%a, w%r)
-      call note_closure_error(b, i, w%r, c)
+      call note_closure_error(b, i, residual_of(b, i, best, s), c)
       reached = least <= near
       ! Redundant equations share what is lacking.
-      if (.not. reached .and. w%shape%rows <= w%shape%n) call open_alone(b, i, near, w, s, c)
+      if (.not. reached .and. size(weights) <= size(best)) call open_alone(b, i, near, best, s, c)
    end subroutine levenberg_marquardt_solve
 
    !> Puts into `c` by how much its pair or drive is open at least while all others of block `i` are closed; 0: no such
-   !> position is found. The values of `s` stay.
-   subroutine open_alone(b, i, near, w, s, c)
+   !> position is found. The values of `s` are `best` (n), before and after.
+   subroutine open_alone(b, i, near, best, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: near
-      type(room_t), intent(inout) :: w
+      real(wp), intent(in) :: near, best(:)
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       type(convergence_t) :: one
-      logical :: own(0:w%shape%rows)
-      real(wp) :: found
+      logical :: own(0:b%list(i)%shape%rows)
+      real(wp) :: r(b%list(i)%shape%rows), found
       integer :: k, m
 
       c%open%value = 0.0_wp
-      if (w%shape%n > max_alone) return
+      if (size(best) > max_alone) return
       own = .false.
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m), row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
@@ -108,16 +93,16 @@ contains
          end associate
       end do
       do k = 0, max_starts - 1, 2
-         call set_values(b, i, around(w%best, k), s)
+         call set_values(b, i, around(best, k), s)
          do m = 1, size(stiff)
-            call descend(b, i, near, merge(1.0_wp, stiff(m), own(1:)), w, s, found)
+            call descend(b, i, near, merge(1.0_wp, stiff(m), own(1:)), s, found)
          end do
-         call assemble_dense(b, i, s, w%a, w%r)
-         call note_closure_error(b, i, w%r, one)
-         if (any(.not. own(1:) .and. .not. stiff(2)*abs(w%r(:w%shape%rows)) <= one%open%value)) cycle
+         r = residual_of(b, i, values_of(b, i, s), s)
+         call note_closure_error(b, i, r, one)
+         if (any(.not. own(1:) .and. .not. stiff(2)*abs(r) <= one%open%value)) cycle
          if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
       end do
-      call set_values(b, i, w%best, s)
+      call set_values(b, i, best, s)
    end subroutine open_alone
 
    !> Start number `k` around `x`: off by nothing at first, then by more and more, up to half a turn.
@@ -133,47 +118,51 @@ contains
 
    !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`;
    !> `found`: the largest of these products at the end.
-   subroutine descend(b, i, near, weights, w, s, found)
+   subroutine descend(b, i, near, weights, s, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: near, weights(:)
-      type(room_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: found
-      real(wp) :: damping, square, step
-      integer :: iteration, k, info
+      type(shape_t) :: damped                     ! the Jacobian with a row more for each unknown
+      real(wp) :: x(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(x)), d(size(r) + size(x)), &
+         a(size(d), size(x)), damping, square, step
+      real(wp), allocatable :: work(:)
+      integer :: pivots(size(x)), iteration, k, info
 
+      damped = shape_t(rows=size(d), n=size(x))
+      allocate (work(work_length(damped)))
       damping = first_damping
-      call assemble_dense(b, i, s, w%a, w%r)
+      call assemble_dense(b, i, s, jacobian, r)
       do iteration = 1, max_iterations
-         found = maxval(weights*abs(w%r(:w%shape%rows)))
+         found = maxval(weights*abs(r))
          if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
-         square = sum((weights*w%r(:w%shape%rows))**2)
-         w%x = values_of(b, i, s)
+         square = sum((weights*r)**2)
+         x = values_of(b, i, s)
+
          ! Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
-         associate (m => w%shape%rows, n => w%shape%n)
-            w%b = 0.0_wp
-            do k = 1, n
-               w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = weights*w%a((k - 1)*m + 1:k*m)
-               w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
-            end do
-            w%d(:m) = weights*w%r(:m)
-            w%d(m + 1:) = 0.0_wp
-            call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
-            step = maxval(abs(w%d(:n)))
-            if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
-         end associate
-         call set_values(b, i, w%x - w%d(:w%shape%n), s)
-         call assemble_dense(b, i, s, w%a, w%r)
-         if (sum((weights*w%r(:w%shape%rows))**2) < square) then
+         a = 0.0_wp
+         do k = 1, size(x)
+            a(:size(r), k) = weights*jacobian(:, k)
+            a(size(r) + k, k) = sqrt(damping)
+         end do
+         d(:size(r)) = weights*r
+         d(size(r) + 1:) = 0.0_wp
+         call solve_first(damped, a, pivots, work, d, info)
+         step = maxval(abs(d(:size(x))))
+         if (step > longest_step) d(:size(x)) = d(:size(x))*(longest_step/step)
+
+         call set_values(b, i, x - d(:size(x)), s)
+         call assemble_dense(b, i, s, jacobian, r)
+         if (sum((weights*r)**2) < square) then
             damping = max(0.2_wp*damping, min_damping)
             if (step <= min_step) exit
          else
             damping = 5.0_wp*damping
-            call set_values(b, i, w%x, s)
-            call assemble_dense(b, i, s, w%a, w%r)
+            call set_values(b, i, x, s)
+            call assemble_dense(b, i, s, jacobian, r)
          end if
       end do
-      found = maxval(weights*abs(w%r(:w%shape%rows)))
+      found = maxval(weights*abs(r))
    end subroutine descend
 end module levenberg_marquardt

@@ -5,15 +5,15 @@
 !> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
 module link_motion
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, add_rotating, direction
+   use planar, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use links_tree, only: tree_t, axes_t, link_offset_t, place_on_tree
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, move_found_links, find_values, mark_links, &
-      missing_nothing, missing_rates, missing_all
+   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+      missing_all
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
    type :: chain_link_t
@@ -32,7 +32,7 @@ module link_motion
    type :: chain_t
       type(chain_link_t), allocatable :: links(:)
       integer, allocatable :: ground(:)                 !< numbers of the ground links
-      integer :: wanted = 0, wanted_ground = 0          !< so many of them are wanted, or parents of wanted ones
+      integer :: wanted = 0                             !< so many of `links` are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t
@@ -43,13 +43,12 @@ module link_motion
 contains
 
    !> The chain of the links of `m`, in the deck's unit of length; first those `wanted` (links), and their parents.
-   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides.
-   function new_chain(m, t, a, wanted, first_slide, unit) result(c)
+   !> `unit` (0:unknowns): of each unknown in the unit of the slides.
+   function new_chain(m, t, a, wanted, unit) result(c)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       logical, intent(in) :: wanted(:)
-      integer, intent(in) :: first_slide
       real(wp), intent(in) :: unit(0:)
       type(chain_t) :: c
       logical :: needed(size(wanted))
@@ -60,32 +59,43 @@ contains
       do i = size(t%order), 1, -1
          if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
-      associate (moves => .not. m%links(t%order)%ground, numbers => [(i, i=1, size(wanted))])
+      associate (moves => .not. m%links(t%order)%ground)
          links = [pack(t%order, moves .and. needed(t%order)), pack(t%order, moves .and. .not. needed(t%order))]
          c%wanted = count(moves .and. needed(t%order))
-         c%ground = [pack(numbers, m%links%ground .and. wanted), pack(numbers, m%links%ground .and. .not. wanted)]
-         c%wanted_ground = count(m%links%ground .and. wanted)
       end associate
+      c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
-      call put_chain(m, t, a, first_slide, c, unit)
+      call put_chain(m, t, a, unit, c)
    end function new_chain
 
    !> Gives the chain `c` the numbers of `m`, whose tree is `t` with the axes `a`; the other arguments as above.
-   subroutine put_chain(m, t, a, first_slide, c, unit)
+   subroutine put_chain(m, t, a, unit, c)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
-      integer, intent(in) :: first_slide
-      type(chain_t), intent(inout) :: c
       real(wp), intent(in) :: unit(0:)
+      type(chain_t), intent(inout) :: c
       integer :: i
 
       do i = 1, size(c%links)
-         c%links(i) = new_chain_link(m, t, a, c%links(i)%link, first_slide)
-         associate (h => c%links(i))
-            if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
-            if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
+         associate (h => c%links(i), link => c%links(i)%link)
+            h%orientation = t%orientation(link)
+            h%angle_offset = a%angle_offset(link)
+            if (t%parent(link) == 0) then
+               h%root = t%orientations + t%slides + 2*t%root(link) - 1
+               h%root_unit = unit(h%root:h%root + 1)
+               cycle
+            end if
+            h%place = place_on_tree(m, t, a, 1.0_wp, link)
+            h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
+            h%parent_orientation = t%orientation(t%parent(link))
+            if (h%place%slide > 0) then
+               h%slide = t%orientations + h%place%slide
+               h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
+            end if
+            if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
+            h%is_plain = h%slide == 0 .and. .not. h%has_body_vector
          end associate
       end do
       do i = 1, size(c%ground)
@@ -94,31 +104,8 @@ contains
       c%origin = a%origin
    end subroutine put_chain
 
-   !> How `link` follows its parent.
-   function new_chain_link(m, t, a, link, first_slide) result(h)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
-      integer, intent(in) :: link, first_slide
-      type(chain_link_t) :: h
-
-      h%link = link
-      h%orientation = t%orientation(link)
-      h%angle_offset = a%angle_offset(link)
-      if (t%parent(link) == 0) then
-         h%root = first_slide + t%slides + 2*t%root(link) - 1
-         return
-      end if
-      h%place = place_on_tree(m, t, a, 1.0_wp, link)
-      h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
-      h%parent_orientation = t%orientation(t%parent(link))
-      if (h%place%slide > 0) h%slide = first_slide + h%place%slide
-      if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
-      h%is_plain = h%slide == 0 .and. .not. h%has_body_vector
-   end function new_chain_link
-
-   !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the unit of the
-   !> slides in the deck's unit. `finite`: no number of theirs is out of range; false may be said of sums alone.
+   !> Puts the motion of the ground and the wanted links, or of `all_links`, at state `s` into `q`; `length`: the
+   !> unit of the slides in the deck's unit. `finite`: no number is out of range; false may be said of sums alone.
    pure subroutine move_links(c, s, length, q, finite, all_links)
       type(chain_t), intent(in) :: c
       type(state_t), intent(in) :: s
@@ -126,35 +113,16 @@ contains
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
       logical, intent(in), optional :: all_links
-      integer :: links, ground
+      integer :: links
 
       links = c%wanted
-      ground = c%wanted_ground
       if (present(all_links)) then
          if (all_links) links = size(c%links)
-         if (all_links) ground = size(c%ground)
       end if
       q%origin = c%origin
-      call put_ground(ground, c%ground, c%ground_position, q%position)
+      call put_ground(size(c%ground), c%ground, c%ground_position, q%position)
       call move_chain(links, c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
-
-   !> Puts the motion of the wanted links that are not `lost` (links) into `q`, as `move_links` does. The state of the
-   !> others need not be a number.
-   pure subroutine move_found_links(c, lost, s, length, q, finite)
-      type(chain_t), intent(in) :: c
-      logical, intent(in) :: lost(:)
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: length
-      type(motion_t), intent(inout) :: q
-      logical, intent(out) :: finite
-      type(chain_t) :: part
-
-      part = c
-      part%links = pack(c%links(:c%wanted), .not. lost(c%links(:c%wanted)%link))
-      part%wanted = size(part%links)
-      call move_links(part, s, length, q, finite)
-   end subroutine move_found_links
 
    !> Puts the positions `here` of the `n` ground links `links` into those of all, `p`; one by one, since a
    !> column at once would be a call of its own.
@@ -214,30 +182,6 @@ contains
       end do
       finite = abs(check) <= huge(check)
    end subroutine move_chain
-
-   !> Finds the `value` (0:unknowns) of the unknowns by which the chain's links move, where these have the position `p`
-   !> (3, links) in the deck's unit; `length`: the unit of the slides in it. Other unknowns are 0.
-   pure subroutine find_values(c, p, length, value)
-      type(chain_t), intent(in) :: c
-      real(wp), intent(in) :: p(:, :), length
-      real(wp), intent(out) :: value(0:)
-      real(wp) :: x(2), e(2)
-      integer :: i
-
-      value = 0.0_wp
-      do i = 1, size(c%links)
-         associate (h => c%links(i))
-            if (h%orientation > 0) value(h%orientation) = p(3, h%link) - h%angle_offset
-            if (h%root > 0) value(h%root:h%root + 1) = p(:2, h%link)/(length*h%root_unit)
-            if (h%slide == 0) cycle
-            e = length*rotated(h%place%slide_body_vector, direction(value(h%parent_orientation)))
-            x = p(:2, h%link) + rotated(h%place%body_vector, direction(value(h%orientation))) &
-               - rotated(h%place%reach, direction(value(h%parent_orientation)))
-            if (h%parent > 0) x = x - p(:2, h%parent)
-            value(h%slide) = dot_product(x, e)/dot_product(e, e)
-         end associate
-      end do
-   end subroutine find_values
 
    !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
    pure subroutine follow_parent(d, orientation, f, p, v, a)

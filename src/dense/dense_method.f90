@@ -14,7 +14,7 @@ module dense_method
    use predictor, only: largest_change, order_weights
    use block_state, only: state_t
    use block_engine, only: block_engine_t, get_motion, followed_state
-   use link_motion, only: move_links, find_values
+   use link_motion, only: move_links
    use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
    use closure_equations, only: find_drive_values, remainder
    use position_iteration, only: solve_position
@@ -111,12 +111,12 @@ contains
          call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%pose, &
             d%factors, c, reach)
          if (is_solved(c) .and. .not. c%singular) then
-            call reciprocal_condition(d%factors, c%reciprocal_condition)
+            c%reciprocal_condition = reciprocal_condition(d%factors)
             c%determinant = determinant_sign(d%factors)
          end if
          iterations = iterations + c%iterations
          if (is_solved(c)) then
-            if (.not. is_found_by_blocks(d, e)) c%ended = ended_elsewhere
+            if (.not. is_found_by_blocks(d, e, there)) c%ended = ended_elsewhere
          end if
          if (is_solved(c)) exit
          if (k == 1) first = c
@@ -150,28 +150,25 @@ contains
       found%position(:2, :) = d%system%length*found%position(:2, :)
    end subroutine solve_all_links
 
-   !> The position of `d` is the one that the blocks of `e` have found: no other is as near to that (Newton and
-   !> Kantorovich).
-   logical function is_found_by_blocks(d, e) result(is)
+   !> The position of `d` is the one that the blocks of `e` have found, where all links are `there` (3, links), in the
+   !> unit of the system: no other is as near to that (Newton and Kantorovich).
+   pure logical function is_found_by_blocks(d, e, there) result(is)
       type(dense_t), intent(in) :: d
       type(block_engine_t), intent(in) :: e
-      real(wp) :: q(3, size(d%pose%q, 2)), value(0:e%blocks%unknowns), off
+      real(wp), intent(in) :: there(:, :)
+      real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 
-      q = d%pose%q
-      q(:2, :) = d%system%length*q(:2, :)
-      call find_values(e%chain, q, e%length, value)
+      off = abs(d%pose%q - there)
+      off(:2, :) = off(:2, :)*(d%system%length/e%blocks%numbers%span)
+      largest = maxval(off)
       is = .true.
       do k = 1, size(e%needed)
-         associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
-            if (block%direct .or. block%shape%n == 0) cycle
-            associate (unknowns => e%blocks%unknown(block%first:block%last))
-               off = maxval(abs(value(unknowns) - e%state%u(unknowns)%value))
-            end associate
+         associate (i => e%needed(k))
             if (e%is_singular(i)) then
-               is = is .and. off <= same_place
+               is = is .and. largest <= same_place
             else
-               is = is .and. off*e%blocks%numbers%blocks(i)%lipschitz*e%found(i)%inverse <= certain
+               is = is .and. largest*e%blocks%numbers%blocks(i)%lipschitz*e%found(i)%inverse <= certain
             end if
          end associate
       end do

@@ -350,7 +350,7 @@ contains
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
          call get_motion(e, r%s%now%motions(1), finite)
-         call find_growth(r%s%estimators(1)%sizes, r%s%now%parts(1), 1.0_wp, r%s%now%motions(1), growth, turned, e)
+         call find_growth(r%s%estimators(1)%sizes, r%s%now%parts(1), e, r%s%now%motions(1), growth, turned)
          turned = turned .or. .not. finite
       end associate
       if (turned) return

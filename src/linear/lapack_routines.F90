@@ -25,17 +25,6 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(getrs)
-      !> Reciprocal condition number from the factors of getrf.
-      subroutine NAMED(gecon)(norm, n, a, lda, anorm, rcond, work, iwork, info)
-         import :: wp
-         character(1), intent(in) :: norm
-         integer, intent(in) :: n, lda
-         real(wp), intent(in) :: a(lda, *), anorm
-         real(wp), intent(out) :: rcond
-         real(wp), intent(inout) :: work(*)
-         integer, intent(inout) :: iwork(*)
-         integer, intent(out) :: info
-      end subroutine NAMED(gecon)
       !> getrf and getrs at once.
       subroutine NAMED(gesv)(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp

@@ -3,7 +3,7 @@
 module digits_in_doubt
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, method_newton
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
@@ -23,8 +23,6 @@ module digits_in_doubt
    !> that grows, and not what their motion is added up of: so large, times that growth, they may be. A digit of a table
    !> is worth 1.7E-8 rad, or 1E-7 of the characteristic rate, at least.
    real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp*of_kind
-   !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
-   real(wp), parameter :: safe_condition = 1.0e-3_wp
 
    !> What the numbers of a mechanism are compared with: its characteristic length and rate in the deck's units.
    type :: sizes_t
@@ -59,46 +57,41 @@ contains
       end do
    end function sizes_of
 
-   !> By how much roundings grow at most in the motion `q`, where a pivot is small; without limit where a number is
-   !> large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the position to the last digits
-   !> all the same; all equations at once (no `e`) have lost up to half of them.
-   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e)
+   !> By how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks of `e` is small; without
+   !> limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the
+   !> position to the last digits all the same; all equations at once have lost up to half of them.
+   pure subroutine find_growth(s, m, e, q, growth, in_doubt)
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: rcond
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
-      type(block_engine_t), intent(in), optional :: e
-      real(wp) :: law, angle, size_of, usual, of_angles, x(2, 0:2)
+      real(wp) :: law, angle, size_of, usual, of_angles
+      real(wp), dimension(2) :: position, velocity, acceleration
 
       law = s%law(0) + s%law(1)*abs(q%t)
-      growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
+      growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. m%method /= method_newton)
       in_doubt = growth > 0.0_wp .or. law > safe_angle
       if (q%known < 2 .or. q%rests) return
       growth = huge(growth)
       in_doubt = .true.
-      call find_largest(size(q%position, 2), q%position, x(:, 0))
-      call find_largest(size(q%position, 2), q%velocity, x(:, 1))
-      call find_largest(size(q%position, 2), q%acceleration, x(:, 2))
-      angle = max(x(2, 0), law)
+      call find_largest(size(q%position, 2), q%position, position)
+      call find_largest(size(q%position, 2), q%velocity, velocity)
+      call find_largest(size(q%position, 2), q%acceleration, acceleration)
+      angle = max(position(2), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(1.0_wp, x(1, 0)/s%length, maxval(abs(q%origin))/s%length, max(x(1, 1)/s%length, x(2, 1))/s%rate, &
-         max(x(1, 2)/s%length, x(2, 2))/s%rate**2, growth_in_centres(m, q))
-      if (.not. present(e)) size_of = max(size_of, angle)
+      size_of = max(1.0_wp, position(1)/s%length, maxval(abs(q%origin))/s%length, &
+         max(velocity(1)/s%length, velocity(2))/s%rate, max(acceleration(1)/s%length, acceleration(2))/s%rate**2, &
+         growth_in_centres(m, q))
       if (size_of > safe_size) return
-      if (present(e)) then
-         usual = max(size_of, min(angle, usual_angle))
-         call find_growths(e, growth, of_angles)
-         growth = usual*growth
-         in_doubt = max(usual, growth) > safe_growth
-         if (.not. angle > usual_angle) return
-         in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
-         growth = growth*max(1.0_wp, angle/usual)
-      else
-         growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
-         in_doubt = max(size_of, growth) > safe_growth
-      end if
+      usual = max(size_of, min(angle, usual_angle))
+      call find_growths(e, growth, of_angles)
+      growth = usual*growth
+      in_doubt = max(usual, growth) > safe_growth
+      if (.not. angle > usual_angle) return
+      in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
+      growth = growth*max(1.0_wp, angle/usual)
    end subroutine find_growth
 
    !> Finds by how much roundings grow at most in a block of `e`, with p the least pivot of its Jacobian (at most 1), L

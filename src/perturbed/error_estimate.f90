@@ -2,7 +2,7 @@
 !> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_link, request_pair, request_pole
+   use mechanism, only: mechanism_t, request_link, request_pair, request_pole
    use motion, only: motion_t
    use points, only: row_t, row_of, difference, is_fixed
    use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
@@ -59,14 +59,12 @@ contains
       if (allocated(s%perturbed)) s%perturbed%is_ready = .false.
    end subroutine make_estimator
 
-   !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
-   !> `rcond`. `always`: also where no digit of a table is in doubt; then with what `row_error` needs, unless
-   !> found%without_own says that `estimate_of` is enough.
-   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
+   !> How far the motion `q` of `m` is known, which the `engine` has found. `always`: also where no digit of a table is
+   !> in doubt; then with what `row_error` needs, unless found%without_own says that `estimate_of` is enough.
+   subroutine estimate_errors(s, m, engine, q, always, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: engine
-      real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
@@ -74,11 +72,7 @@ contains
 
       found%taken = .false.
       found%asked = always
-      if (m%method == method_newton) then
-         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine)
-      else
-         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt)
-      end if
+      call find_growth(s%sizes, m, engine, q, found%growth, found%in_doubt)
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 

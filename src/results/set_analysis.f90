@@ -157,8 +157,7 @@ contains
             end do
             if (.not. present(error)) return
             estimate%without_own = .true.
-            call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, &
-               estimate)
+            call estimate_errors(s%estimators(c), own, a%engine, q, always, estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
             do i = 1, size(list)
@@ -177,8 +176,7 @@ contains
 
       do c = 1, size(s%list)
          associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
-            call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, &
-               s%now%errors(c))
+            call estimate_errors(s%estimators(c), own, a%engine, q, always, s%now%errors(c))
             if (senses .and. allocated(own%tolerances)) &
                call find_sensitivities(s%estimators(c), own, a%engine, q, s%now%errors(c), s%now%sensitivities(c))
          end associate

@@ -6,7 +6,7 @@ module quad_lapack
    use, intrinsic :: iso_fortran_env, only: qp => real128
    implicit none
    private
-   public :: gesv, getrf, getrs, gecon, lacn2, ptsv, geqrf, ormqr, trtrs, gesvd
+   public :: gesv, getrf, getrs, lacn2, ptsv, geqrf, ormqr, trtrs, gesvd
 
    integer, parameter :: max_sweeps = 60
 
@@ -91,39 +91,6 @@ contains
          if (ipiv(k) /= k) b([k, ipiv(k)]) = b([ipiv(k), k])
       end do
    end subroutine solve_transposed
-
-   !> 1/(`anorm` |A^-1|), exactly, from the factors: column by column of the inverse. `norm`: I for the maximum norm,
-   !> otherwise the 1-norm. The inverse of P^T L U has the columns of that of L U in another order: the norms are the
-   !> same without the pivots. `work` (2 n).
-   pure subroutine gecon(norm, n, a, lda, anorm, rcond, work, iwork, info)
-      character(1), intent(in) :: norm
-      integer, intent(in) :: n, lda
-      real(qp), intent(in) :: a(lda, *), anorm
-      real(qp), intent(out) :: rcond
-      real(qp), intent(inout) :: work(*)
-      integer, intent(inout) :: iwork(*)
-      integer, intent(out) :: info
-      real(qp) :: largest
-      integer :: k
-
-      rcond = 0.0_qp
-      info = 0
-      do k = 1, n
-         iwork(k) = k
-         if (abs(a(k, k)) <= 0.0_qp) return
-      end do
-      largest = 0.0_qp
-      work(n + 1:2*n) = 0.0_qp
-      do k = 1, n
-         work(:n) = 0.0_qp
-         work(k) = 1.0_qp
-         call getrs('N', n, 1, a, lda, iwork, work, n, info)
-         work(n + 1:2*n) = work(n + 1:2*n) + abs(work(:n))
-         largest = max(largest, sum(abs(work(:n))))
-      end do
-      if (norm == 'I') largest = maxval(work(n + 1:2*n))
-      rcond = 1.0_qp/(anorm*largest)
-   end subroutine gecon
 
    !> The 1-norm of a matrix that only its products are known of, exactly, column by column: begun with `kase` = 0,
    !> it asks for A `x` in the place of `x` (n) as long as it returns `kase` = 1; `kase` = 0: `est` is the norm. `v`

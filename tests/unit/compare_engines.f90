@@ -52,10 +52,10 @@ contains
          if (q%mark == mark_none .and. r%mark == mark_none) then
             c%solved = c%solved + 1
             share = apart(q, r, wanted_links(m), dense%engine%length, &
-               dense%convergence%reciprocal_condition)
+               0.1_wp*dense%convergence%reciprocal_condition)
             if (maxval(share) > maxval(c%share)) then
                c%time = t(k)
-               c%condition = dense%convergence%reciprocal_condition
+               c%condition = 0.1_wp*dense%convergence%reciprocal_condition
             end if
             c%share = max(c%share, share)
          else if (q%mark == mark_none) then
@@ -66,7 +66,7 @@ contains
       end do
    end function compare
 
-   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, positions are
+   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, ten times the ratio of its pivots, positions are
    !> known to
    !> k eps, velocities v to k times (eps + what that does to the Jacobian) times v, accelerations once more; lengths
    !> in the
