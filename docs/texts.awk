@@ -38,29 +38,17 @@ function keep(table, key, text,   lines, line, n, i) {
    }
    cases[table] = cases[table] lines "\n"
 }
-# known_words(message): the words that a printed message always has, a mark ` between alternatives: those of the message
-# that stand between such marks, or all of it. Words with ... and single small letters stand for others.
-function known_words(message,   part, word, n, m, i, k, known) {
-   n = split(message, part, "`")
-   for (i = n > 1 ? 2 : 1; i <= n; i += 2) {
-      m = split(part[i], word, " ")
-      for (k = 1; k <= m; k++) if (word[k] !~ /[.][.][.]|^[a-z]$/) known = known (known ~ /[^`]$/ ? " " : "") word[k]
-      if (i + 2 <= n) known = known "`"
-   }
-   return toupper(known)
-}
 # keep_message(): the cells of the message at hand
 function keep_message(   codes, message, text) {
    codes = at["Code"]
    message = at["Message"]
    messages++
    keep("message", 10*messages + 1, codes)
-   keep("message", 10*messages + 2, known_words(message))
    gsub(/`/, "", message)
-   keep("message", 10*messages + 3, toupper(message))
+   keep("message", 10*messages + 2, toupper(message))
    text = folded(padded(codes, 7), message, 7)
    if (at["Cause"] != "") text = text "\n" folded("       CAUSE  ", at["Cause"], 14)
-   keep("message", 10*messages + 4, text "\n" folded("       CURE   ", at["Cure"], 14))
+   keep("message", 10*messages + 3, text "\n" folded("       CURE   ", at["Cure"], 14))
 }
 # write_table(name, arguments, key, otherwise): the function of the table
 function write_table(name, arguments, key, otherwise) {

@@ -14,6 +14,7 @@ module command_line
    public :: out_plot_table, out_plot_script, out_shared, out_last
 
    !> The outputs that are files: up to `out_shared` those that all sets share, then, to `out_last`, those of each set.
+   !> Those after `out_log` need a motion.
    enum, bind(c)
       enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits
       enumerator :: out_table
@@ -25,7 +26,6 @@ module command_line
    type :: file_option_t
       character(10) :: word = ''
       character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
-      logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
    end type file_option_t
 
    !> The options of the outputs; those of one directory name it once. A further output costs a line here and one in the
@@ -34,13 +34,13 @@ module command_line
       file_option_t('-o'), &
       file_option_t('--csv'), &
       file_option_t('--log'), &
-      file_option_t('--summary', needs_motion=.true.), &
-      file_option_t('--svg', needs_motion=.true.), &
-      file_option_t('--animate', needs_motion=.true.), &
-      file_option_t('--circuits', needs_motion=.true.), &
-      file_option_t('--table', needs_motion=.true.), &
-      file_option_t('--plot', 'table.csv', needs_motion=.true.), &
-      file_option_t('--plot', 'plot.gp', needs_motion=.true.)]
+      file_option_t('--summary'), &
+      file_option_t('--svg'), &
+      file_option_t('--animate'), &
+      file_option_t('--circuits'), &
+      file_option_t('--table'), &
+      file_option_t('--plot', 'table.csv'), &
+      file_option_t('--plot', 'plot.gp')]
 
    !> A word of the command.
    type :: word_t
@@ -63,7 +63,7 @@ module command_line
       character(:), allocatable :: show
    end type options_t
 
-   !> A printed message is known by its words, if these have more letters than LINKS and one name.
+   !> A printed message is known by its words, if these have as many letters: more than LINKS and one name.
    integer, parameter :: known_length = 14
    !> More processes than any machine has processors would only take memory.
    integer, parameter :: max_jobs = 1024
@@ -235,7 +235,7 @@ contains
          call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
       first = findloc(to_standard_output(options%files), .true., dim=1)
       do k = 1, out_last
-         if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
+         if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
             call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k)%word)//' NEEDS')
          if (to_standard_output(options%files(k)) .and. k > first) &
             call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first)%word)//' OR ' &
@@ -333,39 +333,26 @@ contains
          codes = message_cell(i, 1)
          if (any([(index(' '//key//' ', ' '//codes(k:k + 3)//' ') > 0, k=1, len(codes) - 3, 6)])) scores(i) = 1
       end do
-      if (all(scores == 0)) scores = [(merge(1, 0, index(message_cell(i, 3), key) > 0), i=1, message_count)]
+      if (all(scores == 0)) scores = [(merge(1, 0, index(message_cell(i, 2), key) > 0), i=1, message_count)]
       if (all(scores == 0)) scores = [(likeness(message_cell(i, 2), key), i=1, message_count)]
       if (all(scores == 0)) return
       do i = 1, message_count
          if (scores(i) < maxval(scores)) cycle
          if (len(text) > 0) text = text//new_line('a')//new_line('a')
-         text = text//message_cell(i, 4)
+         text = text//message_cell(i, 3)
       end do
    end function explained
 
-   !> How many letters of a printed message are words of `message`, all of which it must have in their order; else 0.
-   !> A mark ` stands between alternatives of `message`.
+   !> How many letters the words of the printed message `key` have that are words of `message`; 0 if they are few.
    pure integer function likeness(message, key) result(letters)
       character(*), intent(in) :: message, key
-      character(:), allocatable :: text
-      integer :: first, last, place, found, own
+      integer :: first, last
 
       letters = 0
-      text = message//'`'
       first = 1
-      place = 1
-      own = 0
-      do while (first <= len(text))
-         last = first + scan(text(first:), ' `') - 2
-         found = index(key(place:), text(first:last))
-         ! An alternative of which a word is missing stays below 0.
-         own = merge(own + last - first + 1, -len(text), found > 0)
-         if (found > 0) place = place + found + last - first
-         if (text(last + 1:last + 1) == '`') then
-            letters = max(letters, own)
-            place = 1
-            own = 0
-         end if
+      do while (first <= len(key))
+         last = first + index(key(first:)//' ', ' ') - 2
+         if (index(' '//message//' ', ' '//key(first:last)//' ') > 0) letters = letters + last - first + 1
          first = last + 2
       end do
       if (letters < known_length) letters = 0

@@ -40,6 +40,8 @@ module system_calls
 
    !> The signal that was noted: all that a handler may change.
    integer(c_int), volatile :: received = 0
+   !> Every signal is noted, not only the first.
+   logical, volatile :: notes_all = .false.
    !> A broken pipe would have ended this process without `watch_signals`.
    logical, protected :: broken_pipe_kills = .false.
 
@@ -289,28 +291,18 @@ contains
 
    !> From now on no further SIGINT or SIGTERM kills this process either: it ends by itself after the first.
    subroutine note_all_signals
-      type(c_funptr) :: before
-      integer :: i
-
-      do i = 1, size(watched)
-         before = signal(watched(i), c_funloc(note_number))
-      end do
+      notes_all = .true.
    end subroutine note_all_signals
 
-   !> Handles a signal: keeps its number.
-   subroutine note_number(number) bind(c)
-      integer(c_int), value :: number
-
-      received = number
-   end subroutine note_number
-
-   !> Handles a signal by what is safe at any moment: keeps its number and restores the usual actions.
+   !> Handles a signal by what is safe at any moment: keeps its number, and restores the usual actions unless all are
+   !> noted.
    subroutine note_signal(number) bind(c)
       integer(c_int), value :: number
       type(c_funptr) :: before
       integer :: i
 
       received = number
+      if (notes_all) return
       do i = 1, size(watched)
          before = signal(watched(i), c_null_funptr)
       end do

@@ -28,9 +28,8 @@ module picture
    real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
    !> The arrow of a drive is a line of so many pieces, the last ones its tip.
    integer, parameter :: pieces = 10, of_tip = 2
-   !> Its pixels: length of a straight one, its distance from the place along it and aside, half the tip; radius of an
-   !> arc.
-   real(wp), parameter :: arrow_length = 45.0_wp, arrow_start = 14.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
+   !> Its pixels: length of a straight one, its distance aside, half the tip; radius of an arc.
+   real(wp), parameter :: arrow_length = 45.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
       tip_half = 4.5_wp, arc_radius = 24.0_wp
    !> The angle of an arc, and where it may begin, from the side of the link in its own sense (degrees).
    real(wp), parameter :: arc_angle = 130.0_wp, &
@@ -129,12 +128,12 @@ contains
                if (known(drive%subject) .and. known(drive%second)) call put_arc(drive%subject, drive%second, sense)
             case (drive_x, drive_y)
                if (known(c%m%points(drive%subject)%link)) call put_arrow(drive%subject, &
-                  sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x), .true.)
+                  sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x))
             case (drive_slide)
                k = findloc(c%d%guides%pair, drive%subject, dim=1)
                associate (g => c%d%guides(k))
                   if (known(g%carrier) .and. known(g%block)) call put_arrow(g%point, &
-                     sense*real(g%sense, wp)*direction(c%s%place(3, g%carrier) + g%angle), .false.)
+                     sense*real(g%sense, wp)*direction(c%s%place(3, g%carrier) + g%angle))
                end associate
             end select
             call put_end(c%o, 'g')
@@ -179,44 +178,40 @@ contains
                lines(:, i, k) = to_pixels(c, center) + arc_radius*[e(1), -e(2)]
             end do
          end do
-         call put_clearest(lines, spread(0.0_wp, 1, size(arc_starts)))
+         call put_clearest(lines, 0.0_wp)
       end subroutine put_arc
 
-      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point` or, if it may be `ahead`
-      !> of it, there.
-      subroutine put_arrow(point, sense, ahead)
+      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on one side or the other,
+      !> near or farther away.
+      subroutine put_arrow(point, sense)
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
-         logical, intent(in) :: ahead
-         real(wp), parameter :: costs(0:4) = away*[0.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp]
-         real(wp) :: e(2), start(2), lines(2, 0:pieces, 0:4)
-         integer :: side, i
+         real(wp), parameter :: asides(4) = arrow_aside*[1.0_wp, -1.0_wp, 2.0_wp, -2.0_wp]
+         real(wp) :: e(2), start(2), lines(2, 0:pieces, size(asides))
+         integer :: i, k
 
          e = sense*[1.0_wp, -1.0_wp]
-         do side = 0, 4
-            start = arrow_start*e
-            if (side > 0) start = -0.5_wp*arrow_length*e + real((side + 1)/2, wp) &
-               *merge(arrow_aside, -arrow_aside, (mod(side, 2) == 1) .eqv. (e(1) < 0.0_wp))*quarter_turn(e)
+         do k = 1, size(asides)
+            start = to_pixels(c, point_place(c%m, c%s, point)) - 0.5_wp*arrow_length*e &
+               + merge(asides(k), -asides(k), e(1) < 0.0_wp)*quarter_turn(e)
             do i = 0, pieces
-               lines(:, i, side) = to_pixels(c, point_place(c%m, c%s, point)) + start &
-                  + arrow_length*real(i, wp)/real(pieces, wp)*e
+               lines(:, i, k) = start + arrow_length*real(i, wp)/real(pieces, wp)*e
             end do
          end do
-         i = merge(0, 1, ahead)
-         call put_clearest(lines(:, :, i:), costs(i:))
+         call put_clearest(lines, away)
       end subroutine put_arrow
 
-      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `costs` (:): what each
-      !> counts besides.
-      subroutine put_clearest(lines, costs)
-         real(wp), intent(in) :: lines(:, 0:, :), costs(:)
+      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `later`: what each pair of
+      !> lines counts more than the pair before.
+      subroutine put_clearest(lines, later)
+         real(wp), intent(in) :: lines(:, 0:, :), later
          real(wp) :: cover, least, e(2)
          integer :: k, best
 
          best = 1
          least = huge(least)
          do k = 1, size(lines, 3)
-            cover = cover_of(c, lines(:, :, k)) + costs(k)
+            cover = cover_of(c, lines(:, :, k)) + later*real((k - 1)/2, wp)
             if (cover >= least - tie) cycle
             least = cover
             best = k
@@ -341,7 +336,8 @@ contains
             high = max(high, maxval(p, dim=2))
          end associate
       end do
-      sides = merge(high - low, 0.0_wp, high >= low)
+      sides = 0.0_wp
+      if (all(high >= low)) sides = high - low
    end function sides_of
 
    !> Those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are like it or
