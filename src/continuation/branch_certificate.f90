@@ -7,7 +7,7 @@ module branch_certificate
    use kinds, only: wp
    implicit none
    private
-   public :: branch_t, certificate_counts_t, count_in, worst_branch, branch_word
+   public :: branch_t, certificate_counts_t, count_in, branch_word
    public :: branch_none, branch_first, branch_same, branch_crossed
 
    integer, parameter :: branch_none = 0      !< nothing is verified
@@ -41,17 +41,6 @@ contains
       if (b%kind == branch_none) counts%uncertain = counts%uncertain + 1
       if (b%kind >= branch_same) counts%followed = counts%followed + 1
    end subroutine count_in
-
-   !> What is verified of several independent motions together, each found on one of the branches `b`.
-   pure type(branch_t) function worst_branch(b) result(worst)
-      type(branch_t), intent(in) :: b(:)
-
-      worst%kind = maxval(b%kind)
-      if (any(b%kind == branch_first)) worst%kind = branch_first
-      if (any(b%kind == branch_none)) worst%kind = branch_none
-      worst%substeps = maxval(b%substeps)
-      worst%kantorovich_ratio = maxval(b%kantorovich_ratio)
-   end function worst_branch
 
    !> The word of the log for the branch `b`.
    pure function branch_word(b) result(word)

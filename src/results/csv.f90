@@ -12,7 +12,7 @@
 module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: drive_t, request_t, request_link, request_point, request_pair, request_pole, &
+   use mechanism, only: request_t, request_link, request_point, request_pair, request_pole, &
       request_curve, pair_prismatic
    use scales, only: is_length
    use drives, only: drive_motion
@@ -67,9 +67,7 @@ module csv
 
    !> The columns of a set.
    type :: table_t
-      type(drive_t), allocatable :: laws(:)           !< (drives)
       character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
-      logical, allocatable :: angular(:)            !< (drives) the drive is an angle
       type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
    end type table_t
 
@@ -284,15 +282,7 @@ contains
       logical :: turns
       character(5) :: word
 
-      allocate (t%laws(size(s%drives)), t%angular(size(s%drives)))
-      do i = 1, size(s%drives)
-         associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
-            t%laws(i) = drive
-            t%angular(i) = .not. is_length(drive)
-         end associate
-      end do
       t%drives = drive_columns(s)
-
       last = merge(2, 0, s%largest_tolerance > 0.0_wp)
       requests = [(request_of(s, i), i=1, size(s%rows))]
       if (present(chosen)) then
@@ -430,9 +420,11 @@ contains
       integer :: i
 
       call add_cell('', s%motions(1)%t, .false.)
-      do i = 1, size(t%laws)
-         f = drive_motion(t%laws(i), s%motions(1)%t)
-         call add_cell(',', f(1), t%angular(i))
+      do i = 1, size(s%drives)
+         associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
+            f = drive_motion(drive, s%motions(1)%t)
+            call add_cell(',', f(1), .not. is_length(drive))
+         end associate
       end do
       allocate (rows(0:2, size(s%rows)))
       do i = 1, size(s%rows)

@@ -181,8 +181,8 @@ contains
          call put_clearest(lines, 0.0_wp)
       end subroutine put_arc
 
-      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on one side or the other,
-      !> near or farther away.
+      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on either side, near or
+      !> farther away.
       subroutine put_arrow(point, sense)
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
@@ -201,8 +201,8 @@ contains
          call put_clearest(lines, away)
       end subroutine put_arrow
 
-      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `later`: what each pair of
-      !> lines counts more than the pair before.
+      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `later`: what each pair
+      !> of lines counts more than the pair before.
       subroutine put_clearest(lines, later)
          real(wp), intent(in) :: lines(:, 0:, :), later
          real(wp) :: cover, least, e(2)

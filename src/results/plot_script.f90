@@ -4,7 +4,7 @@ module plot_script
    use kinds, only: wp
    use planar, only: in_degrees
    use mechanism, only: mechanism_t, instant_count
-   use scales, only: characteristic_length, characteristic_rate
+   use scales, only: characteristic_length, characteristic_rate, is_length
    use names, only: drive_name
    use csv, only: table_t
    use text_output, only: output_t, put, add, replaced
@@ -57,7 +57,7 @@ contains
       call add(o, 'abscissa(c) = c == 1 ? '//quoted('T ['//trim(m%time_unit)//']'))
       do i = 1, size(m%drives)
          call add(o, ' : c == '//whole(i + 1)//' ? '//quoted(trim(drive_name(m, m%drives(i)))//' [' &
-            //unit_of(table%angular(i), 0)//']'))
+            //unit_of(.not. is_length(m%drives(i)), 0)//']'))
       end do
       call put(o, ' : ""')
       call put(o, 'set terminal svg size 1200,1200 noenhanced background rgb "white"')

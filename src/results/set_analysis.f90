@@ -4,7 +4,7 @@ module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, request_pole, instant
    use structure, only: findings_t
-   use branch_certificate, only: certificate_counts_t, count_in, worst_branch
+   use branch_certificate, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
@@ -100,7 +100,7 @@ contains
    subroutine advance_set(s, t)
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t
-      integer :: c, passed
+      integer :: c
 
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
@@ -109,12 +109,16 @@ contains
          s%certificate_counts = s%list(1)%certificate_counts
          return
       end if
-      passed = sum(s%list%certificate_counts%passed) - s%certificate_counts%passed
-      if (all(s%now%motions(1:)%known >= 0)) then
-         call count_in(s%certificate_counts, worst_branch(s%list%branch), passed)
-      else
-         s%certificate_counts%passed = s%certificate_counts%passed + passed
-      end if
+      ! An instant counts as its worst motion does.
+      associate (counts => s%certificate_counts, kinds => s%list%branch%kind)
+         counts%passed = sum(s%list%certificate_counts%passed)
+         if (any(s%now%motions(1:)%known < 0)) return
+         if (any(kinds == branch_none)) then
+            counts%uncertain = counts%uncertain + 1
+         else if (all(kinds /= branch_first)) then
+            counts%followed = counts%followed + 1
+         end if
+      end associate
    end subroutine advance_set
 
    !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
