@@ -87,7 +87,7 @@ contains
                h%root_unit = unit(h%root:h%root + 1)
                cycle
             end if
-            h%place = place_on_tree(m, t, a, 1.0_wp, link)
+            h%place = place_on_tree(m, t, a, link)
             h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
             h%parent_orientation = t%orientation(t%parent(link))
             if (h%place%slide > 0) then

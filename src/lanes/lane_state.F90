@@ -6,7 +6,6 @@
 module lane_state
    use kinds, only: wp
    use mechanism, only: drive_t, own_predictor
-   use loop_equations, only: are_alike
    use blocks, only: blocks_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
@@ -98,8 +97,9 @@ contains
       end associate
    end subroutine make_lanes
 
-   !> Fills `lane` with the mechanism and the motions of `e`; `is_alike` is false where its structure is another one.
-   !> What follows from the time step is the caller's.
+   !> Fills `lane` with the mechanism and the motions of `e`, a variant of that for which `l` was made; `is_alike` is
+   !> false if its numbers put other body vectors or slides into the equations. What follows from the time step is the
+   !> caller's.
    subroutine load_lane(l, lane, e, is_alike)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: lane
@@ -107,9 +107,11 @@ contains
       logical, intent(out) :: is_alike
       integer :: i, k
 
-      is_alike = are_alike(l%blocks%equations, e%blocks%equations)
-      if (is_alike) is_alike = size(l%moving) == size(e%moving) .and. size(l%laws, 1) == size(e%laws)
-      if (is_alike) is_alike = all(l%moving == e%moving)
+      associate (a => l%blocks%equations, b => e%blocks%equations)
+         ! What cannot be solved has none.
+         is_alike = a%count == b%count
+         if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
+      end associate
       if (.not. is_alike) return
       do i = 1, size(e%laws)
          l%laws(i, lane) = e%laws(i)

@@ -11,8 +11,8 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_in_drawing, &
-      offset_in_drawing, ground_place, guide
+   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, &
+      ground_place, guide
 
    type :: tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -199,24 +199,24 @@ contains
       other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
 
-   !> Where `link` is, seen from its parent; lengths in units of `length`.
-   pure function place_on_tree(m, t, a, length, link) result(p)
+   !> Where `link` is, seen from its parent, in the deck's unit of length.
+   pure function place_on_tree(m, t, a, link) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: length
       integer, intent(in) :: link
       type(link_offset_t) :: p
       real(wp) :: sign_of
 
-      associate (pair => m%pairs(t%parent_joint(link)))
+      associate (pair => m%pairs(t%parent_joint(link)), parent => t%parent(link))
          sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
-         p%reach = point_in_drawing(m, a, length, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
-         p%body_vector = point_in_drawing(m, a, length, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
+         p%reach = point_offset(m, a, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+         p%body_vector = point_offset(m, a, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
+         if (m%links(parent)%ground) p%reach = p%reach + ground_place(m, a, parent)
          if (pair%kind /= pair_prismatic) return
          p%slide = t%slide(t%parent_joint(link))
          p%slide_body_vector = sign_of*guide(m, a, t%parent_joint(link), across=.false.)
-         p%reach = p%reach - sign_of*guide(m, a, t%parent_joint(link), across=.true.)*pair%offset/length
+         p%reach = p%reach - sign_of*guide(m, a, t%parent_joint(link), across=.true.)*pair%offset
       end associate
    end function place_on_tree
 
@@ -233,38 +233,23 @@ contains
       if (across) e = quarter_turn(e)
    end function guide
 
-   !> Point number `i` in the axes of its link's orientation, from the link's origin; of a ground link, its place
-   !> from the origin of all places.
-   pure function point_in_drawing(m, a, length, i) result(v)
-      type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: length
-      integer, intent(in) :: i
-      real(wp) :: v(2)
-
-      v = offset_in_drawing(m, a, length, i)
-      if (m%links(m%points(i)%link)%ground) v = v + ground_place(m, a, length, m%points(i)%link)
-   end function point_in_drawing
-
    !> Point number `i` from the origin of its link, in the axes of the link's orientation.
-   pure function offset_in_drawing(m, a, length, i) result(v)
+   pure function point_offset(m, a, i) result(v)
       type(mechanism_t), intent(in) :: m
       type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: length
       integer, intent(in) :: i
       real(wp) :: v(2)
 
-      v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))/length
-   end function offset_in_drawing
+      v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))
+   end function point_offset
 
    !> The place of ground `link` from the origin of all places.
-   pure function ground_place(m, a, length, link) result(v)
+   pure function ground_place(m, a, link) result(v)
       type(mechanism_t), intent(in) :: m
       type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: length
       integer, intent(in) :: link
       real(wp) :: v(2)
 
-      v = (m%links(link)%position(:2) - a%origin)/length
+      v = m%links(link)%position(:2) - a%origin
    end function ground_place
 end module links_tree

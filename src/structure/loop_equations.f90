@@ -17,7 +17,7 @@ module loop_equations
    implicit none
    private
    public :: equation_t, equations_t, new_equations, equation_numbers_t, new_equation_numbers, put_equation_numbers, &
-      incidence, fit_equations, are_alike
+      incidence, fit_equations
    public :: equation_x, equation_y, equation_projection, equation_angle, equation_slide
 
    integer, parameter :: equation_x = 1           !< x of a vector loop
@@ -246,30 +246,6 @@ contains
          end associate
       end do
    end subroutine find_unknowns
-
-   !> Whether `a` and `b` have the same unknowns in the same equations, in the same order: then blocks that are made of
-   !> them differ in their numbers alone.
-   pure logical function are_alike(a, b)
-      type(equations_t), intent(in) :: a, b
-      integer :: i
-
-      associate (p => a%vector_loops, q => b%vector_loops)
-         are_alike = all([a%count, p%count, p%vectors, p%slides] == [b%count, q%count, q%vectors, q%slides])
-         if (.not. are_alike) return
-         are_alike = all(p%first_vector(:p%count + 1) == q%first_vector(:q%count + 1)) &
-            .and. all(p%first_slide(:p%count + 1) == q%first_slide(:q%count + 1)) &
-            .and. all(p%vector_orientation(:p%vectors) == q%vector_orientation(:q%vectors)) &
-            .and. all(p%slide_orientation(:p%slides) == q%slide_orientation(:q%slides)) &
-            .and. all(p%slide_number(:p%slides) == q%slide_number(:q%slides)) &
-            .and. all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
-      end associate
-      do i = 1, a%count
-         associate (p => a%list(i), q => b%list(i))
-            are_alike = are_alike .and. all([p%kind, p%vector_loop, p%drive, p%orientation, p%less] &
-               == [q%kind, q%vector_loop, q%drive, q%orientation, q%less])
-         end associate
-      end do
-   end function are_alike
 
    !> 2 of the y of a loop, otherwise 1.
    pure integer function side_of(q)

@@ -14,7 +14,7 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
-   use links_tree, only: tree_t, axes_t, offset_in_drawing, ground_place, guide, other_link
+   use links_tree, only: tree_t, axes_t, point_offset, ground_place, guide, other_link
    implicit none
    private
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
@@ -160,10 +160,10 @@ contains
                sign_of = real(sign(1, sum(p%terms(:, k))), wp)
                place = 0.0_wp
                if (point == 0) then
-                  more = sign_of*m%pairs(pair)%offset/length*guide(m, a, pair, across=.true.)
+                  more = sign_of*m%pairs(pair)%offset*guide(m, a, pair, across=.true.)
                else
-                  more = sign_of*offset_in_drawing(m, a, length, point)
-                  if (m%links(m%points(point)%link)%ground) place = ground_place(m, a, length, m%points(point)%link)
+                  more = sign_of*point_offset(m, a, point)
+                  if (m%links(m%points(point)%link)%ground) place = ground_place(m, a, m%points(point)%link)
                   places = places + sign_of*place
                end if
                x%body_vector(:, v) = x%body_vector(:, v) + more
@@ -174,6 +174,8 @@ contains
             if (p%vector_orientation(k) == 0) x%body_vector(:, k) = x%body_vector(:, k) + places
          end do
       end do
+      x%body_vector = x%body_vector/length
+      x%largest = x%largest/length
       do k = 1, p%slides
          if (p%slide_pair(k) == 0) then
             x%slide_body_vector(:, k) = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], &
