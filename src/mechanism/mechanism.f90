@@ -4,22 +4,7 @@ module mechanism
    use kinds, only: wp, label_length, title_length
    use splines, only: spline_t
    implicit none
-   private
-   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, card_number_t, tolerance_t, &
-      settings_t, mechanism_t
-   public :: pair_revolute, pair_prismatic
-   public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
-   public :: term_harmonic, term_power, term_table, term_words
-   public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
-   public :: request_link, request_point, request_pair, request_pole, request_curve
-   public :: number_link, number_point, number_joint, number_pair, number_drive, number_knot, number_time
-   public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, &
-      is_listed_alone, used_points
-   public :: with_all_links, plane_origin
-   public :: remark_t, remark_small_letters, remark_title_long, remark_title_letters, remark_touching, &
-      remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, &
-      remark_drawn_value, remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, remark_more
+   private :: wp, label_length, title_length
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)

@@ -3,14 +3,7 @@
 module motion
    use kinds, only: wp
    implicit none
-   private
-   public :: motion_t, new_motion, known_of, forget_links, diagnostic_t, new_diagnostic, max_links
-   public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
-   public :: singular_unclear, singular_change, singular_dead, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_far_estimate, diagnostic_second, diagnostic_redundant, diagnostic_mobile, diagnostic_change, &
-      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, &
-      diagnostic_repeated, diagnostic_method, diagnostic_singular, diagnostic_beyond, diagnostic_begins, &
-      diagnostic_incomplete
+   private :: wp
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)

@@ -10,21 +10,18 @@ module points
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, find_row, set_values, has_number, difference, centre_numbers, &
+   public :: row_t, row_of, find_row, has_number, difference, centre_numbers, &
       coordinates_of, is_due, is_listed, is_fixed
    public :: point_motion, pair_motion
 
-   !> One row of a table, in the deck's units of length and time and in radians.
-   type :: row_t
+   !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
+   !> value first) and their derivatives; of a pole or curve as in `centre_t`.
+   type, extends(centre_t) :: row_t
       integer :: kind = request_link        !< request_link, ..., request_curve
       character(2*label_length + 1) :: name = ''   !< of the link, point or pair; of both links, or point and link
       logical :: angular = .false.          !< a pair whose value is an angle
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
-      integer :: state = centre_finite      !< of a pole or curve: as in `centre_t`
-      real(wp) :: weight = 1.0_wp           !< the same
-      !> x, y, phi (a pair: its value first) and their derivatives; or as in `centre_t`.
-      real(wp) :: value(3, 0:2) = 0.0_wp
    end type row_t
 
    !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
@@ -72,30 +69,20 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
+      real(wp) :: p(2, 0:2)
+      integer :: links(3), k
 
       row = new_row
       row%kind = request%kind
-      select case (request%kind)
-      case (request_pole)
-         row%name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
-      case (request_curve)
-         row%name = m%points(request%subject)%name
-         if (request%second > 0) row%name = trim(row%name)//' '//m%links(request%second)%name
-      case default
-         row%name = subject_name(m, request%kind, request%subject)
-      end select
-      call note_known(m, q, request, row)
-      call set_values(m, q, request, row)
-   end subroutine find_row
-
-   !> Gives the `row` of `request` its values.
-   pure subroutine set_values(m, q, request, row)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t), intent(inout) :: row
-      type(centre_t) :: centre
-      real(wp) :: p(2, 0:2)
+      row%name = name_of(m, request)
+      ! What is known of a row is what is known of its links.
+      links = request_links(m, request)
+      do k = 1, size(links)
+         if (m%links(links(k))%ground .or. known_of(q, links(k)) >= row%known) cycle
+         row%known = known_of(q, links(k))
+         row%mark = q%mark
+         if (allocated(q%link_mark)) row%mark = q%link_mark(links(k))
+      end do
 
       associate (i => request%subject)
          select case (request%kind)
@@ -115,28 +102,38 @@ contains
             row%angular = m%pairs(i)%kind /= pair_prismatic
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
-         case (request_pole, request_curve)
-            if (request%kind == request_pole) then
-               if (row%known < 1) return
-               centre = pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate)
-            else
-               ! In the axes of the link from which it is seen, or in the fixed plane.
-               p = point_motion(m, q, i)
-               if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
-               if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
-               centre = curve_of(p, request%length, request%rate)
-            end if
-            row%state = centre%state
-            row%weight = centre%weight
-            row%value = centre%value
-            if (request%kind == request_curve) then
-               if (request%second > 0) return
-               row%value(:2, 1) = row%value(:2, 1) + q%origin
-            end if
+         case (request_pole)
+            if (row%known < 1) return
+            row%centre_t = pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate)
+         case (request_curve)
+            ! In the axes of the link from which it is seen, or in the fixed plane.
+            p = point_motion(m, q, i)
+            if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
+            if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
+            row%centre_t = curve_of(p, request%length, request%rate)
+            if (request%second > 0) return
+            row%value(:2, 1) = row%value(:2, 1) + q%origin
          end select
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
-   end subroutine set_values
+   end subroutine find_row
+
+   !> The name of the row of `request`: of a link, point or pair; of both links, or of point and link.
+   pure function name_of(m, request) result(name)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      character(2*label_length + 1) :: name
+
+      select case (request%kind)
+      case (request_pole)
+         name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
+      case (request_curve)
+         name = m%points(request%subject)%name
+         if (request%second > 0) name = trim(name)//' '//m%links(request%second)%name
+      case default
+         name = subject_name(m, request%kind, request%subject)
+      end select
+   end function name_of
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
@@ -199,23 +196,6 @@ contains
 
       is_fixed = all(m%links(request_links(m, request))%ground)
    end function is_fixed
-
-   !> Reduces what is known of `row` to what is known of the links of its `request`.
-   pure subroutine note_known(m, q, request, row)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t), intent(inout) :: row
-      integer :: links(3), i
-
-      links = request_links(m, request)
-      do i = 1, size(links)
-         if (m%links(links(i))%ground .or. known_of(q, links(i)) >= row%known) cycle
-         row%known = known_of(q, links(i))
-         row%mark = q%mark
-         if (allocated(q%link_mark)) row%mark = q%link_mark(links(i))
-      end do
-   end subroutine note_known
 
    !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's
    !> origin o:  p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
