@@ -35,7 +35,7 @@ module card_reader
       integer :: subject = 0
       !> Of a card of a drive's law the numbers of term and row of its table; of the DRIVE card 0.
       integer :: term = 0, row = 0
-      integer :: below = 0                      !< of a TOLER or VARY card: the number of the card above it; 0: none
+      integer :: below = 0                      !< the number of the card above it, TOLER and VARY left out; 0: none
    end type parsed_card_t
 
    !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of
@@ -63,6 +63,7 @@ contains
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
       call check_characters(parsed%card, parsed%names_certain, parsed%has_small, errors)
+      if (parsed%has_small) parsed%label = capitals(parsed%label)
       if (errors%count == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before

@@ -4,12 +4,11 @@ module card_sets
    use kinds, only: wp, label_length
    use planar, only: direction, rotated
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
-      request_pair, remark_small_letters
-   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, card_name, &
+      request_pair
+   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, card_name, &
       label_a, label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, &
-      form_prism, form_cylinder, form_joint, form_toler, form_vary, form_end, nearest_words, proposal
+      form_prism, form_cylinder, form_joint, form_end, nearest_words, proposal
    use card_reader, only: parsed_card_t
-   use failures, only: capitals
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, max_printed, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
    use card_numbers, only: angle_in_radians
@@ -19,8 +18,7 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, begin_mechanism, set_apart
-   public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
+   public :: card_set_t, begin_set, begin_mechanism, build_bodies, has_drawing, look_up, match_word
    public :: add_card_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
@@ -34,8 +32,7 @@ module card_sets
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      integer :: apart = 0                          !< TOLER and VARY cards, behind the others in `cards` once set apart
-      type(card_t) :: small                         !< the first card with small letters; its number is 0: none
+      logical :: has_small = .false.                !< a card has small letters
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
       type(input_errors_t) :: errors                !< all errors of the deck so far
@@ -65,10 +62,9 @@ contains
 
       if (.not. allocated(set%cards)) allocate (set%cards(64))
       set%count = 0
-      set%apart = 0
       set%number_of = 0
       set%names_certain = .true.
-      set%small = card_t()
+      set%has_small = .false.
       call begin_mechanism(set, number)
    end subroutine begin_set
 
@@ -84,53 +80,6 @@ contains
       end do
       set%mechanism = mechanism_t(set_number=number)
    end subroutine begin_mechanism
-
-   !> Puts the TOLER and VARY cards of `set` behind its other cards, so that these are what they would be without them.
-   subroutine set_apart(set)
-      type(card_set_t), intent(inout) :: set
-      type(parsed_card_t), allocatable :: ordered(:)
-      logical :: is_apart(set%count)
-      integer :: k, n
-
-      set%apart = sum(set%number_of([form_toler, form_vary]))
-      if (set%apart == 0) return
-      is_apart = [(any(set%cards(k)%form == [form_toler, form_vary]), k=1, set%count)]
-      n = 0
-      do k = 1, set%count
-         if (.not. is_apart(k)) n = n + 1
-         set%cards(k)%below = n
-      end do
-      ordered = set%cards([pack([(k, k=1, set%count)], .not. is_apart), pack([(k, k=1, set%count)], is_apart)])
-      call move_alloc(ordered, set%cards)
-      set%count = set%count - set%apart
-   end subroutine set_apart
-
-   !> Reads the labels of the cards of `set` as capitals, a remark about the first of them: unless two names of a kind
-   !> differ by small letters alone; then all labels stay as they are typed.
-   subroutine read_small_letters(set)
-      type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
-      integer :: k, i, earlier
-
-      if (set%small%number == 0) return
-      do k = 1, set%count
-         do i = 1, size(definers)
-            if (set%cards(k)%form /= definers(i)%form) cycle
-            associate (name => set%cards(k)%label(definers(i)%label), kind => definers(i)%kind)
-               call put_name(typed(kind), name, k, earlier)
-               if (earlier > 0 .or. name == '') cycle
-               call put_name(upper(kind), capitals(name), k, earlier)
-               if (earlier > 0) return
-            end associate
-         end do
-      end do
-      do k = 1, set%count
-         set%cards(k)%label = capitals(set%cards(k)%label)
-      end do
-      i = small_field(set%small)
-      call add_remark(set%errors, remark_small_letters, set%small, first_column(set%small, card_fields(i)), &
-         field_text(set%small, card_fields(i)))
-   end subroutine read_small_letters
 
    !> The label field of a card of `form` that holds the name of what the card defines.
    pure integer function name_field(form)

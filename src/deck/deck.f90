@@ -2,19 +2,18 @@
 !> computed from a deck with an error.
 module deck
    use, intrinsic :: iso_fortran_env, only: int64
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, remark_small_letters
    use card_reader, only: parsed_card_t, read_card, read_star
-   use card_sets, only: card_set_t, begin_set, set_apart, read_small_letters, build_bodies
+   use card_sets, only: card_set_t, begin_set, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
-   use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, form_link, form_time, form_at, &
-      form_end
+   use cards, only: card_t, card_fields, card_name, field_text, first_column, small_field, is_passed_over, form_link, &
+      form_time, form_at, form_toler, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
-   use input_errors, only: add_error, add_field_error, error_report, deck_empty, deck_long, end_missing, set_empty, &
-      star_first, link_missing, time_missing
+   use input_errors
    use numerals, only: whole
    implicit none
    private
@@ -144,14 +143,16 @@ contains
             return
          end if
          call read_card(card, parsed, set%errors)
-         if (set%small%number == 0 .and. parsed%has_small) then
-            if (small_field(card) > 0) set%small = card
-         end if
+         if (parsed%has_small .and. .not. set%has_small) call note_small_letters(card, set)
          if (parsed%form /= form_end) then
             if (set%count == size(set%cards)) then
                allocate (larger(2*set%count))
                larger(1:set%count) = set%cards
                call move_alloc(larger, set%cards)
+            end if
+            if (set%count > 0) then
+               parsed%below = set%count
+               if (any(set%cards(set%count)%form == [form_toler, form_vary])) parsed%below = set%cards(set%count)%below
             end if
             set%count = set%count + 1
             set%cards(set%count) = parsed
@@ -170,6 +171,18 @@ contains
       end associate
    end subroutine take_card
 
+   !> Remarks that small letters in the name or in a label of `card`, if it has any, are read as capitals.
+   subroutine note_small_letters(card, set)
+      type(card_t), intent(in) :: card
+      type(card_set_t), intent(inout) :: set
+      integer :: i
+
+      i = small_field(card)
+      set%has_small = i > 0
+      if (i > 0) call add_remark(set%errors, remark_small_letters, card, first_column(card, card_fields(i)), &
+         field_text(card, card_fields(i)))
+   end subroutine note_small_letters
+
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
@@ -187,8 +200,6 @@ contains
       end if
       progress%closed = progress%closed + 1
       associate (set => progress%set)
-         call read_small_letters(set)
-         call set_apart(set)
          call build_mechanism(set)
          call build_variation(set, progress%variations(progress%closed))
          if (set%errors%count == progress%errors_before) then

@@ -1,4 +1,4 @@
-!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_terms` and, if it does not exist at
+!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at
 !> all instants, one of `check_terms`.
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
@@ -27,48 +27,93 @@ contains
    !> be driven, ADD and RISE cards without a drive, and wrong tables and rises are errors.
    subroutine build_drives(set)
       type(card_set_t), intent(inout) :: set
-      type(drive_t) :: drive
-      integer :: k, n, above
+      integer :: k
 
       allocate (set%mechanism%drives(set%number_of(form_drive)))
-      n = 0
-      above = form_end
+      call number_cards()
       do k = 1, set%count
          if (set%cards(k)%form == form_drive) then
-            n = n + 1
-            call build_drive(drive)
-            call build_terms(n)
-            ! Without a value at t = 0 it has that of the drawing; the values of a table are absolute. In a deck with
-            ! errors what the drive names may not be there.
-            drive%drawn = .not. set%cards(k)%given(1) .and. has_drawing(set) .and. set%errors%count == 0 &
-               .and. .not. any(drive%terms%kind == term_table)
-            if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
-            set%mechanism%drives(n) = drive
-         else if (is_term(k)) then
-            ! A card with a wrong name may have been a DRIVE card.
-            if (all(above /= [form_drive, form_add, form_rise, form_unknown])) &
+            call build_drive()
+         else if (is_term(set%cards(k))) then
+            if (set%cards(k)%subject > 0) then
+               call build_term()
+            else if (all(form_above(k) /= [form_add, form_rise, form_unknown])) then
+               ! A card with a wrong name may have been a DRIVE card.
                call add_card_error(set, add_alone, k, card_name)
+            end if
          end if
-         above = set%cards(k)%form
+      end do
+
+      ! Without a value at t = 0 a drive has that of the drawing; the values of a table are absolute.
+      if (set%errors%count > 0 .or. .not. has_drawing(set)) return
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_drive .or. set%cards(k)%given(1)) cycle
+         associate (drive => set%mechanism%drives(set%cards(k)%subject))
+            drive%drawn = .not. any(drive%terms%kind == term_table)
+            if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
+         end associate
       end do
 
    contains
 
-      !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
-      subroutine build_drive(drive)
-         type(drive_t), intent(out) :: drive
+      !> Numbers the drives, the terms of each, which follow its card, and the rows of tables; room for all of them.
+      subroutine number_cards()
+         integer :: n
+
+         n = 0
+         do k = 1, set%count
+            associate (card => set%cards(k), above => set%cards(max(1, set%cards(k)%below)))
+               if (card%form == form_drive) then
+                  n = n + 1
+                  card%subject = n
+               else if (is_term(card) .and. any(form_above(k) == [form_drive, form_add, form_rise])) then
+                  card%subject = above%subject
+                  card%row = 1
+                  card%term = above%term + 1
+                  if (is_row(card) .and. is_row(above)) then
+                     card%row = above%row + 1
+                     card%term = above%term
+                  end if
+               end if
+            end associate
+         end do
+         ! The last card of a drive has its last term, the last of a table its last row.
+         do k = set%count, 1, -1
+            associate (card => set%cards(k))
+               if (card%subject == 0 .or. .not. (card%form == form_drive .or. is_term(card))) cycle
+               associate (drive => set%mechanism%drives(card%subject))
+                  if (.not. allocated(drive%terms)) allocate (drive%terms(card%term))
+                  if (.not. is_row(card)) cycle
+                  associate (term => drive%terms(card%term))
+                     if (.not. allocated(term%table%x)) allocate (term%table%x(card%row), term%table%y(card%row))
+                  end associate
+               end associate
+            end associate
+         end do
+      end subroutine number_cards
+
+      !> The form of the card above card `k`; form_end if it is the first of its set.
+      pure integer function form_above(k)
+         integer, intent(in) :: k
+
+         form_above = form_end
+         if (set%cards(k)%below > 0) form_above = set%cards(set%cards(k)%below)%form
+      end function form_above
+
+      !> Builds the drive of the DRIVE card `k`: its kind, what it drives, and its polynomial.
+      subroutine build_drive()
          type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
             [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
          real(wp) :: minute
          integer :: kind, links(3), label
 
-         associate (card => set%cards(k))
+         associate (card => set%cards(k), m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
             call match_word(set, k, drive_words, drive_kind, kind)
             if (kind == 0) return
             drive%kind = kind
             drive%polynomial = card%real*unit_of(drive)
             if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
-               minute = minute_in(set%mechanism%time_unit)
+               minute = minute_in(m%time_unit)
                drive%turns = minute > 0.0_wp
                if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
                if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
@@ -80,21 +125,20 @@ contains
                call look_up(set, request_link, k, label_c, drive%second)
                if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
             end if
-         end associate
 
-         ! What it drives must be something that can be driven, as far as it is known.
-         if (drive%subject == 0) return
-         label = merge(label_c, label_b, kind == drive_relangle)
-         if (kind == drive_slide) then
-            if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
-               call add_card_error(set, drive_revolute, k, label)
-         else if (drive%second == drive%subject) then
-            call add_card_error(set, drive_one_link, k, label)
-         else
-            links = drive_links(set%mechanism, drive)
-            if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
-            if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(kind), k, label)
-         end if
+            ! What it drives must be something that can be driven, as far as it is known.
+            if (drive%subject == 0) return
+            label = merge(label_c, label_b, kind == drive_relangle)
+            if (kind == drive_slide) then
+               if (m%pairs(drive%subject)%kind == pair_revolute) call add_card_error(set, drive_revolute, k, label)
+            else if (drive%second == drive%subject) then
+               call add_card_error(set, drive_one_link, k, label)
+            else
+               links = drive_links(m, drive)
+               if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
+               if (all(m%links(links)%ground)) call add_card_error(set, ground_errors(kind), k, label)
+            end if
+         end associate
       end subroutine build_drive
 
       !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
@@ -104,72 +148,54 @@ contains
          unit = merge(angle_in_radians(set%mechanism), 1.0_wp, driven_kinds(drive%kind) == request_link)
       end function unit_of
 
-      !> Whether card `k` gives a term of the drive above it.
-      pure logical function is_term(k)
-         integer, intent(in) :: k
+      !> Builds the term of the ADD or RISE card `k`, or the row of its table.
+      subroutine build_term()
+         integer :: kind
 
-         is_term = any(set%cards(k)%form == [form_add, form_rise])
-      end function is_term
-
-      !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
-      subroutine build_terms(d)
-         integer, intent(in) :: d
-         integer :: i, n, last, kind
-
-         set%cards(k)%subject = d
-         n = 0
-         do last = k, set%count - 1
-            i = last + 1
-            if (.not. is_term(i)) exit
-            set%cards(i)%row = 1
-            if (is_row(set%cards(i)) .and. is_row(set%cards(last))) then
-               set%cards(i)%row = set%cards(last)%row + 1
-            else
-               n = n + 1
+         associate (card => set%cards(k), above => set%cards(set%cards(k)%below), row => set%cards(k)%row, &
+            drive => set%mechanism%drives(set%cards(k)%subject), &
+            term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
+            if (card%form == form_rise) then
+               call match_word(set, k, rise_words, rise_law, kind)
+               term%kind = term_cycloid + max(kind, 1) - 1
+               term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
+               if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
+               if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
+               return
             end if
-            set%cards(i)%subject = d
-            set%cards(i)%term = n
-         end do
-         allocate (drive%terms(n))
-         do i = k + 1, last
-            associate (card => set%cards(i), term => drive%terms(set%cards(i)%term), row => set%cards(i)%row)
-               if (card%form == form_rise) then
-                  call match_word(set, i, rise_words, rise_law, kind)
-                  term%kind = term_cycloid + max(kind, 1) - 1
-                  term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
-                  if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, i, real_2)
-                  if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, i, label_a)
-                  cycle
-               end if
 
-               if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, i, card_name)
-               if (is_row(card)) then
-                  if (row == 1) n = count(set%cards(i:last)%term == card%term)
-                  if (row == 1) allocate (term%table%x(n), term%table%y(n))
-                  term%kind = term_table
-                  term%table%x(row) = card%real(1)
-                  term%table%y(row) = card%real(2)*unit_of(drive)
-                  if (row > 1 .and. card%valid .and. any(card%given) .and. set%cards(i - 1)%valid &
-                     .and. card%real(1) <= set%cards(i - 1)%real(1)) call add_card_error(set, table_order, i, real_1)
-                  if (n == 1) call add_card_error(set, table_short, i, label_a)
-               else
-                  call match_word(set, i, term_words, add_kind, kind)
-                  if (kind == term_harmonic) &
-                     term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
-                  if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
-                  if (kind == term_power) term%kind = term_power
-               end if
-            end associate
-         end do
-      end subroutine build_terms
-
-      !> Whether `card` is a row of a table.
-      elemental logical function is_row(card)
-         type(parsed_card_t), intent(in) :: card
-
-         is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
-      end function is_row
+            if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
+            if (is_row(card)) then
+               term%kind = term_table
+               term%table%x(row) = card%real(1)
+               term%table%y(row) = card%real(2)*unit_of(drive)
+               if (row > 1 .and. card%valid .and. any(card%given) .and. above%valid .and. &
+                   card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
+               if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
+            else
+               call match_word(set, k, term_words, add_kind, kind)
+               if (kind == term_harmonic) &
+                  term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
+               if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
+               if (kind == term_power) term%kind = term_power
+            end if
+         end associate
+      end subroutine build_term
    end subroutine build_drives
+
+   !> Whether `card` gives a term of the drive above it.
+   pure logical function is_term(card)
+      type(parsed_card_t), intent(in) :: card
+
+      is_term = any(card%form == [form_add, form_rise])
+   end function is_term
+
+   !> Whether `card` is a row of a table.
+   pure logical function is_row(card)
+      type(parsed_card_t), intent(in) :: card
+
+      is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
+   end function is_row
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
    !> other error.

@@ -136,17 +136,12 @@ contains
    !> TITLE, and one for each default that no card replaces.
    subroutine build_echo(set)
       type(card_set_t), intent(inout) :: set
-      integer :: k, n, i
+      integer :: k, n
 
-      allocate (set%mechanism%echo(set%count + set%apart + 4))
+      allocate (set%mechanism%echo(set%count + 4))
       n = 0
-      i = set%count + 1
       do k = 1, set%count
          if (set%cards(k)%form /= form_title) call add_card(k)
-         do i = i, set%count + set%apart
-            if (set%cards(i)%below > k) exit
-            call add_card(i)
-         end do
       end do
       associate (m => set%mechanism)
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])

@@ -13,7 +13,6 @@ module deck_variants
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
       form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_toler, &
       form_vary, form_end, forms, reals_of, card_fields
-   use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, vary_alone, vary_number, vary_count, vary_equal, &
       vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long, toler_alone, &
       toler_none, toler_second, toler_blank, number_range
@@ -71,15 +70,15 @@ contains
       integer :: k, i, n, form
 
       n = 0
-      do k = set%count + 1, set%count + set%apart
+      do k = 1, set%count
          if (set%cards(k)%form /= form_toler .or. .not. set%cards(k)%valid) cycle
-         associate (card => set%cards(k), above => set%cards(k)%below, before => set%cards(set%count + 1:k - 1))
+         associate (card => set%cards(k), above => set%cards(k)%below)
             form = form_end
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) cycle
             if (forms(form)%reals == 0) then
                call add_card_error(set, toler_alone, k, card_name)
-            else if (any(before%below == above .and. before%form == form_toler)) then
+            else if (any(set%cards(above + 1:k - 1)%form == form_toler)) then
                call add_card_error(set, toler_second, k, card_name)
             else if (.not. any(card%given)) then
                call add_card_error(set, toler_blank, k, card_name)
@@ -136,7 +135,7 @@ contains
 
       if (set%number_of(form_vary) == 0) return
       allocate (v%numbers(0), v%counts(0))
-      do i = set%count + 1, set%count + set%apart
+      do i = 1, set%count
          if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card()
       end do
 
@@ -173,7 +172,7 @@ contains
 
          one = varied_t(card=set%cards(i)%below, vary=i)
          associate (card => set%cards(i), above => set%cards(i)%below)
-            one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
+            one%place = findloc(number_words, card%label(label_a), dim=1)
             form = form_vary
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) return
@@ -189,9 +188,7 @@ contains
             if (one%count == 0) return
             n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
             ! More values of the list on the VARY card above it.
-            continues = i > set%count + 1
-            if (continues) continues = card%below == set%cards(i - 1)%below &
-               .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
+            continues = card%below == set%cards(i - 1)%below .and. all(card%label == set%cards(i - 1)%label)
             if (n == 0) then
                if (set%errors%count == 0) then
                   one%number = number_on_card(set, one%card, one%place)
@@ -207,8 +204,7 @@ contains
                ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
                do k = 1, size(v%numbers)
                   if (card%label(label_c) /= '' .and. &
-                      capitals(set%cards(v%numbers(k)%vary)%label(label_c)) == capitals(card%label(label_c))) &
-                     one%axis = v%numbers(k)%axis
+                      set%cards(v%numbers(k)%vary)%label(label_c) == card%label(label_c)) one%axis = v%numbers(k)%axis
                end do
                if (one%axis == 0) then
                   v%counts = [v%counts, 0]
@@ -230,7 +226,7 @@ contains
          type(error_code_t) :: error
          integer :: count_given, place
 
-         if (capitals(card%label(label_b)) == list_word) then
+         if (card%label(label_b) == list_word) then
             one%list = pack(card%real, card%given)
             one%count = size(one%list)
             if (one%count == 0) call add_card_error(set, add_blank, i, card_name)

@@ -4,7 +4,7 @@ module mechanism
    use kinds, only: wp, label_length, title_length
    use splines, only: spline_t
    implicit none
-   private :: wp, label_length, title_length
+   private :: wp, label_length, title_length, spline_t
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
