@@ -3,13 +3,8 @@
 module card_reader
    use kinds, only: wp, label_length
    use mechanism, only: remark_title_long, remark_title_letters, remark_touching
-   use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, real_1, &
-      field_text, first_column, card_columns, forms, form_unknown, form_title, reals_of, find_form, nearest_words, &
-      proposal
-   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, max_printed, &
-      max_power, card_unknown, card_indented, past_last_column, tab_character, control_character, foreign_character, &
-      border_crossed, field_unused, field_blank, label_blank_inside, label_long, whole_long, star_no_reals, &
-      star_second, star_twice, star_blank, number_overflow, number_underflow
+   use cards
+   use input_errors
    use failures, only: capitals
    use numbers, only: read_real, read_whole
    use numerals, only: whole

@@ -3,14 +3,10 @@
 module card_sets
    use kinds, only: wp, label_length
    use planar, only: direction, rotated
-   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
-      request_pair
-   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, card_name, &
-      label_a, label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, &
-      form_prism, form_cylinder, form_joint, form_end, nearest_words, proposal
+   use mechanism
+   use cards
    use card_reader, only: parsed_card_t
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, max_printed, link_unknown, &
-      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
+   use input_errors
    use card_numbers, only: angle_in_radians
    use drawn_values, only: take_drawn, coincides
    use name_table, only: name_table_t, put_name, find_name

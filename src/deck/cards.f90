@@ -5,15 +5,7 @@ module cards
    use kinds, only: label_length
    use failures, only: capitals
    implicit none
-   private
-   public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
-   public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
-   public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
-   public :: forms, form_name, find_form, nearest_words, proposal, reals_of
-   public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
-   public :: form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
-   public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
-   public :: form_vary, form_assembly, form_prove, form_end
+   private :: int64, label_length, capitals, form_t, star_layout, keys, edits
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80

@@ -6,8 +6,7 @@ module deck
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
-   use cards, only: card_t, card_fields, card_name, field_text, first_column, small_field, is_passed_over, form_link, &
-      form_time, form_at, form_toler, form_vary, form_end
+   use cards
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
@@ -31,10 +30,15 @@ module deck
       logical :: varies = .false.                 !< it has VARY cards: all sets are kept; the same
    end type job_share_t
 
+   !> A set that has its END.
+   type :: closed_t
+      type(mechanism_t) :: mechanism
+      type(variation_t) :: variation              !< empty of a set without VARY cards
+   end type closed_t
+
    !> What has been read so far.
    type :: reading_t
-      type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
-      type(variation_t), allocatable :: variations(:)   !< (closed) and room, empty of sets without VARY cards
+      type(closed_t), allocatable :: sets(:)      !< (closed) and room for more
       integer :: closed = 0                       !< number of those that have their END
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
@@ -58,7 +62,7 @@ contains
       integer :: errors, from, to
       integer(int64) :: n
 
-      allocate (progress%sets(4), progress%variations(4))
+      allocate (progress%sets(4))
       call begin_set(progress%set, 1)
       call open_source(source, path, failure)
       if (.not. allocated(failure)) then
@@ -74,10 +78,10 @@ contains
       from = 1
       to = progress%closed
       if (present(share)) then
-         share%varies = any(progress%sets(:progress%closed)%variants > 0)
+         share%varies = any(progress%sets(:progress%closed)%mechanism%variants > 0)
          share%sets = progress%closed
          n = share%sets
-         if (share%varies) n = variants_before(progress%sets, share%sets + 1)
+         if (share%varies) n = variants_before(progress%sets%mechanism, share%sets + 1)
          share%first = int(n*(share%number - 1)/share%count) + 1
          share%last = int(n*share%number/share%count)
          if (.not. share%varies) then
@@ -85,8 +89,8 @@ contains
             to = share%last
          end if
       end if
-      sets = progress%sets(from:to)
-      if (present(variations)) variations = progress%variations(from:to)
+      sets = progress%sets(from:to)%mechanism
+      if (present(variations)) variations = progress%sets(from:to)%variation
    end subroutine read_deck
 
    !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.
@@ -187,21 +191,18 @@ contains
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(reading_t), intent(inout) :: progress
-      type(mechanism_t), allocatable :: larger(:)
-      type(variation_t), allocatable :: more(:)
+      type(closed_t), allocatable :: larger(:)
       integer :: n
 
       if (progress%closed == size(progress%sets)) then
-         allocate (larger(2*progress%closed), more(2*progress%closed))
+         allocate (larger(2*progress%closed))
          larger(:progress%closed) = progress%sets
-         more(:progress%closed) = progress%variations
          call move_alloc(larger, progress%sets)
-         call move_alloc(more, progress%variations)
       end if
       progress%closed = progress%closed + 1
       associate (set => progress%set)
          call build_mechanism(set)
-         call build_variation(set, progress%variations(progress%closed))
+         call build_variation(set, progress%sets(progress%closed)%variation)
          if (set%errors%count == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
@@ -216,7 +217,7 @@ contains
          set%errors%remarked = 0
          progress%errors_before = set%errors%count
       end associate
-      progress%sets(progress%closed) = progress%set%mechanism
+      progress%sets(progress%closed)%mechanism = progress%set%mechanism
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 

@@ -4,19 +4,14 @@ module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use mechanism, only: remark_jumps, drive_t, term_t, drive_links, find_instants, drive_angle, &
-      drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
-      term_cycloid, term_cosine, rise_words, pair_revolute, request_link
+   use mechanism
    use card_reader, only: parsed_card_t
    use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
    use splines, only: new_spline
    use drawn_values, only: drawn_drive
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
-   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
-      form_rise, form_end
-   use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
-      drive_one_link, drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, &
-      table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
+   use cards
+   use input_errors
    implicit none
    private
    public :: build_drives, check_terms

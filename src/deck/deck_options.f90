@@ -3,15 +3,10 @@
 module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
-   use mechanism, only: request_t, branch_request_t, request_links, request_link, request_point, request_pair, &
-      request_pole, request_curve, method_newton, method_words
+   use mechanism
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
-   use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
-      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, form_range, &
-      form_circuits, form_branch, form_vary, form_assembly, form_prove, form_pole, form_curve, form_joint
-   use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
-      time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
-      extremes_ground, branch_ground, newton_needed, branch_repeated, centre_still, centre_apart
+   use cards
+   use input_errors
    use name_table, only: name_table_t, put_name, find_name
    use numerals, only: whole
    use independent, only: part_of_links

@@ -5,10 +5,7 @@
 module deck_remarks
    use kinds, only: wp, label_length
    use planar, only: pi, in_degrees, without_turns, direction
-   use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_drawn_value, &
-      remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, mechanism_t, pair_t, card_number_t, &
-      drive_links, pair_links, used_points, instant, pair_prismatic, driven_kinds, request_link, request_point, &
-      request_pair, request_curve, method_words, method_newton
+   use mechanism
    use drives, only: drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_drive
@@ -17,8 +14,7 @@ module deck_remarks
    use numerals, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
-   use cards, only: label_a, label_b, label_c, real_1, form_prism, form_joint, form_drive, form_add, form_name, &
-      reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
+   use cards
    use input_errors, only: link_unused
    implicit none
    private

@@ -5,17 +5,12 @@
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, card_number_t, tolerance_t, term_table, number_link, number_point, number_joint, &
-      number_pair, number_drive, number_knot, number_time
+   use mechanism
    use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit, put_number
    use card_sets, only: card_set_t, begin_mechanism, has_drawing, add_card_error, real_text
    use card_reader, only: parsed_card_t
-   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
-      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_toler, &
-      form_vary, form_end, forms, reals_of, card_fields
-   use input_errors, only: input_errors_t, error_code_t, vary_alone, vary_number, vary_count, vary_equal, &
-      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long, toler_alone, &
-      toler_none, toler_second, toler_blank, number_range
+   use cards
+   use input_errors
    use numbers, only: read_whole
    use numerals, only: whole
    implicit none

@@ -4,8 +4,7 @@
 module input_errors
    use kinds, only: wp, label_length
    use mechanism, only: remark_t, remark_more
-   use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form, form_unknown, &
-      form_link, form_time, form_end
+   use cards
    use numerals, only: whole
    implicit none
    private
@@ -68,7 +67,7 @@ module input_errors
       number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
       number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'IS NOT A REAL NUMBER: WRITE A DECIMAL POINT OR AN EXPONENT (5.0)'), &
-      number_point = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT'), &
+      number_fraction = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT'), &
       number_no_digits = error_code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
       number_exponent = error_code_t(33, 'IS NOT A NUMBER (NO DIGITS IN THE EXPONENT)')
    ! Fields, and the cards that belong to the one above them: `*` and TOLER.

@@ -10,9 +10,7 @@ module numbers
    use, intrinsic :: iso_fortran_env, only: int64, dp => real64
    use kinds, only: wp
    use failures, only: capitals
-   use input_errors, only: error_code_t, number_other, number_letter_o, number_letter_l, number_blank, number_comma, &
-      number_sign, number_nan, number_inf, number_overflow, number_underflow, number_no_point, number_point, &
-      number_no_digits, number_exponent
+   use input_errors
    implicit none
    private
    public :: read_real, read_whole
@@ -78,7 +76,7 @@ contains
          place = wrong
          error = error_at(text, wrong)
          if (scan(text(wrong:wrong), '.') == 1 .or. (wrong > first .and. scan(text(wrong:wrong), 'EeDd') == 1)) &
-            error = number_point
+            error = number_fraction
       else
          read (text, '(i80)', iostat=status) value
          if (status /= 0) error = number_overflow
