@@ -6,7 +6,7 @@ module drive_laws
    use jet_drives, only: term_jet
    implicit none
    private
-   public :: law_t, law_jet, variation, term_none, term_harmonic, term_power, term_table, term_rise
+   public :: law_t, law_jet, variation, term_harmonic, term_power, term_table, term_rise
 
    enum, bind(c)
       enumerator :: term_none, term_harmonic, term_power, term_table, term_rise

@@ -11,8 +11,8 @@ module scheme_draft
    use group_newton, only: outcome_t, solve_group
    implicit none
    private
-   public :: draft_t, add_link, add_point, join, number, begin_group, end_group, anywhere, some_angle, place_on_base, &
-      pick_base, world, to_deck
+   public :: draft_t, add_link, add_point, join, number, begin_group, end_group, anywhere, place_on_base, pick_base, &
+      world
 
    type :: draft_t
       type(dice_t) :: dice

@@ -11,7 +11,7 @@ module scheme_motion
    use group_newton, only: outcome_t, solve_group, residuals
    implicit none
    private
-   public :: motion_t, begin_motion, move_to, closes, is_followed, is_lost, is_unknown
+   public :: motion_t, begin_motion, move_to, closes, is_followed, is_lost
 
    !> Of a group: followed, at a limit, or lost in another way, which tells nothing of the mechanism.
    enum, bind(c)
