@@ -92,7 +92,7 @@ contains
          integer, intent(in) :: number
          integer :: i
 
-         associate (links => s%now%cards(c)%links, own => s%now%parts(c))
+         associate (links => s%now%cards(c)%of, own => s%now%parts(c))
             do i = 1, size(links)
                one%place(:, links(i)) = s%assemblies(c)%list(number)%position(:, i) &
                   + [plane_origin(own) - d%origin, 0.0_wp]

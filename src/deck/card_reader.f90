@@ -18,7 +18,7 @@ module card_reader
       type(card_t), allocatable :: star         !< the `*` card below it
       integer :: form = form_unknown            !< its place in `forms`
       logical :: valid = .true.                 !< it and its `*` card have no error of their own
-      logical :: has_small = .false.            !< it may have small letters
+      integer :: small = 0                      !< the column of the first small letter of its name and labels; 0: none
       logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
       character(label_length) :: label(label_a:label_c) = ''
       integer :: whole = 0                      !< the whole number in a label field
@@ -57,8 +57,10 @@ contains
       end do
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
-      call check_characters(parsed%card, parsed%names_certain, parsed%has_small, errors)
-      if (parsed%has_small) parsed%label = capitals(parsed%label)
+      call check_characters(parsed%card, parsed%names_certain, parsed%small, errors)
+      ! A title may have them.
+      if (parsed%small > card_fields(merge(card_name, label_c, parsed%form == form_title))%last) parsed%small = 0
+      if (parsed%small > 0) parsed%label = capitals(parsed%label)
       if (errors%count == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before
@@ -139,11 +141,11 @@ contains
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
       type(input_errors_t), intent(inout) :: errors
-      integer :: before, i
-      logical :: clean, has_small, cut(3)
+      integer :: before, small, i
+      logical :: clean, cut(3)
 
       before = errors%count
-      call check_characters(card, clean, has_small, errors)
+      call check_characters(card, clean, small, errors)
       if (errors%count > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
@@ -174,25 +176,25 @@ contains
    end subroutine read_star
 
    !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
-   !> printable ASCII; `has_small`: there may be small letters among them.
-   subroutine check_characters(card, clean, has_small, errors)
+   !> printable ASCII; `small`: the column of the first small letter before another character; 0: none.
+   subroutine check_characters(card, clean, small, errors)
       type(card_t), intent(in) :: card
-      logical, intent(out) :: clean, has_small
+      logical, intent(out) :: clean
+      integer, intent(out) :: small
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       type(field_t) :: field
       character(:), allocatable :: word
       integer :: column, last
 
-      has_small = .false.
+      small = 0
       last = len_trim(card%text)
       do column = 1, last
          if (card%text(column:column) >= ' ' .and. card%text(column:column) < 'a') cycle
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
-         has_small = .true.
+         if (small == 0 .and. card%text(column:column) <= 'z') small = column
       end do
       clean = column > last
-      has_small = has_small .or. .not. clean
       if (clean) then
          if (card%overrun == 0) return
          ! The word that crosses the last column, as far as it is known.

@@ -110,20 +110,6 @@ contains
       column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
    end function first_column
 
-   !> The first of the name and label fields of `card` that has a small letter; 0: none. A title may have them.
-   pure integer function small_field(card) result(i)
-      type(card_t), intent(in) :: card
-      logical :: is_title
-
-      is_title = card%text(:label_length) == form_name(form_title)
-      do i = card_name, merge(card_name, label_c, is_title)
-         associate (text => card%text(card_fields(i)%first:card_fields(i)%last))
-            if (text /= capitals(text)) return
-         end associate
-      end do
-      i = 0
-   end function small_field
-
    !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
       type(card_t), intent(in) :: card

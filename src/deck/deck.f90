@@ -136,6 +136,7 @@ contains
       type(reading_t), intent(inout) :: progress
       type(parsed_card_t) :: parsed
       type(parsed_card_t), allocatable :: larger(:)
+      integer :: i
 
       associate (set => progress%set)
          if (card%text(1:1) == '*') then
@@ -147,7 +148,12 @@ contains
             return
          end if
          call read_card(card, parsed, set%errors)
-         if (parsed%has_small .and. .not. set%has_small) call note_small_letters(card, set)
+         if (parsed%small > 0 .and. .not. set%has_small) then
+            set%has_small = .true.
+            i = findloc(card_fields%last >= parsed%small, .true., dim=1)
+            call add_remark(set%errors, remark_small_letters, card, first_column(card, card_fields(i)), &
+               field_text(card, card_fields(i)))
+         end if
          if (parsed%form /= form_end) then
             if (set%count == size(set%cards)) then
                allocate (larger(2*set%count))
@@ -174,18 +180,6 @@ contains
          end if
       end associate
    end subroutine take_card
-
-   !> Remarks that small letters in the name or in a label of `card`, if it has any, are read as capitals.
-   subroutine note_small_letters(card, set)
-      type(card_t), intent(in) :: card
-      type(card_set_t), intent(inout) :: set
-      integer :: i
-
-      i = small_field(card)
-      set%has_small = i > 0
-      if (i > 0) call add_remark(set%errors, remark_small_letters, card, first_column(card, card_fields(i)), &
-         field_text(card, card_fields(i)))
-   end subroutine note_small_letters
 
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.

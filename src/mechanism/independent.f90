@@ -9,7 +9,7 @@ module independent
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
-   public :: set_t, member_t, part_t, divide, part_of_links, &
+   public :: set_t, member_t, divide, part_of_links, &
       request_of, first_drive
 
    !> A row or drive of a set: the number of its part, and its number there.
@@ -17,16 +17,12 @@ module independent
       integer :: part = 1, number = 0
    end type member_t
 
-   !> The numbers in the deck of the links of a part, increasing; the place in the list is the number in the part.
-   type :: part_t
-      integer, allocatable :: links(:)
-   end type part_t
-
-   !> A list for each kind: links, points, pairs and drives (`of_drives`). It has the deck's numbers of what a part has,
-   !> increasing, or for each number of the deck the number in the part.
-   type :: places_t
+   !> The deck's numbers of what a part has of a kind, increasing: the place in the list is the number in the part. Or
+   !> for each number of the deck the number in the part.
+   type :: numbering_t
       integer, allocatable :: of(:)
-   end type places_t
+   end type numbering_t
+   !> Kinds are links, points, pairs and drives.
    integer, parameter :: of_drives = 4
    !> The kinds of the subjects of requests, and of numbers on cards.
    integer, parameter :: of_requests(request_link:request_curve) = &
@@ -39,7 +35,7 @@ module independent
       integer :: count = 1                          !< of independent mechanisms
       type(mechanism_t), allocatable :: parts(:)    !< (1), or (0:count)
       type(member_t), allocatable :: rows(:), drives(:)   !< in the order of the cards
-      type(part_t), allocatable :: cards(:)         !< (parts) only their links, for pictures
+      type(numbering_t), allocatable :: cards(:)    !< (parts) of their links, for pictures
       real(wp) :: largest_tolerance = 0.0_wp        !< as a part of the whole's sizes; 0: no number has a tolerance
    end type set_t
 
@@ -51,7 +47,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
       type(sorted_t) :: links, points, pairs, drives, rows
-      type(places_t) :: place(of_drives), part(of_drives)
+      type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:)
       integer :: link_part(size(m%links)), ground, i, c, k
 
@@ -84,8 +80,8 @@ contains
          allocate (s%parts(first:s%count), s%cards(first:s%count))
       end associate
       allocate (s%rows(size(m%requests)), s%drives(size(m%drives)))
-      place = [places_t(spread(0, 1, size(m%links))), places_t(spread(0, 1, size(m%points))), &
-         places_t(spread(0, 1, size(m%pairs))), places_t(spread(0, 1, size(m%drives)))]
+      place = [numbering_t(spread(0, 1, size(m%links))), numbering_t(spread(0, 1, size(m%points))), &
+         numbering_t(spread(0, 1, size(m%pairs))), numbering_t(spread(0, 1, size(m%drives)))]
       do c = 1, size(s%parts)
          k = modulo(c, ground)
          part(request_link)%of = once(members(links, c))
@@ -100,7 +96,7 @@ contains
          s%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
          s%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
          call take_mechanism(m, part, own_rows, branches, place, s%parts(k))
-         call move_alloc(part(request_link)%of, s%cards(k)%links)
+         call move_alloc(part(request_link)%of, s%cards(k)%of)
       end do
 
    contains
@@ -131,9 +127,9 @@ contains
    !> each takes the time of its own size alone.
    subroutine take_mechanism(m, part, rows, branches, place, own)
       type(mechanism_t), intent(in) :: m
-      type(places_t), intent(in) :: part(:)
+      type(numbering_t), intent(in) :: part(:)
       integer, intent(in) :: rows(:), branches(:)
-      type(places_t), intent(inout) :: place(:)
+      type(numbering_t), intent(inout) :: place(:)
       type(mechanism_t), intent(out) :: own
       integer :: i, kind
 

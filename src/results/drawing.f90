@@ -250,7 +250,7 @@ contains
          now = snapshot_of_ground(d)
          now%t = s%motions(1)%t
          do c = s%count, 1, -1
-            associate (links => s%cards(c)%links, q => s%motions(c))
+            associate (links => s%cards(c)%of, q => s%motions(c))
                if (q%mark /= mark_none .and. is_own) then
                   now%mark = q%mark
                   now%singularity = q%singularity
@@ -279,7 +279,7 @@ contains
          if (is_flagged(s)) d%flagged = d%flagged + 1
          if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
          do c = 1, s%count
-            associate (links => s%cards(c)%links, mark => s%motions(c)%mark)
+            associate (links => s%cards(c)%of, mark => s%motions(c)%mark)
                if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
                   flag%t = now%t
                   flag%mark = mark

@@ -24,7 +24,7 @@ contains
       s%rows = [(member_t(1, i), i=1, size(m%requests))]
       s%drives = [(member_t(1, i), i=1, size(m%drives))]
       allocate (s%cards(1))
-      s%cards(1)%links = [(i, i=1, size(m%links))]
+      s%cards(1)%of = [(i, i=1, size(m%links))]
       allocate (s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
       s%motions(1) = q
       s%errors(1) = errors
