@@ -318,13 +318,7 @@ contains
       integer :: scores(message_count)
 
       text = ''
-      ! Single blanks between words.
       key = trim(adjustl(capitals(words)))
-      do while (index(key, '  ') > 0)
-         i = index(key, '  ')
-         key = key(:i)//adjustl(key(i:))
-         key = trim(key)
-      end do
       if (len(key) == 0) return
 
       scores = 0

@@ -2,9 +2,9 @@
 !> computed.
 module outputs
    use, intrinsic :: iso_c_binding, only: c_int
-   use failures, only: failure_t, fail, capitals, status_system, status_rejected
+   use failures, only: failure_t, fail, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed
-   use system_calls, only: make_directory, last_error, reason_of, signal_received
+   use system_calls, only: make_directory, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_shared, out_last
    implicit none
@@ -61,9 +61,7 @@ contains
             if (k <= out_shared) then
                call open_output(o%files(k), path, failure)
             else if (len_trim(file_options(k)%in_directory) > 0) then
-               ! What else is wrong with a directory shows when its files are opened.
-               if (.not. make_directory(path)) call fail(failure, status_system, 'DIRECTORY '//path &
-                  //' CANNOT BE MADE ('//capitals(reason_of(last_error()))//')')
+               call make_directory(path)
             else if (first < last) then
                ! The tables of several sets would be mixed on standard output or a device.
                if (len(path) == 0) then

@@ -24,7 +24,7 @@ module system_calls
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
-   integer, parameter :: no_such_file = 2, closed_descriptor = 9, file_exists = 17, is_a_directory = 21, &
+   integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21, &
       broken_pipe = 32
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
    integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
@@ -229,13 +229,13 @@ contains
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
-   !> Makes the directory `path`; false, see `last_error`, if then there is neither one nor a file of that name.
-   logical function make_directory(path)
+   !> Makes the directory `path`, unless it is there. What is wrong shows when a file in it is opened.
+   subroutine make_directory(path)
       character(*), intent(in) :: path
+      integer(c_int) :: ignored
 
-      make_directory = mkdir(path//c_null_char, directory_permissions) == 0
-      if (.not. make_directory) make_directory = last_error() == file_exists
-   end function make_directory
+      ignored = mkdir(path//c_null_char, directory_permissions)
+   end subroutine make_directory
 
    !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
    !> next file would take their descriptors, and what is printed would go into it.

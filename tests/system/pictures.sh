@@ -134,11 +134,6 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
 
-# All of them are, byte for byte, what they were: tests/system/pictures.txt. As docs/pictures this is no truth: it tells of a
-# change that nobody means. What is meant and was looked at takes the place of the old: cp build/pictures/pictures.txt tests/system/
-(cd "$w" && cksum ./*.svg) > "$w/pictures.txt"
-same 'pictures of input/' tests/system/pictures.txt "$w/pictures.txt"
-
 # The rings of an animation begin where the CSV has the poles, but for those outside of the picture.
 "$kinmat" --no-listing --csv "$w/poles.csv" input/poles.deck
 equal 'rings of an animation' '3 rings, 0 off' "$(awk '

@@ -226,7 +226,7 @@ rejected '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --p
 rejected '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
 rejected '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
 rejected '--plot and --study' 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
-rejected '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
+rejected '--plot where no directory can be made' 3 ' *** FILE /nonexistent/x/table-1.csv CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --plot /nonexistent/x
 rejected '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
    "$w/own-1.deck" --plot "$w/own-1.deck"
