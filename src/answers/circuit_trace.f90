@@ -26,10 +26,11 @@ module circuit_trace
       enumerator :: end_closed = 1, end_far, end_lost
    end enum
 
-   !> A position at which circuits meet, between two points of one of them.
+   !> A position at which circuits meet, or one crosses itself, between two points of one of them.
    type :: change_point_t
       real(wp), allocatable :: q(:, :)         !< (3, links) its place
       real(wp) :: value = 0.0_wp               !< of the drive
+      logical, allocatable :: circuits(:)      !< (circuits) which meet, once all are known
    end type change_point_t
 
    type :: circuit_t
@@ -42,22 +43,28 @@ module circuit_trace
 
 contains
 
-   !> The circuit of the curve `c` through the point `start`.
-   subroutine trace(c, start, circuit)
+   !> The circuit of the curve `c` through the point `start`. One that closes begins, and ends, at its first dead point.
+   recursive subroutine trace(c, start, circuit)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(circuit_t) :: back
       type(curve_point_t), allocatable :: points(:)
+      type(curve_point_t) :: dead
       integer :: n, i
 
       call follow(c, start, circuit)
       if (circuit%ends(2) == end_closed) then
          circuit%ends(1) = end_closed
-         ! Of a dead point at the start only the neighbours tell.
+         ! Of a dead point at the start only the neighbours tell, if it is not known.
          n = size(circuit%points)
-         circuit%points([1, n])%is_dead = sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
-         call begin_at_dead_point(circuit)
+         circuit%points([1, n])%is_dead = start%is_dead .or. sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
+         i = findloc(circuit%points%is_dead, .true., dim=1)
+         if (i > 1 .and. .not. start%is_dead) then
+            dead = circuit%points(i)
+            call trace(c, dead, circuit)
+            return
+         end if
       else
          call follow(c, reversed(start), back)
          circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
@@ -264,30 +271,4 @@ contains
          g2 = g
       end do
    end subroutine find_root
-
-   !> Lets a closed circuit begin, and end, at its first dead point.
-   subroutine begin_at_dead_point(circuit)
-      type(circuit_t), intent(inout) :: circuit
-      type(curve_point_t), allocatable :: p(:)
-      real(wp) :: turns(3, size(circuit%points(1)%q, 2)), turned
-      integer :: first, n, i
-
-      n = size(circuit%points)
-      first = findloc(circuit%points%is_dead, .true., dim=1)
-      if (first <= 1) return
-      turns = circuit%points(n)%q - circuit%points(1)%q
-      turned = circuit%points(n)%value(0) - circuit%points(1)%value(0)
-      allocate (p(n))
-      do i = 1, n
-         if (first + i - 1 <= n) then
-            p(i) = circuit%points(first + i - 1)
-         else
-            ! The first point is the last one.
-            p(i) = circuit%points(first + i - n)
-            p(i)%q = p(i)%q + turns
-            p(i)%value(0) = p(i)%value(0) + turned
-         end if
-      end do
-      call move_alloc(p, circuit%points)
-   end subroutine begin_at_dead_point
 end module circuit_trace

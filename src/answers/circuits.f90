@@ -6,19 +6,20 @@
 !> instant, and all assemblies at values over the whole range of the drive and at angles of each link: a circuit between
 !> all of these is not found.
 !>
-!> The links at dead points are those that card RANGE finds there, from the middle of each branch.
+!> The links at a dead point are those that are singular where the motion begins there.
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi, without_turns
+   use planar, only: pi
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use scales, only: characteristic_length
-   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit
-   use assemblies, only: assemblies_t, assembly_t, find_assemblies, number_of
+   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, singular_dead
+   use analysis, only: analysis_t, make_analysis, advance
+   use assemblies, only: assemblies_t, assembly_t, find_assemblies
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      of_value, of_size, step_between, lies_between, beside, same_place
-   use circuit_trace, only: circuit_t, trace, least_step, find_root, end_closed
-   use ranges, only: range_t, find_range, is_lost, held_at, low, high
+      of_size, step_between, lies_between, beside, same_place
+   use circuit_trace, only: circuit_t, change_point_t, trace, least_step, end_closed
+   use ranges, only: held_at, put_estimate
    implicit none
    private
    public :: circuits_t, circuit_branch_t, find_circuits, free_drives, turns_of, no_sign
@@ -26,8 +27,6 @@ module circuits
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie = 1.0e-6_wp
-   !> A drive's value is that of a point up to this difference, in rad and lengths.
-   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
    integer, parameter :: no_sign = 2
    !> More circuits are not looked for, nor any after so much work: points times the cube of the coordinates.
@@ -52,13 +51,6 @@ module circuits
       real(wp), allocatable :: q(:, :)         !< (3, links) in the curve's unit
    end type circuit_assembly_t
 
-   !> A change point: circuits meet there, or one crosses itself.
-   type :: meeting_t
-      real(wp) :: value = 0.0_wp               !< the drive's
-      real(wp), allocatable :: q(:, :)         !< (3, links)
-      logical, allocatable :: circuits(:)      !< (circuits) which meet
-   end type meeting_t
-
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
       integer :: part = 1                      !< the number of its independent mechanism
@@ -71,11 +63,8 @@ module circuits
       type(circuit_branch_t), allocatable :: branches(:)
       type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links where known
       type(circuit_assembly_t), allocatable :: assemblies(:)
-      type(meeting_t), allocatable :: meetings(:)
+      type(change_point_t), allocatable :: meetings(:)   !< the drive's value in the deck's unit
    end type circuits_t
-
-   !> A limit found by both methods is one up to this difference, in rad and lengths.
-   real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
 
    !> A slide is followed farther than it goes in any assembly of the first instant, by this factor.
    real(wp), parameter :: beyond = 2.0_wp
@@ -94,8 +83,7 @@ contains
       type(circuits_t), intent(out) :: found
       type(assemblies_t), intent(in), optional :: first
       type(assemblies_t) :: all_of_them
-      type(curve_point_t) :: p
-      logical :: ok
+      type(mechanism_t) :: held
       integer :: i
 
       if (present(first)) then
@@ -113,53 +101,35 @@ contains
          end associate
       end do
 
-      if (start%known >= 0) then
-         call start_point(found%curve, start%position, p, ok)
-         if (ok) call add_circuit(found, p)
-      end if
-      call add_through(found, all_of_them)
-      call search_whole_range(m, start%t, found, all_of_them)
+      held = held_at(m, start%t)
+      if (start%known >= 0) call add_circuit(found, start%position)
+      do i = 1, size(all_of_them%list)
+         call add_circuit(found, all_of_them%list(i)%position)
+      end do
+      call search_whole_range(held, found, all_of_them)
 
       do i = 1, size(found%list)
-         call add_branches(found, i)
-         call add_assemblies(found, i)
+         call add_branches(found, held, i)
          call add_meetings(found, i)
       end do
       found%is_held = found%curve%is_held .and. size(found%list) == 0
-      call number_assemblies(found, all_of_them%list)
+      call add_assemblies(found, all_of_them%list)
       if (is_redundant(found%curve)) found%branches%sign = no_sign
-      call name_limits(m, start%t, found)
    end subroutine find_circuits
 
-   !> Adds the circuits through assemblies.
-   subroutine add_through(found, all_of_them)
-      type(circuits_t), intent(inout) :: found
-      type(assemblies_t), intent(in) :: all_of_them
-      type(curve_point_t) :: p
-      integer :: k
-      logical :: ok
-
-      do k = 1, size(all_of_them%list)
-         if (found%are_more .or. signal_received() > 0) return
-         call start_point(found%curve, all_of_them%list(k)%position, p, ok)
-         if (ok) call add_circuit(found, p)
-      end do
-   end subroutine add_through
-
-   !> Adds the circuits through the assemblies of `m` at values of the drive over its whole range: a turn, or as far as
-   !> all links together reach; and at angles of each link that moves, driven instead: a circuit that is narrow in the
-   !> drive is mostly wide in some link. `first`: the assemblies at the time `t`.
-   subroutine search_whole_range(m, t, found, first)
+   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at values of the drive over its whole
+   !> range: a turn, or as far as all links together reach; and at angles of each link that moves, driven instead: a
+   !> circuit that is narrow in the drive is mostly wide in some link. `first`: the assemblies at the first instant.
+   subroutine search_whole_range(m, found, first)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
       type(circuits_t), intent(inout) :: found
       type(assemblies_t), intent(in) :: first
-      type(mechanism_t) :: held
+      type(mechanism_t) :: driven
       type(assemblies_t) :: more
       real(wp) :: from, range
-      integer :: link, k, n
+      integer :: link, k, n, i
 
-      held = held_at(m, t)
+      driven = m
       do link = 0, size(m%links)
          range = turn
          if (link == 0) then
@@ -175,16 +145,18 @@ contains
          else
             if (m%links(link)%ground) cycle
             n = link_values
-            held%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
+            driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
             from = 0.0_wp
             if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
          end if
 
          k = 0
          do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
-            held%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
-            call find_assemblies(held, 0.0_wp, more)
-            call add_through(found, more)
+            driven%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
+            call find_assemblies(driven, 0.0_wp, more)
+            do i = 1, size(more%list)
+               call add_circuit(found, more%list(i)%position)
+            end do
             if (k == 0) n = min(n, max_paths/max(1, sum(more%blocks%paths)))
             k = k + 1
          end do
@@ -207,17 +179,23 @@ contains
       if (size(list) == 0) list = [(i, i=1, size(m%drives))]
    end function free_drives
 
-   !> Adds the circuit through `p`, unless it is known.
-   subroutine add_circuit(found, p)
+   !> Adds the circuit through the links' `position` (3, links), in the deck's unit and from its origin, unless it is
+   !> known.
+   subroutine add_circuit(found, position)
       type(circuits_t), intent(inout) :: found
-      type(curve_point_t), intent(in) :: p
+      real(wp), intent(in) :: position(:, :)
+      type(curve_point_t) :: p, again
       type(circuit_t), allocatable :: more(:)
-      integer :: n
+      integer :: n, i, k
+      logical :: ok
 
       n = size(found%list) + 1
       if (found%are_more .or. signal_received() > 0) return
+      call start_point(found%curve, position, p, ok)
+      if (.not. ok) return
       if (p%reach < least_step .or. p%value(of_size) > found%curve%far) return
-      if (is_known(found, p)) return
+      call locate(found, p, i, k, again)
+      if (i > 0) return
       found%are_more = n > max_circuits .or. found%work > max_work
       if (found%are_more) return
       allocate (more(n))
@@ -227,16 +205,16 @@ contains
       call move_alloc(more, found%list)
    end subroutine add_circuit
 
-   !> Whether some circuit goes through `p`.
-   logical function is_known(found, p)
+   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1, and `again`, its point
+   !> there. `i` is 0 if none does.
+   subroutine locate(found, p, i, k, again)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
-      type(curve_point_t) :: again
+      integer, intent(out) :: i, k
+      type(curve_point_t), intent(out) :: again
       real(wp) :: least, greatest
       logical :: passes
-      integer :: i, k
 
-      is_known = .false.
       do i = 1, size(found%list)
          do k = 1, size(found%list(i)%points) - 1
             associate (a => found%list(i)%points(k), b => found%list(i)%points(k + 1), value => p%value(0))
@@ -245,56 +223,45 @@ contains
                greatest = max(a%value(0), b%value(0)) + beside(a)
                passes = value >= least .and. value <= greatest
                if (found%curve%is_angle) passes = modulo(value - least, turn) <= greatest - least
-               if (.not. passes) cycle
-               call lies_between(found%curve, a, step_between(found%curve, a, b), p%q, again, is_known)
-               if (is_known) return
+               if (passes) call lies_between(found%curve, a, step_between(found%curve, a, b), p%q, again, passes)
+               if (passes) return
             end associate
          end do
       end do
-   end function is_known
+      i = 0
+   end subroutine locate
 
-   !> Names the links at the dead points of `m`: those at the limits of a motion from where the drive moves the fastest
-   !> on each branch. Drives that are held have their values of the time `t`.
-   subroutine name_limits(m, t, found)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
+   !> The dead point at the point `p` of the curve, where the drive has this `value` (deck's unit). Its links are those
+   !> that are singular at a first instant there of `held`, in which all other drives rest.
+   function dead_point(found, held, p, value) result(dead)
+      type(circuits_t), intent(in) :: found
+      type(mechanism_t), intent(in) :: held
+      type(curve_point_t), intent(in) :: p
+      real(wp), intent(in) :: value
+      type(diagnostic_t) :: dead
+      type(mechanism_t) :: there
+      type(analysis_t) :: a
+      type(motion_t) :: q
+
+      dead = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle, value=value)
+      there = held
+      ! A drive at rest leaves open which singular position that is.
+      there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, p%value(0)), 1.0_wp]
+      call put_estimate(there, deck_position(found%curve, p%q))
+      call make_analysis(a, there)
+      q = new_motion(size(there%links))
+      call advance(a, 0.0_wp, q)
+      if (q%singularity /= singular_dead) return
+      dead%links = q%singular_links%links
+      dead%more = q%singular_links%more
+      dead%in_line = q%singular_links%in_line
+   end function dead_point
+
+   !> Adds the branches and dead points of circuit number `i`, and its shift; `held`: the mechanism with all drives at
+   !> rest.
+   subroutine add_branches(found, held, i)
       type(circuits_t), intent(inout) :: found
-      type(mechanism_t) :: held
-      type(motion_t) :: middle
-      type(range_t) :: r
-      real(wp) :: off
-      integer :: i, k, side
-
-      held = held_at(m, t)
-      middle = new_motion(size(m%links))
-      do i = 1, size(found%branches)
-         if (signal_received() > 0) return
-         associate (b => found%branches(i), points => found%list(found%branches(i)%circuit)%points)
-            if (all(b%dead == 0) .or. found%list(b%circuit)%rests) cycle
-            if (all(found%dead(pack(b%dead, b%dead > 0))%links(1) > 0)) cycle
-            k = b%first - 1 + maxloc(abs(points(b%first:b%last)%value(1)), dim=1)
-            middle%position = deck_position(found%curve, points(k)%q)
-            held%drives(found%drive)%polynomial(1) = drive_value(found%curve, points(k)%value(0))
-            call find_range(held, middle, found%drive, .true., r)
-            ! Lost slowly, and so would the others be: their links stay without names.
-            if (is_lost(r, low) .or. is_lost(r, high)) return
-            do side = low, high
-               if (b%dead(side) == 0 .or. .not. r%has_limit(side)) cycle
-               associate (dead => found%dead(b%dead(side)))
-                  off = r%limit(side)%value - dead%value
-                  off = merge(without_turns(off), off/found%curve%closure%length, found%curve%is_angle)
-                  if (dead%links(1) > 0 .or. abs(off) > agrees) cycle
-                  r%limit(side)%value = dead%value
-                  dead = r%limit(side)
-               end associate
-            end do
-         end associate
-      end do
-   end subroutine name_limits
-
-   !> Adds the branches and dead points of circuit number `i`, and its shift.
-   subroutine add_branches(found, i)
-      type(circuits_t), intent(inout) :: found
+      type(mechanism_t), intent(in) :: held
       integer, intent(in) :: i
       type(circuit_branch_t) :: b
       integer, allocatable :: ends(:), numbers(:), signs(:)
@@ -313,8 +280,8 @@ contains
          ! A closed circuit with dead points begins and ends at its first one.
          if (found%list(i)%ends(1) == end_closed .and. size(ends) > 1) numbers(size(ends)) = dead + 1
          do k = 1, size(ends)
-            if (numbers(k) == dead + k) found%dead = [found%dead, diagnostic_t(kind=diagnostic_limit, &
-               drive=found%drive, is_angle=found%curve%is_angle, value=values(ends(k)))]
+            if (numbers(k) == dead + k) &
+               found%dead = [found%dead, dead_point(found, held, points(ends(k)), values(ends(k)))]
          end do
          if (found%list(i)%ends(1) /= end_closed .or. size(ends) == 0) then
             ends = [1, ends, n]
@@ -340,53 +307,36 @@ contains
       end associate
    end subroutine add_branches
 
-   !> Adds the assemblies on circuit number `i` at the drive's value of the first instant.
-   subroutine add_assemblies(found, i)
+   !> Adds the assemblies of the `list`, those of card ASSEMBLY, that are on circuits on which the drive moves. The
+   !> determinant has the sign of the product of its blocks'.
+   subroutine add_assemblies(found, list)
       type(circuits_t), intent(inout) :: found
-      integer, intent(in) :: i
-      type(curve_point_t) :: p
-      real(wp) :: level, least, greatest, off(2)
-      integer :: b, k, m, j
+      type(assembly_t), intent(in) :: list(:)
+      type(curve_point_t) :: p, again
+      integer :: number, i, k, b, turn_round
       logical :: ok
 
-      do b = 1, size(found%branches)
-         if (found%branches(b)%circuit /= i .or. found%list(i)%rests) cycle
-         do k = found%branches(b)%first, found%branches(b)%last - 1
-            associate (from => found%list(i)%points(k), to => found%list(i)%points(k + 1))
-               least = min(from%value(0), to%value(0)) - rounding
-               greatest = max(from%value(0), to%value(0)) + rounding
-               do m = 0, merge(1, 0, found%curve%is_angle)
-                  level = found%curve%first
-                  if (found%curve%is_angle) level = level + turn*ceiling((least - level)/turn)
-                  level = level + m*turn
-                  if (level < least .or. level > greatest) cycle
-                  ! One of the two has it up to rounding, or it is between them.
-                  off = [from%value(0), to%value(0)] - level
-                  ok = any(abs(off) <= rounding)
-                  if (ok) then
-                     p = from
-                     if (abs(off(2)) < abs(off(1))) p = to
-                  else if (off(1)*off(2) < 0.0_wp) then
-                     call find_root(found%curve, from, to, of_value, level, p, ok)
-                  end if
-                  if (.not. ok) cycle
-                  do j = 1, size(found%assemblies)
-                     if (found%branches(found%assemblies(j)%branch)%circuit == i &
-                        .and. same_place(found%curve, found%assemblies(j)%q, p%q)) exit
-                  end do
-                  if (j > size(found%assemblies)) found%assemblies = [found%assemblies, circuit_assembly_t(branch=b, &
-                     value=drive_value(found%curve, p%value(0) + found%list(i)%shift), q=p%q)]
-               end do
-            end associate
-         end do
+      turn_round = 0
+      do number = 1, size(list)
+         call start_point(found%curve, list(number)%position, p, ok)
+         if (.not. ok) cycle
+         call locate(found, p, i, k, again)
+         if (i == 0) cycle
+         if (found%list(i)%rests) cycle
+         b = findloc(found%branches%circuit == i .and. found%branches%first <= k .and. k < found%branches%last, &
+            .true., dim=1)
+         found%assemblies = [found%assemblies, circuit_assembly_t(number, b, &
+            drive_value(found%curve, again%value(0) + found%list(i)%shift), again%q)]
+         if (turn_round == 0) turn_round = found%branches(b)%sign*product(list(number)%sign_of)
       end do
+      if (turn_round < 0) found%branches%sign = -found%branches%sign
    end subroutine add_assemblies
 
    !> Adds the change points of circuit number `i`.
    subroutine add_meetings(found, i)
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i
-      type(meeting_t) :: one
+      type(change_point_t) :: one
       integer :: k, j
 
       do k = 1, size(found%list(i)%changes)
@@ -395,7 +345,7 @@ contains
                if (same_place(found%curve, found%meetings(j)%q, change%q)) exit
             end do
             if (j > size(found%meetings)) then
-               one%q = change%q
+               one = change
                one%value = change%value + found%list(i)%shift
                if (.not. any(found%list(i)%points%is_dead)) one%value = near_first(found%curve, change%value)
                one%value = drive_value(found%curve, one%value)
@@ -406,30 +356,6 @@ contains
          end associate
       end do
    end subroutine add_meetings
-
-   !> Gives the assemblies their numbers in `list`, that of card ASSEMBLY; further ones follow. The determinant has the
-   !> sign of the product of its blocks'.
-   subroutine number_assemblies(found, list)
-      type(circuits_t), intent(inout) :: found
-      type(assembly_t), intent(in) :: list(:)
-      integer :: k, j, next, turn_round
-
-      turn_round = 0
-      next = size(list)
-      do k = 1, size(found%assemblies)
-         associate (one => found%assemblies(k))
-            j = number_of(deck_position(found%curve, one%q), list, found%curve%closure%length)
-            if (j == 0) then
-               next = next + 1
-               j = next
-            else if (turn_round == 0) then
-               turn_round = found%branches(one%branch)%sign*product(list(j)%sign_of)
-            end if
-            one%number = j
-         end associate
-      end do
-      if (turn_round < 0) found%branches%sign = -found%branches%sign
-   end subroutine number_assemblies
 
    !> The value `x` of the free drive without whole turns: within half a turn of the first instant's.
    pure real(wp) function near_first(c, x) result(value)

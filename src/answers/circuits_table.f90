@@ -44,7 +44,7 @@ contains
       do c = 1, s%now%count
          do i = 1, size(s%now%parts(c)%drives)
             if (s%now%motions(c)%known >= 0) then
-               call find_range(s%now%parts(c), s%now%motions(c), i, .false., r)
+               call find_range(s%now%parts(c), s%now%motions(c), i, r)
                r%part = c
                list = [list, r]
             else if (s%now%variants == 0) then

@@ -14,7 +14,7 @@ module extremes
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
+   public :: extremes_t, coordinate_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
       column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 

@@ -19,7 +19,7 @@ module ranges
    use phrases
    implicit none
    private
-   public :: range_t, find_range, is_lost, put_ranges, held_at, low, high, side_words
+   public :: range_t, find_range, put_ranges, held_at, put_estimate, low, high, side_words
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -82,26 +82,18 @@ contains
    end subroutine put_ranges
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
-   !> `limits_only`: where no limit is told, the end is not looked for closely, nor the other one: both take long.
-   subroutine find_range(m, start, drive, limits_only, r)
+   subroutine find_range(m, start, drive, r)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
-      logical, intent(in) :: limits_only
       type(range_t), intent(out) :: r
       type(mechanism_t) :: d
       real(wp) :: value, unit
-      integer :: side, i
+      integer :: side
 
       r%drive = drive
       d = held_at(m, start%t)
-      d%method = method_newton
-      d%tolerance = 0.0_wp
-      d%requests = [(request_t(request_link, i), i=1, size(m%links))]
-      if (allocated(d%branch_requests)) deallocate (d%branch_requests)
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) d%links(i)%position = start%position(:, i) + [plane_origin(m), 0.0_wp]
-      end do
+      call put_estimate(d, start%position)
       d%steps = 1
       d%t0 = 0.0_wp
       d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
@@ -111,9 +103,8 @@ contains
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
          d%drives(drive)%polynomial(2) = merge(-unit, unit, side == low)
-         call follow(d, value, merge(-unit, unit, side == low), side, limits_only, r)
+         call follow(d, value, merge(-unit, unit, side == low), side, r)
          if (r%is_all) return
-         if (limits_only .and. is_lost(r, side)) return
       end do
    end subroutine find_range
 
@@ -125,7 +116,7 @@ contains
       is_lost = r%has_limit(side) .and. r%limit(side)%links(1) == 0
    end function is_lost
 
-   !> `m` with all drives at rest at their values of the time `t`.
+   !> `m` with all drives at rest at their values of the time `t`, by METHOD NEWTON, with all links asked for.
    function held_at(m, t) result(held)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
@@ -134,6 +125,10 @@ contains
       integer :: i
 
       held = m
+      held%method = method_newton
+      held%tolerance = 0.0_wp
+      held%requests = [(request_t(request_link, i), i=1, size(m%links))]
+      if (allocated(held%branch_requests)) deallocate (held%branch_requests)
       do i = 1, size(m%drives)
          f = drive_motion(m%drives(i), t)
          held%drives(i)%polynomial = [f(1), 0.0_wp, 0.0_wp]
@@ -141,13 +136,22 @@ contains
       end do
    end function held_at
 
-   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`; `limits_only`: see
-   !> `find_range`.
-   subroutine follow(d, value, rate, side, limits_only, r)
+   !> The links of `m` are expected at this `position` (3, links), in the deck's unit and from its origin.
+   subroutine put_estimate(m, position)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: position(:, :)
+      integer :: i
+
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) m%links(i)%position = position(:, i) + [plane_origin(m), 0.0_wp]
+      end do
+   end subroutine put_estimate
+
+   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`.
+   subroutine follow(d, value, rate, side, r)
       type(mechanism_t), intent(in) :: d
       real(wp), intent(in) :: value, rate
       integer, intent(in) :: side
-      logical, intent(in) :: limits_only
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
@@ -177,7 +181,7 @@ contains
             ! It was found at this time, and not a step later. Where no limit is told, as so close to a change point
             ! that rounding leaves none, the last time is looked for at which there is a motion.
             part = step
-            do while (.not. limits_only .and. limit_in(now) == 0 .and. part > closest .and. signal_received() == 0)
+            do while (limit_in(now) == 0 .and. part > closest .and. signal_received() == 0)
                part = 0.5_wp*part
                call advance(a, t + part, now)
                if (now%known >= 0) t = t + part

@@ -3,11 +3,11 @@
 !>
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
 !> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles alone are
-!> linear: R is 0 there, and links that they tie together turn by the same angle. So
-!>    revolute pair        L = |u| + |w|      body vectors of links whose angle is free
+!> linear: R is 0 there. So
+!>    revolute pair        L = |u| + |w|      body vectors of links that move
 !>    X, Y drive           L = |u|
-!>    (9), SLIDE drive     L = 2 + |x_i - x_j|, if the guide's angle is free, otherwise 0
-!> and |d| needs to hold only what these depend on: free angles, and x_i - x_j of prismatic pairs whose guide turns. For
+!>    (9), SLIDE drive     L = 2 + |x_i - x_j|, if the guide moves, otherwise 0
+!> and |d| needs to hold only what these depend on: angles, and x_i - x_j of prismatic pairs whose guide moves. For
 !> each such coordinate g . d is at most |d|^2/2 times the sum over k of |g . J^-1 e_k| L_k; the largest of these sums,
 !> K, leaves no other root within 2/K. Rejected: |J^-1| times the largest L, which is larger by 10 to 1000, since places
 !> and given angles count in it too.
@@ -16,7 +16,7 @@
 !> W. With a unit of the order of a long slide, K does not grow as the slide goes to infinity.
 module root_distance
    use kinds, only: wp
-   use mechanism, only: pair_revolute, pair_prismatic, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use mechanism, only: pair_revolute, pair_prismatic, drive_x, drive_y, drive_slide
    use linear_solver, only: factors_t, solve_transposed
    use pose, only: system_t, pose_t
    implicit none
@@ -26,9 +26,8 @@ module root_distance
 
    !> What the rows are not linear in.
    type :: coordinates_t
-      integer, allocatable :: class(:)           !< (links) links of one class turn by the same angle; 0: a given one
-      integer, allocatable :: angles(:)          !< one link of each other class
-      integer, allocatable :: slots(:)           !< prismatic pairs whose guide's angle is free
+      integer, allocatable :: angles(:)          !< the links that move
+      integer, allocatable :: slots(:)           !< prismatic pairs whose guide does
       real(wp), allocatable :: unit(:)           !< (pairs) W, in the unit of length
    end type coordinates_t
 
@@ -40,33 +39,10 @@ contains
       type(coordinates_t) :: c
       integer :: i
 
-      c%class = [(i, i=1, size(s%column))]
-      where (s%column == 0) c%class = 0
-      do i = 1, size(s%pairs)
-         if (s%pairs(i)%kind == pair_prismatic) call tie(s%link_of(s%pairs(i)%point_i), s%link_of(s%pairs(i)%point_j))
-      end do
-      do i = 1, size(s%laws)
-         associate (drive => s%laws(i))
-            if (drive%kind == drive_relangle) call tie(drive%subject, drive%second)
-            if (drive%kind == drive_angle) where (c%class == c%class(drive%subject)) c%class = 0
-         end associate
-      end do
-      c%angles = pack([(i, i=1, size(c%class))], c%class == [(i, i=1, size(c%class))])
-      c%slots = pack([(i, i=1, size(s%pairs))], s%pairs%kind == pair_prismatic &
-         .and. c%class(s%link_of(s%pairs%point_i)) > 0)
+      c%angles = pack([(i, i=1, size(s%column))], s%column > 0)
+      c%slots = pack([(i, i=1, size(s%pairs))], &
+         s%pairs%kind == pair_prismatic .and. s%column(s%link_of(s%pairs%point_i)) > 0)
       allocate (c%unit(size(s%pairs)), source=1.0_wp)
-
-   contains
-
-      !> The lower number stands for both: 0, or the first link.
-      pure subroutine tie(i, j)
-         integer, intent(in) :: i, j
-         integer :: lower, higher
-
-         lower = min(c%class(i), c%class(j))
-         higher = max(c%class(i), c%class(j))
-         where (c%class == higher) c%class = lower
-      end subroutine tie
    end function new_coordinates
 
    !> Measures x_i - x_j of each prismatic pair in its length at pose `p`, where that is above 1.
@@ -91,10 +67,7 @@ contains
       real(wp), intent(in) :: a(:, :), b(:, :)
       integer :: k
 
-      distance = 0.0_wp
-      do k = 1, size(c%class)
-         if (c%class(k) > 0) distance = max(distance, abs(a(3, k) - b(3, k)))
-      end do
+      distance = maxval([0.0_wp, abs(a(3, c%angles) - b(3, c%angles))])
       do k = 1, size(c%slots)
          associate (i => s%link_of(s%pairs(c%slots(k))%point_i), j => s%link_of(s%pairs(c%slots(k))%point_j))
             distance = max(distance, norm2((a(:2, i) - a(:2, j)) - (b(:2, i) - b(:2, j)))/c%unit(c%slots(k)))
@@ -112,10 +85,9 @@ contains
       real(wp) :: body(size(s%link_of)), slot(size(s%pairs))
       integer :: k, row
 
-      ! The length of the body vector of each point, and the bound of the row of each prismatic pair; 0 where the angle
-      ! of the link, or of the guide, is given.
-      body = norm2(s%offset, dim=1)
-      where (c%class(s%link_of) == 0) body = 0.0_wp
+      ! The length of the body vector of each point, and the bound of the row of each prismatic pair; 0 where the link,
+      ! or the guide, does not move.
+      body = merge(norm2(s%offset, dim=1), 0.0_wp, s%column(s%link_of) > 0)
       slot = 0.0_wp
       do k = 1, size(c%slots)
          associate (pair => s%pairs(c%slots(k)))

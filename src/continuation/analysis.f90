@@ -6,8 +6,8 @@ module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
-   use drives, only: is_at_rest, halve, middle_of
-   use drive_excursion, only: largest_derivative
+   use drives, only: is_at_rest
+   use drive_excursion, only: time_within
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
@@ -32,13 +32,6 @@ module analysis
    !> characteristic lengths.
    real(wp), parameter :: beside_start = 1.0e-3_wp
 
-   !> The last instant, while the motion at others is looked at.
-   type :: left_t
-      logical :: is_left = .false.                         !< the motion followed is at another time
-      type(place_t) :: place                               !< of the motion followed from that instant
-      integer :: iterations = 0
-   end type left_t
-
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
       type(branch_t) :: branch                             !< of the last instant
@@ -53,7 +46,10 @@ module analysis
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
-      type(left_t) :: left                                 !< see `look_at`
+      !> The motion followed is at a time that is no instant (`look_at`); its place and iterations at the last instant.
+      logical :: is_left = .false.
+      type(place_t) :: left
+      integer :: left_iterations = 0
    end type analysis_t
 
 contains
@@ -152,7 +148,7 @@ contains
       step%rests = a%stands
       if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
       if (step%rests) then
-         if (a%left%is_left) call return_to(a%following_t, a%left%place)
+         if (a%is_left) call return_to(a%following_t, a%left)
          call stay(a%engine, t, a%convergence)
          step%arrived = .true.
          step%stands = .true.
@@ -181,26 +177,12 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t) :: step
-      real(wp) :: beside, high
-      integer :: i
+      real(wp) :: beside
 
-      beside = merge(t, a%last, is_near(t))
-      high = t
-      do i = 1, digits(1.0_wp)
-         call halve(is_near(middle_of(beside, high)), beside, high)
-      end do
+      beside = time_within(a%drives, a%last, t, beside_start)
       call continue_to(a%following_t, beside, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
          call go_on_from(a%following_t, beside)
-
-   contains
-
-      !> No drive goes further than `beside_start` until `t`.
-      pure logical function is_near(t)
-         real(wp), intent(in) :: t
-
-         is_near = abs(t - a%last)*largest_derivative(a%drives, 1, a%last, t) <= beside_start
-      end function is_near
    end subroutine begin_beside
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
@@ -213,20 +195,18 @@ contains
       logical, intent(out) :: is_found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
-      logical :: finite
 
       is_found = .false.
       if (.not. a%follows .or. limit_before(a%limits, t) > 0) return
-      if (.not. a%left%is_left) then
-         call note_place(a%following_t, a%left%place)
-         a%left%iterations = a%iterations
-         a%left%is_left = .true.
+      if (.not. a%is_left) then
+         call note_place(a%following_t, a%left)
+         a%left_iterations = a%iterations
+         a%is_left = .true.
       end if
       call reach(a, t, step, list)
       if (step%arrived .and. (step%rests .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
          found%t = t
-         call take_motion(a, found, finite)
-         call find_what_exists(a, found, finite)
+         call take_motion(a, found)
          is_found = found%known == 2 .and. is_solved(a%convergence)
       end if
       if (.not. is_found) then
@@ -240,10 +220,10 @@ contains
    subroutine come_back(a)
       type(analysis_t), intent(inout) :: a
 
-      if (.not. a%left%is_left) return
-      call return_to(a%following_t, a%left%place)
-      a%iterations = a%left%iterations
-      a%left%is_left = .false.
+      if (.not. a%is_left) return
+      call return_to(a%following_t, a%left)
+      a%iterations = a%left_iterations
+      a%is_left = .false.
    end subroutine come_back
 
    !> The motion found at the end of `step`, what is verified of it, and what there is to say of it; `list`: if it
@@ -254,7 +234,7 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
-      logical :: had_missed, crosses, finite
+      logical :: had_missed, crosses
 
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
@@ -264,9 +244,8 @@ contains
             step%stands = size(list) > 0
          end if
       end if
-      call take_motion(a, found, finite)
+      call take_motion(a, found)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
-      call find_what_exists(a, found, finite)
       crosses = passed_of(step) > 0
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
       if (allocated(list)) then
@@ -387,13 +366,21 @@ contains
       found%diagnostics = [found%diagnostics, list]
    end subroutine add_diagnostics
 
-   !> Flags what does not exist of the motion `found` last; `finite`: no number is out of range. If all drives rest, a
-   !> motion that has come to a singular position rests there, too. A first position says less: undriven links may
-   !> move.
-   subroutine find_what_exists(a, found, finite)
-      type(analysis_t), intent(in) :: a
+   !> Takes the motion at found%t, where the blocks have found one, by the method, and flags what does not exist. If all
+   !> drives rest, a motion that has come to a singular position rests there, too. A first position says less: undriven
+   !> links may move.
+   subroutine take_motion(a, found)
+      type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
-      logical, intent(in) :: finite
+      logical :: finite
+
+      if (allocated(a%dense)) then
+         call solve_all_links(a%dense, a%engine, found, a%convergence)
+         a%has_missed = .not. is_solved(a%convergence)
+         finite = .false.
+      else
+         call get_blocks_motion(a%engine, found, finite)
+      end if
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows
@@ -408,21 +395,6 @@ contains
          if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
       end if
       if (.not. finite) call look_for_overflow(found)
-   end subroutine find_what_exists
-
-   !> The motion at found%t, where the blocks have found one, by the method; `finite`: no number is out of range.
-   subroutine take_motion(a, found, finite)
-      type(analysis_t), intent(inout) :: a
-      type(motion_t), intent(inout) :: found
-      logical, intent(out) :: finite
-
-      if (allocated(a%dense)) then
-         call solve_all_links(a%dense, a%engine, found, a%convergence)
-         a%has_missed = .not. is_solved(a%convergence)
-         finite = .false.
-      else
-         call get_blocks_motion(a%engine, found, finite)
-      end if
    end subroutine take_motion
 
    !> What is out of the range of the real kind is not known.

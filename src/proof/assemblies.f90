@@ -16,7 +16,7 @@ module assemblies
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
-   public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, find_nearest, number_of, max_assemblies
+   public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, find_nearest, max_assemblies
 
    !> More are not looked for.
    integer, parameter :: max_assemblies = 1000
