@@ -162,31 +162,7 @@ equal 'refused: status' 2 $status
 equal 'refused: rows' '1 25 0 ;2 0 0 E067;3 25 0 ;' "$(rows "$w/refused.csv" variant solved flagged flag.mark | tr '\n' ';')"
 equal 'refused: words' 1 "$(grep -c '^ \*\*\* E067 .*IS NOT A DURATION: IT MUST BE GREATER THAN 0.0' "$w/refused.lst")"
 
-# told NAME WORDS CARD...: the words of the refusal of the four-bar linkage with cards before and below its crank
-told() {
-   { [ -z "$5" ] || echo "$5"; moving_four_bar "$3" "$4" '' '' "$turn"; } > "$w/deck"
-   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-   equal "$1: status" 1 $?
-   equal "$1" "$2" "$(sed -n 's/^ \*\*\* \(E[0-9]*\)  CARD [0-9]*  COLUMN [0-9]*  FIELD [A-Z0-9-]*: /\1 /p' "$w/err")"
-}
-told 'no card above' 'E055 "VARY" MUST FOLLOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD' '' '' "$(vary R1 2 '' 1.0 2.0)"
-told 'a card without numbers' 'E055 "VARY" MUST FOLLOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD' '' '' \
-   "$(card LANG EN; vary R1 2 '' 1.0 2.0)"
-told 'no such number' 'E056 "R3" IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3' "$(vary R3 2 '' 1.0 2.0)"
-told 'no number' 'E056 "XI" IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3' "$(vary XI 2 '' 1.0 2.0)"
-told 'no count' 'E057 "0" MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO 10000000' "$(vary R1 0 '' 1.0 2.0)"
-told 'a count with a point' 'E057 "2.0" MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO 10000000' "$(vary R1 2.0 '' 1.0 2.0)"
-told 'equal ends' 'E058 "2.0" EQUALS THE FIRST VALUE: A RANGE NEEDS TWO DIFFERENT VALUES' "$(vary R1 3 '' 2.0 2.0)"
-told 'one value with an end' 'E059 "2.0" IS A LAST VALUE, WHICH A SINGLE VALUE DOES NOT HAVE: LEAVE IT BLANK' "$(vary R1 1 '' 1.0 2.0)"
-told 'twice' 'E062 "R1" VARIES A NUMBER THAT VARIES ALREADY ON CARD 11' "$(vary R1 3 '' 1.0 2.0; vary R1 2 '' 1.0 2.0)"
-told 'a list of two ties' 'E062 "R1" VARIES A NUMBER THAT VARIES ALREADY ON CARD 11' "$(vary R1 LIST A 1.0; vary R1 LIST B 1.0)"
-told 'unequal ties' 'E063 "A" TIES NUMBERS WITH DIFFERENT COUNTS OF VALUES; SEE CARD 11' "$(vary R1 3 A 1.0 2.0)" \
-   "$(vary R1 2 A 3.0 3.5)"
-told 'a grid too large' 'E064 "3163" THE GRID HAS TOO MANY VARIANTS; ALLOWED: 10000000' "$(vary R1 3163 '' 1.0 2.0)" \
-   "$(vary R1 3163 '' 3.0 3.5)"
-told 'a third value' 'E019 "3.0" IS IN A FIELD THAT THIS CARD DOES NOT USE' "$(vary R1 2 '' 1.0 2.0 3.0)"
-told 'an empty list' 'E078 "VARY" GIVES NO NUMBERS' "$(vary R1 LIST)"
-told 'no values' 'E034 THE FIELD IS BLANK: FILL IT IN' "$(vary R1 3)"
+# What a table cannot hold. Faults of VARY cards are in tests/unit/deck/test_deck_variants.pf.
 "$kinmat" "$w/order.deck" --no-listing --table "$w/table.csv" > "$w/out" 2>&1
 equal 'no table: status' 1 $?
 equal 'no table' ' *** OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv' "$(cat "$w/out")"
@@ -200,7 +176,7 @@ for print in '' "$(card PRINT PAIRS PAIR-B0)"; do
 done
 
 # Rows alone are solved in lanes, otherwise by the engine: as they are printed they are the same.
-for name in 'EXTREMES LINKS' RANGE PROVE; do
+for name in 'EXTREMES ALL' RANGE PROVE; do
    moving_four_bar "$(vary R1 9 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card $name)" > "$w/lanes.deck"
    "$kinmat" "$w/lanes.deck" -o "$w/lanes.lst" > "$w/lanes.out" 2>&1
    status=$?
