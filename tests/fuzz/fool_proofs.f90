@@ -55,8 +55,8 @@ contains
       type(placed_t) :: q(2)
       type(step_proof_t) :: proof
       real(wp) :: t(2)
-      integer :: sign_of(2), k
-      logical :: is_proved(2), wrong
+      integer :: sign_of(2), failed(2), k
+      logical :: wrong
 
       f = some_mechanism()
       t(1) = between(dice, -3.0_wp, 3.0_wp)
@@ -83,15 +83,15 @@ contains
       do k = 1, 2
          q(k) = new_placed(e%blocks, size(m%drives))
          call put_there(f, e, t(k), sign_of(k))
-         call prove_position(p, e, t(k), e%needed, q(k), is_proved(k))
-         if (.not. is_proved(k)) cycle
+         call prove_position(p, e, e%state, t(k), e%needed, 2, q(k), failed(k))
+         if (failed(k) > 0) cycle
          positions = positions + 1
          if (is_false(f, q(k), sign_of(k))) then
             print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE POSITION IS PROVED, SCENE ', f%scene
             wrong = .true.
          end if
       end do
-      if (all(is_proved)) then
+      if (all(failed == 0)) then
          call prove_step(p, e, e%needed, q(1), q(2), proof)
          if (proof%is_proved) steps = steps + 1
          if (proof%is_proved .and. (sign_of(1) /= sign_of(2) .or. .not. exists_between(f, t, sign_of(1)))) then
@@ -196,16 +196,16 @@ contains
          if (margin(0) <= 0.0_qp) cycle
          holds = .true.
          do k = 1, size(f%unknowns)
-            associate (u => f%unknowns(k))
+            associate (u => q%u(f%unknowns(k)))
                motion(1) = difference(f, k, x(k, 1), x(k, -1))/(2.0_qp*h)
                motion(2) = (difference(f, k, x(k, 1), x(k, 0)) - difference(f, k, x(k, 0), x(k, -1)))/h**2
-               motion(0) = q%x(0, u) + difference(f, k, x(k, 0), real(q%x(0, u), qp))
-               holds = holds .and. abs(motion(0) - q%x(0, u)) <= q%error(0, u)
+               motion(0) = u%value%mid + difference(f, k, x(k, 0), real(u%value%mid, qp))
+               holds = holds .and. abs(motion(0) - u%value%mid) <= u%value%radius
                ! Beside a dead point differences are no derivatives.
                open = of_differences*max(1.0_qp, maxval(abs(motion)))
                if (minval(margin) > smooth) holds = holds &
-                  .and. abs(motion(1) - q%x(1, u)) <= q%error(1, u) + open*small/h &
-                  .and. abs(motion(2) - q%x(2, u)) <= q%error(2, u) + open*(small/h)**2
+                  .and. abs(motion(1) - u%rate%mid) <= u%rate%radius + open*small/h &
+                  .and. abs(motion(2) - u%acceleration%mid) <= u%acceleration%radius + open*(small/h)**2
             end associate
          end do
          if (.not. holds) cycle
