@@ -5,7 +5,6 @@ module block_engine
    use mechanism, only: drive_t, mechanism_t, wanted_links, pair_revolute
    use scales, only: is_length
    use motion, only: motion_t
-   use links_tree, only: tree_t
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
    use drives, only: drive_motion
@@ -88,39 +87,32 @@ contains
 
    !> Ready for the first instant of `m`. `structure`: that of `m`, whose blocks the engine takes over; without it
    !> the engine makes one.
-   recursive subroutine make_block_engine(e, m, structure)
+   subroutine make_block_engine(e, m, structure)
       type(block_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
-
-      if (.not. present(structure)) then
-         call make_structure(m, own)
-         call make_block_engine(e, m, own)
-         return
-      end if
-      call move_alloc(structure%blocks, e%blocks)
-      e%length = e%blocks%numbers%equations%length
-      e%tolerance = m%tolerance
-      if (e%blocks%solvable) call prepare(e, m, e%blocks%tree)
-   end subroutine make_block_engine
-
-   !> Everything of the engine `e` of `m` that comes from its blocks and its tree `t`.
-   subroutine prepare(e, m, t)
-      type(block_engine_t), intent(inout) :: e
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
       integer :: i
 
-      e%needed = needed_blocks(e%blocks, t, wanted_links(m))
+      if (present(structure)) then
+         call move_alloc(structure%blocks, e%blocks)
+      else
+         call make_structure(m, own)
+         call move_alloc(own%blocks, e%blocks)
+      end if
+      e%length = e%blocks%numbers%equations%length
+      e%tolerance = m%tolerance
+      if (.not. e%blocks%solvable) return
+
+      e%needed = needed_blocks(e%blocks, e%blocks%tree, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
-      associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
+      associate (t => e%blocks%tree, axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), unit)
       end associate
-      e%orientation_of = t%orientation
-      e%is_found = wanted_links(m) .and. t%orientation > 0
+      e%orientation_of = e%blocks%tree%orientation
+      e%is_found = wanted_links(m) .and. e%orientation_of > 0
       do i = 1, size(m%links)
-         if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(t%orientation(i)))%direct
+         if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(e%orientation_of(i)))%direct
       end do
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
@@ -130,7 +122,7 @@ contains
       call put_estimate(e, m)
       call put_laws(e, m)
       call begin_state(e, m)
-   end subroutine prepare
+   end subroutine make_block_engine
 
    !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
    !> was made; its state stays, and its estimate. `fits`: see `put_numbers`.

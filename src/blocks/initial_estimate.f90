@@ -12,7 +12,6 @@ module initial_estimate
    use grouping, only: sorted_t, sorted
    use planar, only: direction, quarter_turn, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
-   use scales, only: solver_length
    use links_tree, only: tree_t, axes_t
    implicit none
    private
@@ -35,14 +34,14 @@ module initial_estimate
 contains
 
    !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m`
-   !> for its equations, if it is known.
+   !> for its equations.
    function estimated_values(m, t, a, length, unknowns, span) result(value)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: unknowns
-      real(wp), intent(in), optional :: span
+      real(wp), intent(in) :: span
       real(wp) :: value(0:unknowns)
       real(wp) :: phi(size(m%links)), angles(2)
       integer :: i, u
@@ -81,10 +80,10 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
-      real(wp), intent(in), optional :: span
+      real(wp), intent(in) :: span
       real(wp) :: phi(size(m%links))
       real(wp), dimension(0:t%orientations) :: u, v, w
-      real(wp) :: before, after, length
+      real(wp) :: before, after
       logical, allocatable :: placed(:)         ! (points) their places are known
       type(sorted_t) :: classes
       integer :: i, sweep
@@ -94,11 +93,9 @@ contains
       do i = size(m%links), 1, -1
          if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - a%angle_offset(i)
       end do
-      if (present(span)) length = span
-      if (.not. present(span)) length = solver_length(m)
       allocate (placed(size(m%points)))
-      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
-      if (largest_opening(u, spread(.true., 1, size(m%points))) <= good_part*length) return
+      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*span
+      if (largest_opening(u, spread(.true., 1, size(m%points))) <= good_part*span) return
       v = u
       classes = sorted(t%orientation, t%orientations)
       do sweep = 1, max_sweeps
@@ -113,7 +110,7 @@ contains
       w = merge(u, v, abs(v - u) > far_angle)
       before = min(largest_opening(u, placed), largest_opening(w, placed))
       after = largest_opening(v, placed)
-      if (after > min(closed_part*length, better_part*before)) return
+      if (after > min(closed_part*span, better_part*before)) return
       if (.not. (is_contradicted(u, abs(v - u) > far_angle) .and. is_contradicted(w, abs(v - u) > far_angle))) return
       do i = 1, size(m%links)
          if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
@@ -146,7 +143,7 @@ contains
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
             end do
             u(orientation) = before
-            if (maxval(abs(e)) <= min_form_part*length**2) cycle
+            if (maxval(abs(e)) <= min_form_part*span**2) cycle
             u(orientation) = least(e, before)
             where (t%orientation(m%points%link) == orientation) placed = .true.
          end do

@@ -113,33 +113,23 @@ contains
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
       logical, intent(in), optional :: all_links
-      integer :: links
+      integer :: links, i, k
 
       links = c%wanted
       if (present(all_links)) then
          if (all_links) links = size(c%links)
       end if
       q%origin = c%origin
-      call put_ground(size(c%ground), c%ground, c%ground_position, q%position)
+      ! One by one, since a column at once would be a call of its own.
+      do i = 1, size(c%ground)
+         do k = 1, 3
+            q%position(k, c%ground(i)) = c%ground_position(k, i)
+         end do
+      end do
       call move_chain(links, c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> Puts the positions `here` of the `n` ground links `links` into those of all, `p`; one by one, since a
-   !> column at once would be a call of its own.
-   pure subroutine put_ground(n, links, here, p)
-      integer, intent(in) :: n, links(n)
-      real(wp), intent(in) :: here(3, n)
-      real(wp), intent(inout) :: p(3, *)
-      integer :: i
-
-      do i = 1, n
-         p(1, links(i)) = here(1, i)
-         p(2, links(i)) = here(2, i)
-         p(3, links(i)) = here(3, i)
-      end do
-   end subroutine put_ground
-
-   !> The same for the moving links, on plain arrays, which cost no descriptors.
+   !> Puts the motion of the `n` moving `links` into that of all links, on plain arrays, which cost no descriptors.
    pure subroutine move_chain(n, links, u, length, p, v, a, finite)
       integer, intent(in) :: n
       type(chain_link_t), intent(in) :: links(n)

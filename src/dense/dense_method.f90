@@ -11,7 +11,7 @@ module dense_method
    use motion, only: motion_t, new_motion
    use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign, solve_factored => solve
    use convergence, only: convergence_t, is_solved, ended_elsewhere
-   use predictor, only: largest_change, order_weights
+   use predictor, only: order_weights
    use block_state, only: state_t
    use block_engine, only: block_engine_t, get_motion, followed_state
    use link_motion, only: move_links
@@ -26,8 +26,6 @@ module dense_method
    real(wp), parameter :: certain = 0.5_wp
    !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
    real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
-   !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding.
-   real(wp), parameter :: reach = largest_change
    !> Starts that are tried, each so many times nearer than the one before.
    integer, parameter :: max_starts = 4
    real(wp), parameter :: nearer = 8.0_wp
@@ -109,7 +107,7 @@ contains
       do k = 1, max_starts
          d%pose%q = start
          call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%pose, &
-            d%factors, c, reach)
+            d%factors, c)
          if (is_solved(c) .and. .not. c%singular) then
             c%reciprocal_condition = reciprocal_condition(d%factors)
             c%determinant = determinant_sign(d%factors)

@@ -18,12 +18,15 @@ module position_iteration
    use linear_solver, only: factors_t, factor, solve
    use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged
    use block_solver, only: rounding_level, angle_limit
+   use predictor, only: largest_change
    use pose, only: system_t, pose_t, set_pose, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    implicit none
    private
    public :: solve_position
 
+   !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding: it has diverged.
+   real(wp), parameter :: reach = largest_change
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
    integer, parameter :: matrix_iterations = nint(7.55*digits(1.0_wp))
@@ -40,31 +43,23 @@ contains
    !> `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding. `f`: room for n
    !> equations. If a position is found, `f` has the factors of the Jacobian for (21) and (22): there, or by Newton's
    !> method one step of the tolerance's size before it. Otherwise those of the last matrix. `c` says how it ended.
-   !> `reach`: an angle that goes further than this from its start, in radians, would return by chance alone: diverged.
-   !> `limit`: iterations allowed.
-   subroutine solve_position(s, driven, tolerance, is_matrix, p, f, c, reach, limit)
+   subroutine solve_position(s, driven, tolerance, is_matrix, p, f, c)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
       logical, intent(in) :: is_matrix
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
-      real(wp), intent(in), optional :: reach
-      integer, intent(in), optional :: limit
-      real(wp) :: r(s%n), start(size(p%q, 2)), before, first, highest, furthest
+      real(wp) :: r(s%n), start(size(p%q, 2)), before, first, highest
       logical :: stays
-      integer :: info, most
+      integer :: info
 
       call set_pose(s, p)
       if (is_matrix) call choose_references(s, p)
-      most = merge(matrix_iterations, newton_iterations, is_matrix)
-      if (present(limit)) most = limit
-      furthest = huge(furthest)
-      if (present(reach)) furthest = reach
       start = p%q(3, :)
       before = huge(before)
       first = 0.0_wp
-      do while (c%iterations < most)
+      do while (c%iterations < merge(matrix_iterations, newton_iterations, is_matrix))
          c%iterations = c%iterations + 1
          call residual(s, p, driven, r)
          highest = max(1.0_wp, maxval(abs(p%q)))
@@ -88,7 +83,7 @@ contains
          stays = all(abs(r) <= bound)
          if (stays) then
             call add_to_links(s, -r, p%q)
-            stays = all(abs(p%q(3, :)) <= angle_limit) .and. all(abs(p%q(3, :) - start) <= furthest)
+            stays = all(abs(p%q(3, :)) <= angle_limit) .and. all(abs(p%q(3, :) - start) <= reach)
          end if
          if (.not. stays) then
             c%ended = ended_diverged

@@ -5,7 +5,7 @@
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, geqrf, ormqr, trtrs, lacn2
-   use klu, only: klu_t, klu_serves, factor, solve, solve_transposed, determinant_sign
+   use klu, only: klu_t, klu_serves, factor, solve, determinant_sign
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
@@ -62,7 +62,7 @@ contains
          call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       else if (s%pattern > 0) then
          call factor(k, a, info)
-         if (info == 0) call solve(k, b)
+         if (info == 0) call solve(k, b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
@@ -96,7 +96,7 @@ contains
          b(1) = b(1) - b(2)*a(3)
          if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
       else if (s%pattern > 0) then
-         call solve(k, b)
+         call solve(k, b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
          call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
@@ -168,10 +168,8 @@ contains
                   call trtrs('U', side, 'N', s%n, 1, a, s%rows, x, s%n, info)
                else if (s%pattern == 0) then
                   call getrs(side, s%n, 1, a, s%n, pivots, x, s%n, info)
-               else if (asks == 1) then
-                  call solve_transposed(k, x)
                else
-                  call solve(k, x)
+                  call solve(k, x, transposed=asks == 1)
                end if
             end associate
          end associate

@@ -95,22 +95,20 @@ contains
       real(wp), intent(in) :: level
       complex(wp), allocatable, intent(out) :: basis(:, :)
       complex(wp) :: w(size(a, 1), size(a, 2)), row(size(a, 2))
+      real(wp) :: left(size(a, 1), size(a, 2)), zero
       integer :: pivot_column(size(a, 1)), at(2), rank, k, i, free
       logical :: is_free(size(a, 2))
-      real(wp) :: zero
 
       w = a
       is_free = .true.
       rank = 0
       zero = level*maxval([0.0_wp, abs(a)])
       do k = 1, min(size(a, 1), size(a, 2))
-         at = 0
-         if (k <= size(a, 1)) at = maxloc(abs(w(k:, 2:)), spread(is_free(2:), 1, size(a, 1) - k + 1)) + [k - 1, 1]
-         if (at(2) < 2 .or. .not. any(is_free(2:))) at = [k - 1 + maxloc(abs(w(k:, 1)), 1), 1]
-         if (at(2) > 1) then
-            if (abs(w(at(1), at(2))) <= zero) at = [k - 1 + maxloc(abs(w(k:, 1)), 1), 1]
-         end if
-         if (.not. is_free(at(2)) .or. abs(w(at(1), at(2))) <= zero) exit
+         left = merge(abs(w), 0.0_wp, spread(is_free, 1, size(a, 1)))
+         left(:k - 1, :) = 0.0_wp
+         if (maxval(left(:, 2:)) > zero) left(:, 1) = 0.0_wp
+         if (maxval(left) <= zero) exit
+         at = maxloc(left)
          rank = k
          row = w(at(1), :)/w(at(1), at(2))
          w(at(1), :) = w(k, :)

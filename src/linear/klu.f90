@@ -10,7 +10,7 @@ module klu
    implicit none
    private
    public :: pattern_t, common_t, klu_t, klu_defaults, klu_serves
-   public :: order_columns, factor, solve, solve_transposed, determinant_sign
+   public :: order_columns, factor, solve, determinant_sign
 
    !> KLU knows double precision only.
    logical, parameter :: klu_serves = kind(1.0_wp) == c_double
@@ -273,27 +273,20 @@ contains
       end associate
    end subroutine set_view
 
-   !> `b` (n): the right-hand side, then the solution.
-   subroutine solve(k, b)
+   !> `b` (n): the right-hand side, then the solution; with the matrix `transposed` or not.
+   subroutine solve(k, b, transposed)
       type(klu_t), intent(inout), target :: k
       real(wp), intent(inout), target :: b(*)
+      logical, intent(in) :: transposed
       type(view_t), target :: v
       integer(c_int) :: done
 
       call set_view(k, v)
-      done = klu_solve(c_loc(v%symbolic), c_loc(v%numeric), order_of(k), 1_c_int, c_loc(b), k%common)
+      associate (symbolic => c_loc(v%symbolic), numeric => c_loc(v%numeric))
+         if (transposed) done = klu_tsolve(symbolic, numeric, order_of(k), 1_c_int, c_loc(b), k%common)
+         if (.not. transposed) done = klu_solve(symbolic, numeric, order_of(k), 1_c_int, c_loc(b), k%common)
+      end associate
    end subroutine solve
-
-   !> The same with the matrix transposed.
-   subroutine solve_transposed(k, b)
-      type(klu_t), intent(inout), target :: k
-      real(wp), intent(inout), target :: b(*)
-      type(view_t), target :: v
-      integer(c_int) :: done
-
-      call set_view(k, v)
-      done = klu_tsolve(c_loc(v%symbolic), c_loc(v%numeric), order_of(k), 1_c_int, c_loc(b), k%common)
-   end subroutine solve_transposed
 
    !> The sign of the determinant, from the factors.
    pure integer function determinant_sign(k) result(sign_of)
