@@ -15,10 +15,10 @@ module job
    use deck_variants, only: variation_t
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
-   use text_output, only: put, turn_lost
+   use text_output, only: put, flush_output, turn_lost
    use processes, only: processor_count, report, end_process
    use command_line
-   use outputs, only: outputs_t, open_outputs, open_set_outputs, flush_files, close_outputs, is_over, set_suffix
+   use outputs, only: outputs_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
    use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
@@ -282,7 +282,7 @@ contains
          if (o%asked(out_plot_script)) &
             call put_script(o%files(out_plot_script), m, o%table, set_suffix(o%first, o%last, i))
          ! An output that takes nothing is known before anything is computed.
-         call flush_files(o)
+         call flush_output(o%files)
       end if
       if (m%variants == 0) then
          call run_motion(a, i, findings, .true., o, counts, asked)

@@ -3,13 +3,13 @@
 module outputs
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected
-   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed
+   use text_output, only: output_t, open_output, check_apart, close_output, abandon_output, has_failed
    use system_calls, only: make_directory, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_shared, out_last
    implicit none
    private
-   public :: outputs_t, share_of_job_t, open_outputs, open_set_outputs, flush_files, close_outputs, is_over, set_suffix
+   public :: outputs_t, share_of_job_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
 
    !> The part of a job in several processes that this process computes; `shares` divides the job.
    type :: share_of_job_t
@@ -30,7 +30,6 @@ module outputs
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
-      integer, allocatable :: asked_list(:)                 !< the numbers of those
       type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the set at hand
       type(failure_t), allocatable :: failure               !< of the last file that could not be opened or written
       type(share_of_job_t) :: share
@@ -50,10 +49,10 @@ contains
       integer, intent(in) :: first, last, count
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: name
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
-      o%asked_list = pack([(k, k=1, out_last)], o%asked)
       do k = 1, out_last
          if (.not. o%asked(k)) cycle
          if (allocated(failure)) exit
@@ -64,11 +63,11 @@ contains
                call make_directory(path)
             else if (first < last) then
                ! The tables of several sets would be mixed on standard output or a device.
-               if (len(path) == 0) then
-                  call refuse('STANDARD OUTPUT')
-               else if (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1) then
-                  call refuse('FILE '//path)
-               end if
+               name = ''
+               if (len(path) == 0) name = 'STANDARD OUTPUT'
+               if (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1) name = 'FILE '//path
+               if (len(name) > 0) call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
+                  //whole(count)//' WITH --sets K/'//whole(count))
             end if
          end associate
       end do
@@ -80,17 +79,6 @@ contains
          call abandon_output(o%files(out_shared + 1:))
       end do
       if (allocated(failure)) call abandon_output(o%files)
-
-   contains
-
-      !> Rejects `name` as the file of several tables. Errors: status_rejected.
-      subroutine refuse(name)
-         character(*), intent(in) :: name
-
-         call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count) &
-            //' WITH --sets K/'//whole(count))
-      end subroutine refuse
-
    end subroutine open_outputs
 
    !> Opens the outputs of the set whose files have the `suffix`. Errors: as for `open_outputs`.
@@ -134,16 +122,6 @@ contains
       if (first < last) suffix = '-'//whole(i)
    end function set_suffix
 
-   !> Writes at once what there is.
-   subroutine flush_files(o)
-      class(outputs_t), intent(inout) :: o
-      integer :: k
-
-      do k = 1, out_last
-         if (allocated(o%files(k)%buffer)) call flush_output(o%files(k))
-      end do
-   end subroutine flush_files
-
    !> Closes the outputs number `first` to `last`; o%failure becomes that of the last one that could not be written.
    subroutine close_outputs(o, first, last)
       class(outputs_t), intent(inout) :: o
@@ -161,12 +139,7 @@ contains
    !> What follows need not be computed: an output has failed, or a signal has come.
    logical function is_over(o)
       class(outputs_t), intent(in) :: o
-      integer :: k
 
-      is_over = signal_received() > 0 .or. allocated(o%failure)
-      ! Only what was asked for: this is asked after every instant.
-      do k = 1, size(o%asked_list)
-         if (has_failed(o%files(o%asked_list(k)))) is_over = .true.
-      end do
+      is_over = signal_received() > 0 .or. allocated(o%failure) .or. any(has_failed(o%files))
    end function is_over
 end module outputs

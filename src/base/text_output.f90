@@ -156,11 +156,12 @@ contains
       allocate (character(block_length) :: o%buffer)
    end subroutine release_output
 
-   !> Writes the buffer at once, unless it is held: a reader that waits has its lines, and a write error shows.
-   subroutine flush_output(o)
+   !> Writes the buffer of an open output at once, unless it is held: a reader that waits has its lines, and a write
+   !> error shows.
+   impure elemental subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
-      if (.not. o%held) call write_held(o, held_length(o))
+      if (allocated(o%buffer) .and. .not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
    !> Whether a write has failed: further results would be lost.
