@@ -1,7 +1,6 @@
 !> Tests. Equations and blocks with all lengths in one unit that is given.
 module sample_blocks
    use kinds, only: wp
-   use planar, only: vector_t
    use mechanism, only: mechanism_t
    use links_tree, only: tree_t, new_tree, axes_t, put_axes
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
@@ -10,7 +9,7 @@ module sample_blocks
    use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, make_equations, xy, axes_of
+   public :: plain_blocks, make_equations, axes_of
 
 contains
 
@@ -58,12 +57,4 @@ contains
       end do
       b%numbers = x
    end function plain_blocks
-
-   !> (2) `v` as an array.
-   pure function xy(v)
-      type(vector_t), intent(in) :: v
-      real(wp) :: xy(2)
-
-      xy = [v%x, v%y]
-   end function xy
 end module sample_blocks
