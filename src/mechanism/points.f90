@@ -12,7 +12,6 @@ module points
    private
    public :: row_t, row_of, find_row, has_number, difference, centre_numbers, &
       coordinates_of, is_due, is_listed, is_fixed
-   public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
