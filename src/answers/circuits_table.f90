@@ -5,6 +5,7 @@ module circuits_table
    use motion, only: diagnostic_t, diagnostic_limit
    use set_analysis, only: set_analysis_t
    use independent, only: set_t
+   use assemblies, only: assemblies_t
    use circuit_trace, only: end_closed, end_far, end_lost
    use circuits, only: circuits_t, circuit_branch_t, no_sign, turns_of, find_circuits, free_drives
    use ranges, only: range_t, find_range, side_words, low, high
@@ -87,6 +88,7 @@ contains
    subroutine find_all_circuits(s, list)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
+      type(assemblies_t), allocatable :: first
       integer, allocatable :: drives(:)
       integer :: c, i, n
 
@@ -96,11 +98,9 @@ contains
          drives = free_drives(s%now%parts(c))
          do i = 1, size(drives)
             n = n + 1
-            if (allocated(s%assemblies)) then
-               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), s%assemblies(c))
-            else
-               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n))
-            end if
+            ! Not allocated: they are not known.
+            if (allocated(s%assemblies)) first = s%assemblies(c)
+            call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), first)
             list(n)%part = c
          end do
       end do

@@ -10,7 +10,7 @@ module extreme_search
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, extreme_t, is_known, times_between, beside_joint, limits_of, places, &
       places_beside
-   use extremes, only: extremes_t, offer, badly_known, note_end, note_interval
+   use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
    use column_search, only: find_node, add_node, search_waiting
    implicit none
    private
@@ -21,12 +21,6 @@ module extreme_search
    !> times at most.
    real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
    integer, parameter :: max_nearer = 5, max_farther = 8
-
-   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
-   type :: end_t
-      real(wp) :: t = 0.0_wp
-      logical :: is_open = .false., is_change = .false.
-   end type end_t
 
 contains
 
@@ -61,10 +55,8 @@ contains
             if (k == s%now%steps) call search_waiting(x, s, c)
             if (k == s%now%steps) call note_end(x, s%now%parts(c), c, s%now%motions(c))
             if (.not. known) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
-            track%t = now%t
-            track%is_known = known
+            track%last = end_t(now%t, .not. known, s%now%motions(c)%singularity == singular_change)
             track%is_lost = is_lost
-            track%at_change = s%now%motions(c)%singularity == singular_change
          end associate
       end do
 
@@ -73,31 +65,27 @@ contains
       !> Searches between the last instant of mechanism `c` and instant number `k`, `now`.
       subroutine search_step()
          real(wp), allocatable :: ends(:), times(:)
-         real(wp) :: from
-         logical :: is_open, is_change, is_limit, to_open, to_change
+         type(end_t) :: from, to
+         logical :: is_limit
          integer :: i
 
-         associate (track => x%tracks(c), t1 => x%tracks(c)%t)
+         associate (track => x%tracks(c), t1 => x%tracks(c)%last%t)
             track%halvings = 0
             ! Most steps have no ends, and no nodes but their own.
-            if (known .and. track%is_known .and. .not. allocated(s%now%motions(c)%diagnostics) &
+            if (known .and. .not. track%last%is_open .and. .not. allocated(s%now%motions(c)%diagnostics) &
                .and. size(track%joints) == 0 .and. abs(now%t - t1) <= track%longest) return
             call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
             if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
             if (track%is_lost) ends = [real(wp) ::]
             times = times_between(track%joints, track%longest, x%run, t1, now%t)
-            from = t1
-            is_open = .not. track%is_known
-            is_change = track%at_change
+            from = track%last
             do i = 1, size(ends)
-               to_open = i < size(ends) .or. is_limit .or. .not. known
-               to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
-               call search_piece(times, end_t(from, is_open, is_change), end_t(ends(i), to_open, to_change))
-               is_open = .true.
-               is_change = .true.
-               from = ends(i)
+               to = end_t(ends(i), i < size(ends) .or. is_limit .or. .not. known, &
+                  i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit))
+               call search_piece(times, from, to)
+               from = end_t(ends(i), .true., .true.)
             end do
-            if (abs(now%t - from) > 0.0_wp) call note_interval(x%gaps, x%way, from, now%t, 0.0_wp)
+            if (abs(now%t - from%t) > 0.0_wp) call note_interval(x%gaps, x%way, from%t, now%t, 0.0_wp)
          end associate
       end subroutine search_step
 

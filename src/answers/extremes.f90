@@ -14,7 +14,7 @@ module extremes
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
+   public :: extremes_t, coordinate_t, end_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
       column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 
@@ -70,6 +70,12 @@ module extremes
       type(place_list_t) :: reversals
    end type coordinate_t
 
+   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
+   type :: end_t
+      real(wp) :: t = 0.0_wp
+      logical :: is_open = .false., is_change = .false.
+   end type end_t
+
    !> The way that the coordinates of one independent mechanism have come.
    type :: track_t
       integer, allocatable :: requests(:)              !< of the set, those asked for
@@ -79,9 +85,8 @@ module extremes
       type(motion_t), allocatable :: start             !< the motion at the first instant
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
-      logical :: at_change = .false.                   !< the last instant is at a change point
-      real(wp) :: t = 0.0_wp                           !< the last instant
-      logical :: is_known = .false., is_lost = .false. !< all of the motion is known there; of some row nothing
+      type(end_t) :: last                              !< the last instant
+      logical :: is_lost = .false.                     !< of some row nothing is known there
       !> The last node up to which this piece is searched, the next one, and one more while both parts are searched; so
       !> many are `filled`.
       type(node_t) :: nodes(3)

@@ -132,7 +132,10 @@ contains
             times = [times, joints(i + 1) + way*beside_joint(run, joints(i + 1))*[(k, k=-1, 1)]]
          end if
          if (i > 0) times = [times, joints(i) + way*beside_joint(run, joints(i))]
-         parts = ceiling(min(real(max_parts, wp), abs(to - from)/part*(1.0_wp - joint_part)))
+         ! Joints of two drives may be one.
+         parts = 0
+         if (abs(to - from) > 0.0_wp) &
+            parts = ceiling(min(real(max_parts, wp), abs(to - from)/part*(1.0_wp - joint_part)))
          times = [times, (from + (to - from)*k/parts, k=1, parts - 1)]
          from = to
       end do

@@ -10,7 +10,7 @@ module lane_steps
    use following, only: largest_correction
    use drives, only: drive_motion
    use lane_sines, only: width, max_angle
-   use lane_elimination, only: max_order, correct, substitute, judge_factors
+   use lane_elimination, only: max_order, make_room, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, unknown_t, depth
    use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
    implicit none
@@ -150,7 +150,7 @@ contains
       end do
       call judge(n, a, exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
       call lane_accelerations(l, i, n, v)
-      call substitute(n, a, exchanged, v)
+      call substitute(a, exchanged, v)
       do k = 1, n
          l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%acceleration = v(:, k)
       end do
@@ -163,13 +163,13 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
-      real(wp), intent(inout) :: a(width, n*n), d(width, n), v(width, n)
-      real(wp), intent(inout) :: exchanged(width)
+      real(wp), intent(inout) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width)
       type(judgement_t), intent(inout) :: j
       real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
 
       u(:, :n) = start
+      if (n == 1) call make_room(u, a, d, v)
       do iteration = 1, max_iterations
          do k = 1, merge(0, n, iteration == 1)
             associate (unknown => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
@@ -179,7 +179,7 @@ contains
             end associate
          end do
          call assemble_lanes(l, i, n, a, d, v)
-         call correct(n, l%block(i)%coarse, u, a, exchanged, d, v, going)
+         call correct(l%block(i)%coarse, u, a, exchanged, d, v, going)
          if (sum(going) < 0.5_wp) return
          going = merge(going, 0.0_wp, j%refused < 0.5_wp)
          if (sum(going) < 0.5_wp) return
@@ -216,13 +216,13 @@ contains
    !> `block`, from the motion in the slot `before` to that in the slot `next`.
    pure subroutine judge(n, a, exchanged, change, before, next, block, j)
       integer, intent(in) :: n, before, next
-      real(wp), intent(in) :: a(width, n*n), exchanged(width), change(width)
+      real(wp), intent(in) :: a(width, max_order**2), exchanged(width), change(width)
       type(lane_block_t), intent(inout) :: block
       type(judgement_t), intent(inout) :: j
       real(wp) :: largest(width), sign_of(width)
       integer :: l
 
-      call judge_factors(n, a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
+      call judge_factors(a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
       ! One equation has no other pivot to compare with.
       if (n == 1) largest = block%lipschitz
       do l = 1, width
