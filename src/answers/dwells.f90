@@ -5,7 +5,7 @@ module dwells
    use set_analysis, only: set_analysis_t
    use nodes, only: sample_t, order_along
    use zero_search, only: column_t, find_zero, noise_part
-   use extremes, only: extremes_t, place_t, least, greatest, outward, is_cyclic, is_covered
+   use extremes, only: extremes_t, value_at_t, least, greatest, outward, is_cyclic, is_covered
    implicit none
    private
    public :: dwell_t, find_dwells
@@ -28,7 +28,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable, intent(out) :: list(:)
       type(dwell_t) :: one
-      type(place_t), allocatable :: path(:)
+      type(value_at_t), allocatable :: path(:)
       logical, allocatable :: inside(:), before(:)
       integer :: i, c, which, k
       real(wp) :: stroke, level
@@ -106,7 +106,7 @@ contains
 
       !> The coordinate at `place`.
       pure type(sample_t) function sample_at(place)
-         type(place_t), intent(in) :: place
+         type(value_at_t), intent(in) :: place
 
          sample_at = sample_t(place%t, [place%value, 0.0_wp, 0.0_wp], known=2)
       end function sample_at

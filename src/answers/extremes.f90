@@ -14,7 +14,7 @@ module extremes
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, end_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
+   public :: extremes_t, coordinate_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
       column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 
@@ -43,13 +43,13 @@ module extremes
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
    !> A coordinate at the time `t`.
-   type :: place_t
+   type :: value_at_t
       real(wp) :: t = 0.0_wp, value = 0.0_wp
-   end type place_t
+   end type value_at_t
 
    !> Places (1:n and room).
    type :: place_list_t
-      type(place_t), allocatable :: list(:)
+      type(value_at_t), allocatable :: list(:)
       integer :: n = 0
    end type place_list_t
 
@@ -65,7 +65,7 @@ module extremes
       !> How it has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest` since that,
       !> at this `speed`, where it was before the first, and where it has reversed.
       integer :: first_sign = 0, last_sign = 0
-      type(place_t) :: start, slowest
+      type(value_at_t) :: start, slowest
       real(wp) :: speed = huge(1.0_wp)
       type(place_list_t) :: reversals
    end type coordinate_t
@@ -104,7 +104,7 @@ module extremes
    type :: strokes_t
       type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
-      type(place_t), allocatable :: reversals(:)
+      type(value_at_t), allocatable :: reversals(:)
       real(wp) :: times(2) = 0.0_wp
       real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and what is unknown of it
    end type strokes_t
@@ -217,7 +217,7 @@ contains
       real(wp), intent(in) :: step
 
       call offer(c, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, sample%error(k)), step)
-      if (k == 0 .and. c%dwell > 0.0_wp) call add_place(c%places, place_t(sample%t, sample%f(0)))
+      if (k == 0 .and. c%dwell > 0.0_wp) call add_place(c%places, value_at_t(sample%t, sample%f(0)))
    end subroutine offer_sample
 
    !> The value `e` of derivative number `k` of the coordinate `c` may be the least or the greatest. One that is located
@@ -253,7 +253,7 @@ contains
    !> Adds `place` to `p`.
    pure subroutine add_place(p, place)
       type(place_list_t), intent(inout) :: p
-      type(place_t), intent(in) :: place
+      type(value_at_t), intent(in) :: place
 
       if (.not. allocated(p%list)) allocate (p%list(8))
       if (p%n == size(p%list)) p%list = [p%list, p%list]
@@ -272,7 +272,7 @@ contains
       speed = abs(sample%f(1))
       if (speed <= noise_part*c%size_of(1)) speed = 0.0_wp
       if (speed < c%speed) then
-         c%slowest = place_t(sample%t, sample%f(0))
+         c%slowest = value_at_t(sample%t, sample%f(0))
          c%speed = speed
       end if
       if (speed <= 0.0_wp) return
@@ -283,7 +283,7 @@ contains
       end if
       if (c%last_sign == -this) call add_place(c%reversals, c%slowest)
       c%last_sign = this
-      c%slowest = place_t(sample%t, sample%f(0))
+      c%slowest = value_at_t(sample%t, sample%f(0))
       c%speed = speed
    end subroutine note_velocity
 
@@ -364,7 +364,7 @@ contains
    pure type(strokes_t) function strokes_of(x, c) result(strokes)
       type(extremes_t), intent(in) :: x
       type(coordinate_t), intent(in) :: c
-      type(place_t), allocatable :: all_of(:)
+      type(value_at_t), allocatable :: all_of(:)
       real(wp), allocatable :: change(:)
       real(wp) :: period, phase
       integer :: n, in_period
