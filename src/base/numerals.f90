@@ -222,7 +222,8 @@ contains
             upper = n/tens(8)
             call put_digits(upper, number(3:10), first)
             call put_digits(n - tens(8)*upper, number(11:18))
-            number(:2) = achar(48 + int(first))//'.'
+            number(1:1) = achar(48 + int(first))
+            number(2:2) = '.'
             number(significant + 2:significant + 3) = merge('E-', 'E+', e < 0)
             call put_digits(int(abs(e), int64), number(significant + 4:))
             return
