@@ -20,7 +20,7 @@ parts() {
    what is installed|18|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|270|tests/system/output.sh
-   unit tests|540|"$MAKE" --no-print-directory unit
+   unit tests|500|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
