@@ -80,6 +80,7 @@ contains
       type(convergence_t) :: c
       type(motion_t) :: q
       logical :: unused
+      integer :: i
 
       call find_assemblies(m, t, a)
       call make_block_engine(e, m)
@@ -89,7 +90,15 @@ contains
          call move_links(e%chain, e%state, e%length, q, unused, .true.)
          a%chosen = number_of(q%position, a%list, e%blocks%numbers%span)
       end if
-      if (is_nearer_one()) call begin_in_nearest()
+      if (is_nearer_one()) then
+         a%chosen = 1
+         do i = 1, size(m%links)
+            if (m%links(i)%ground) cycle
+            associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
+               estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
+            end associate
+         end do
+      end if
       a%is_missed = is_solved(c) .and. a%chosen == 0
       a%is_known = a%is_known .and. .not. a%is_missed
 
@@ -108,19 +117,6 @@ contains
             end associate
          end if
       end function is_nearer_one
-
-      !> The first of the list is the estimate of `m`.
-      subroutine begin_in_nearest()
-         integer :: i
-
-         a%chosen = 1
-         do i = 1, size(m%links)
-            if (m%links(i)%ground) cycle
-            associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
-               estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
-            end associate
-         end do
-      end subroutine begin_in_nearest
    end subroutine find_nearest
 
    !> The number in `list` of the `position` (3, links), that of all that it may be which is nearest to it, whole turns

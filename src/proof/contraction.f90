@@ -20,47 +20,19 @@ module contraction
 contains
 
    !> `a` (n, rows): |A| of about the inverse A of `jacobian` (rows, n), with room for roundings; `off` (n): the row
-   !> sums of |1 - A J|. `exists`: there is an inverse.
+   !> sums of |1 - A J|. Of equations that are too many those count that have the largest pivots; the columns of the
+   !> others are 0. `exists`: there is an inverse.
    subroutine bound_inverse(rows, n, jacobian, a, off, exists)
       integer, intent(in) :: rows, n
       real(wp), intent(in) :: jacobian(rows, n)
       real(wp), intent(out) :: a(n, rows), off(n)
       logical, intent(out) :: exists
-      real(wp) :: x(n), room
-      integer :: i, k
-
-      call invert(rows, n, jacobian, a, exists)
-      if (.not. exists) return
-      off = (n + 2)*rounding
-      do k = 1, n
-         x = 0.0_wp
-         x(k) = -1.0_wp
-         do i = 1, rows
-            if (abs(jacobian(i, k)) > 0.0_wp) x = x + a(:, i)*jacobian(i, k)
-         end do
-         off = off + abs(x)
-      end do
-
-      ! What rounding leaves open of all terms; room, too, for products that underflow.
-      room = 1.0_wp + (64 + 4*rows)*rounding
-      do i = 1, rows
-         a(:, i) = abs(a(:, i))*room
-         off = off + a(:, i)*((rows + 2)*rounding*sum(abs(jacobian(i, :))))
-      end do
-      off = off*room**2
-   end subroutine bound_inverse
-
-   !> `a` (n, rows): about the inverse of `jacobian` (rows, n) by Gauss and Jordan's elimination. Of equations that are
-   !> too many those count that have the largest pivots; the columns of the others are 0. `exists`: it has one.
-   subroutine invert(rows, n, jacobian, a, exists)
-      integer, intent(in) :: rows, n
-      real(wp), intent(in) :: jacobian(rows, n)
-      real(wp), intent(out) :: a(n, rows)
-      logical, intent(out) :: exists
       real(wp) :: left(n + rows, rows)            ! Each column an equation: the Jacobian, and what has been added up.
+      real(wp) :: x(n), room
       integer :: equation(n), k, i
       logical :: taken(rows)
 
+      ! Gauss and Jordan's elimination.
       exists = .true.
       left(:n, :) = transpose(jacobian)
       left(n + 1:, :) = 0.0_wp
@@ -84,7 +56,25 @@ contains
       do k = 1, n
          a(k, :) = left(n + 1:, equation(k))
       end do
-   end subroutine invert
+
+      off = (n + 2)*rounding
+      do k = 1, n
+         x = 0.0_wp
+         x(k) = -1.0_wp
+         do i = 1, rows
+            if (abs(jacobian(i, k)) > 0.0_wp) x = x + a(:, i)*jacobian(i, k)
+         end do
+         off = off + abs(x)
+      end do
+
+      ! What rounding leaves open of all terms; room, too, for products that underflow.
+      room = 1.0_wp + (64 + 4*rows)*rounding
+      do i = 1, rows
+         a(:, i) = abs(a(:, i))*room
+         off = off + a(:, i)*((rows + 2)*rounding*sum(abs(jacobian(i, :))))
+      end do
+      off = off*room**2
+   end subroutine bound_inverse
 
    !> `x` (n): |A| `v` (rows), rounded up.
    pure subroutine apply(rows, n, a, v, x)
