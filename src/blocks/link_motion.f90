@@ -32,7 +32,7 @@ module link_motion
    type :: chain_t
       type(chain_link_t), allocatable :: links(:)
       integer, allocatable :: ground(:)                 !< numbers of the ground links
-      integer :: wanted = 0                             !< so many of `links` are wanted, or parents of wanted ones
+      integer :: wanted = 0, wanted_ground = 0          !< so many of them are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t
@@ -59,11 +59,12 @@ contains
       do i = size(t%order), 1, -1
          if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
-      associate (moves => .not. m%links(t%order)%ground)
+      associate (moves => .not. m%links(t%order)%ground, numbers => [(i, i=1, size(wanted))])
          links = [pack(t%order, moves .and. needed(t%order)), pack(t%order, moves .and. .not. needed(t%order))]
          c%wanted = count(moves .and. needed(t%order))
+         c%ground = [pack(numbers, m%links%ground .and. wanted), pack(numbers, m%links%ground .and. .not. wanted)]
+         c%wanted_ground = count(m%links%ground .and. wanted)
       end associate
-      c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
       call put_chain(m, t, a, unit, c)
@@ -104,7 +105,7 @@ contains
       c%origin = a%origin
    end subroutine put_chain
 
-   !> Puts the motion of the ground and the wanted links, or of `all_links`, at state `s` into `q`; `length`: the
+   !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the
    !> unit of the slides in the deck's unit. `finite`: no number is out of range; false may be said of sums alone.
    pure subroutine move_links(c, s, length, q, finite, all_links)
       type(chain_t), intent(in) :: c
@@ -113,15 +114,17 @@ contains
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
       logical, intent(in), optional :: all_links
-      integer :: links, i, k
+      integer :: links, ground, i, k
 
       links = c%wanted
+      ground = c%wanted_ground
       if (present(all_links)) then
          if (all_links) links = size(c%links)
+         if (all_links) ground = size(c%ground)
       end if
       q%origin = c%origin
       ! One by one, since a column at once would be a call of its own.
-      do i = 1, size(c%ground)
+      do i = 1, ground
          do k = 1, 3
             q%position(k, c%ground(i)) = c%ground_position(k, i)
          end do
