@@ -3,7 +3,7 @@
 module outputs
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected
-   use text_output, only: output_t, open_output, check_apart, close_output, abandon_output, has_failed
+   use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
    use system_calls, only: make_directory, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_shared, out_last
@@ -140,6 +140,6 @@ contains
    logical function is_over(o)
       class(outputs_t), intent(in) :: o
 
-      is_over = signal_received() > 0 .or. allocated(o%failure) .or. any(has_failed(o%files))
+      is_over = signal_received() > 0 .or. allocated(o%failure) .or. any(o%files%error /= 0)
    end function is_over
 end module outputs

@@ -125,9 +125,10 @@ contains
       q%origin = c%origin
       ! One by one, since a column at once would be a call of its own.
       do i = 1, ground
-         do k = 1, 3
-            q%position(k, c%ground(i)) = c%ground_position(k, i)
-         end do
+         k = c%ground(i)
+         q%position(1, k) = c%ground_position(1, i)
+         q%position(2, k) = c%ground_position(2, i)
+         q%position(3, k) = c%ground_position(3, i)
       end do
       call move_chain(links, c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
