@@ -2,7 +2,7 @@
 !> point at which the drive stops or turns.
 module at_bifurcation
    use kinds, only: wp
-   use drive_excursion, only: drive_excursion_t, time_within
+   use drive_excursion, only: drive_excursion_t
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, diagnostic_dead_end
@@ -24,8 +24,9 @@ module at_bifurcation
    !> many equal steps of time.
    real(wp), parameter :: almost_at_rest = 0.1_wp
    integer, parameter :: value_steps = 64
-   !> After an instant at a singular position the motion takes the other branch where a drive may have gone so far, in
-   !> radians or characteristic lengths: the branches are still close there, and no longer singular.
+   !> After an instant at a singular position the motion takes the other branch where a drive has gone so far, in the
+   !> units of the blocks: the branches are still close there, and no longer singular. Bounds of its
+   !> rate are too coarse.
    real(wp), parameter :: leaving = 1.0e-5_wp
 
 contains
@@ -42,9 +43,9 @@ contains
       type(place_t) :: before
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: at_end(:)
-      real(wp) :: beside
+      real(wp) :: beside, high
       logical :: found
-      integer :: k
+      integer :: i, k
 
       allocate (list(size(blocks)))
       do k = 1, size(blocks)
@@ -53,7 +54,13 @@ contains
       end do
       if (size(f%branch_requests%cards) == 0) return
 
-      beside = time_within(f%drives, last, t, leaving)
+      beside = last
+      high = t
+      do i = 1, digits(1.0_wp)
+         call halve(all([(abs(value_at(f%engine%laws(k), middle_of(beside, high)) - value_at(f%engine%laws(k), last)) &
+            *f%engine%unit_of(k), k=1, size(f%engine%laws))] <= leaving), beside, high)
+      end do
+
       f%branch_requests%stood_until = beside
       call note_place(f, before)
       call continue_to(f, beside, step)
