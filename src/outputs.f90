@@ -112,8 +112,8 @@ contains
       end function path
    end subroutine open_set_outputs
 
-   !> What the names of files have before their extension for set number `i`, where the job has more than one set, those
-   !> from `first` to `last`.
+   !> Tells what the names of files have before their extension for set number `i`, where the job has more than one
+   !> set, those from `first` to `last`.
    pure function set_suffix(first, last, i) result(suffix)
       integer, intent(in) :: first, last, i
       character(:), allocatable :: suffix
@@ -136,7 +136,7 @@ contains
       end do
    end subroutine close_outputs
 
-   !> What follows need not be computed: an output has failed, or a signal has come.
+   !> Tells whether what follows need not be computed: an output has failed, or a signal has come.
    logical function is_over(o)
       class(outputs_t), intent(in) :: o
 

@@ -262,9 +262,9 @@ contains
       end do
    end subroutine search_columns
 
-   !> What is `found` of column `c` between the first and the last of three `points`: an extreme of the acceleration,
-   !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at most;
-   !> of the coordinate, one on either side of each of these. `path`: all points that are known then.
+   !> Finds extremes of column `c` between the first and the last of three `points`: an extreme of the acceleration,
+   !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at
+   !> most; of the coordinate, one on either side of each of these. `path`: all points that are known then.
    subroutine search_column(s, c, points, jerk, path, found)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c

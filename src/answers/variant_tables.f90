@@ -177,7 +177,7 @@ contains
       call put(o, '')
    end subroutine put_variants_end
 
-   !> Of a set with tolerances but no tables of its variants: where their shares are to be had.
+   !> Writes where the shares of tolerances are to be had, for a set without tables of its variants.
    subroutine put_note_of_shares(o, s)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: s

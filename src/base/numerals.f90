@@ -360,7 +360,7 @@ contains
       if (.not. sure) call digits_by_format(x, count, n, e)
    end subroutine first_digits
 
-   !> The same of `x` > 0; `sure`: they are certain.
+   !> Finds the first digits of `x` > 0, as `first_digits`; `sure`: they are certain.
    pure subroutine leading_digits(x, count, n, e, sure)
       real(wp), intent(in) :: x
       integer, intent(in) :: count

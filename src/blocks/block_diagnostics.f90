@@ -33,9 +33,9 @@ module block_diagnostics
 
 contains
 
-   !> What there is to say of the first motion `found`: which equations are redundant; what can still move where the
-   !> Jacobian is `singular`; where another assembly is about as near to the initial guess or may be nearer; and the
-   !> angle that was estimated the worst.
+   !> Tells what there is to say of the first motion `found`: which equations are redundant; what can still move
+   !> where the Jacobian is `singular`; where another assembly is about as near to the initial guess or may be
+   !> nearer; and the angle that was estimated the worst.
    function start_diagnostics(e, found, singular) result(list)
       type(block_engine_t), intent(inout) :: e
       type(motion_t), intent(in) :: found

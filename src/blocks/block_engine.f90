@@ -423,7 +423,8 @@ contains
       end do
    end subroutine followed_state
 
-   !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.
+   !> Notes what is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on
+   !> lacks.
    subroutine note_block(e, i, own, missing)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i, own

@@ -27,7 +27,7 @@ module block_equations
 
 contains
 
-   !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
    pure subroutine find_known_parts(b, i, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -50,7 +50,7 @@ contains
       call assemble_with_velocities(b, i, s, a, r, v)
    end subroutine assemble_block
 
-   !> The same with the right-hand side `v` (rows) for the velocities there.
+   !> Assembles block `i` as `assemble_block`, with the right-hand side `v` (rows) for the velocities there.
    pure subroutine assemble_with_velocities(b, i, s, a, r, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -69,7 +69,7 @@ contains
       end associate
    end subroutine assemble_with_velocities
 
-   !> The same with all of the Jacobian, zeros as well: `a` (rows, n).
+   !> Assembles block `i` as `assemble_block`, with all of the Jacobian, zeros as well: `a` (rows, n).
    pure subroutine assemble_dense(b, i, s, a, r)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

@@ -337,8 +337,8 @@ contains
       if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
    end subroutine judge
 
-   !> The same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the rows hold
-   !> beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
+   !> Tells the same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the
+   !> rows hold beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
    logical function is_beyond_linear(b, i, n, w, s) result(is)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n

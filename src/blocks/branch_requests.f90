@@ -67,8 +67,8 @@ contains
       c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
    end subroutine decide
 
-   !> Of the cards not used yet that name one of the `links`, or none, that whose time was passed first on the way in
-   !> the `direction` to `at`, known to `width`; or 0.
+   !> Finds, of the cards not used yet that name one of the `links`, or none, that whose time was passed first on
+   !> the way in the `direction` to `at`, known to `width`; or 0.
    pure integer function card_for(c, links, direction, at, width) result(best)
       type(branch_requests_t), intent(in) :: c
       logical, intent(in) :: links(:)

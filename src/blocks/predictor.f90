@@ -123,7 +123,7 @@ contains
       end do
    end subroutine predict
 
-   !> The same of the `n` unknowns `predicted` from three motions in equal steps, as the `past` (0:unknowns) has them.
+   !> Predicts the `n` unknowns `predicted` from three motions in equal steps, as the `past` (0:unknowns) has them.
    pure subroutine predict_evenly(n, predicted, past, step, u, change)
       integer, intent(in) :: n, predicted(n)
       type(past_t), intent(in) :: past(0:*)

@@ -397,7 +397,7 @@ contains
       if (.not. finite) call look_for_overflow(found)
    end subroutine take_motion
 
-   !> What is out of the range of the real kind is not known.
+   !> Marks what is out of the range of the real kind as not known.
    pure subroutine look_for_overflow(found)
       type(motion_t), intent(inout) :: found
       integer :: link, last
@@ -419,7 +419,7 @@ contains
       end do
    end subroutine look_for_overflow
 
-   !> Of all links only derivatives up to number `known` exist, and `mark` says why.
+   !> Keeps only derivatives up to number `known` of all links; `mark` says why.
    pure subroutine cut(found, known, mark)
       type(motion_t), intent(inout) :: found
       integer, intent(in) :: known, mark

@@ -239,8 +239,8 @@ contains
       if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, kind, k, i))
    end subroutine look_up
 
-   !> What the name in label `i` (label_a to label_c) of card `k` may be, which no link, point or pair (`kind`) has; ''
-   !> if nothing is known, or if the error is only counted.
+   !> Tells what the name in label `i` (label_a to label_c) of card `k` may be, which no link, point or pair
+   !> (`kind`) has; '' if nothing is known, or if the error is only counted.
    function hint_for(set, kind, k, i) result(hint)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: kind, k, i

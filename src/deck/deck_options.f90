@@ -282,8 +282,8 @@ contains
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
 
-   !> Of a set without errors: each pole and curve must be of two links that move relative to one another, in one
-   !> independent mechanism. A link that nothing uses is ground by now.
+   !> Checks, in a set without errors, that each pole and curve is of two links that move relative to one another,
+   !> in one independent mechanism. A link that nothing uses is ground by now.
    subroutine check_centres(set)
       type(card_set_t), intent(inout) :: set
       type(request_t) :: one

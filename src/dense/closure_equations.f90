@@ -176,7 +176,8 @@ contains
       end associate
    end subroutine drive_row
 
-   !> What the second derivative of the residual of drive `k` holds beside J a, at velocities `v` (3, links).
+   !> Computes what the second derivative of the residual of drive `k` holds beside J a, at velocities `v` (3,
+   !> links).
    pure real(wp) function drive_remainder(s, p, v, k) result(gamma)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
@@ -288,7 +289,8 @@ contains
       end associate
    end function projection_remainder
 
-   !> What the second derivative of P - Q (2) of pair `k` holds beside the accelerations: -phi_i'^2 u + phi_j'^2 w.
+   !> Computes what the second derivative of P - Q (2) of pair `k` holds beside the accelerations: -phi_i'^2 u +
+   !> phi_j'^2 w.
    pure function turning_part(s, p, v, k) result(gamma)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p

@@ -26,7 +26,7 @@ contains
       if (i <= l%blocks%orientations) call sines(l%u(i)%value, l%u(i)%c, l%u(i)%s)
    end subroutine set_lane_direction
 
-   !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
    pure subroutine find_lane_known(l, i)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i

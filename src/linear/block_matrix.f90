@@ -78,7 +78,7 @@ contains
       end if
    end subroutine solve_first
 
-   !> The same for another right-hand side, from the factors.
+   !> Solves for another right-hand side, from the factors.
    subroutine solve_again(s, a, pivots, work, b, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
@@ -177,8 +177,8 @@ contains
       if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
-   !> The same of two unknowns, from the factors l = `a`(2), u = a(1), a(3), a(4): columns are swapped by the pivots,
-   !> row sums are not.
+   !> Computes that norm of the inverse for two unknowns, from the factors l = `a`(2), u = a(1), a(3), a(4): columns
+   !> are swapped by the pivots, row sums are not.
    pure real(wp) function inverse_norm_of_two(a) result(norm)
       real(wp), intent(in) :: a(4)
 

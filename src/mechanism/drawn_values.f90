@@ -111,7 +111,7 @@ contains
       end associate
    end function size_of_point
 
-   !> The same for the way from P to Q of `pair`, along and across its guide.
+   !> Tells the size of what is added up to the way from P to Q of `pair`, along and across its guide.
    pure real(wp) function size_of_pair(m, pair) result(length)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair

@@ -146,7 +146,7 @@ contains
       b%high = max(b%high, -below(-f, margin*magnitudes))
    end subroutine widen
 
-   !> Of the times from `from` to `to` the nearest to `t`.
+   !> Finds the nearest to `t` of the times from `from` to `to`.
    elemental real(wp) function within(t, from, to)
       real(wp), intent(in) :: t, from, to
 

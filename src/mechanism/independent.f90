@@ -185,7 +185,7 @@ contains
       end do
    end subroutine take_mechanism
 
-   !> What row number `i` of `s` is asked for.
+   !> Tells what row number `i` of `s` is asked for.
    pure type(request_t) function request_of(s, i)
       class(set_t), intent(in) :: s
       integer, intent(in) :: i

@@ -62,7 +62,8 @@ contains
       call find_row(m, q, request, row)
    end function row_of
 
-   !> The same, written to `row`: faster for the many rows of a table, since nothing is copied. What `row` was is gone.
+   !> Writes the same to `row`: faster for the many rows of a table, since nothing is copied. What `row` was is
+   !> gone.
    pure subroutine find_row(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q

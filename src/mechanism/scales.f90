@@ -23,7 +23,8 @@ contains
       if (.not. is_usable(length)) length = 1.0_wp
    end function characteristic_length
 
-   !> The same for the equations: points that no pair and no drive uses do not count, unless there is no other length.
+   !> Finds the characteristic length for the equations: points that no pair and no drive uses do not count, unless
+   !> there is no other length.
    pure real(wp) function solver_length(m) result(length)
       type(mechanism_t), intent(in) :: m
 

@@ -156,8 +156,8 @@ contains
       end subroutine find_changes
    end subroutine estimate_errors
 
-   !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.
-   !> `nothing_known`, where it is so.
+   !> Estimates what rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`,
+   !> in its units. `nothing_known`, where it is so.
    pure function estimate_of(row, m, s, i) result(error)
       type(row_t), intent(in) :: row
       type(mechanism_t), intent(in) :: m

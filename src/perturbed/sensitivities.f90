@@ -169,7 +169,8 @@ contains
       natural_unit = sizes%length**one%powers(1)*sizes%rate**(-one%powers(2))
    end function natural_unit
 
-   !> What `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole and no curve.
+   !> Tells whether what `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole
+   !> and no curve.
    pure logical function has_tolerances(m, request)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request

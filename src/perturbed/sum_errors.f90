@@ -82,7 +82,8 @@ contains
       if (row%kind == request_pair) estimate(1, :) = of_sums(merge(2, 3, row%angular), :)
    end function error_of_sums
 
-   !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
+   !> Bounds what rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of
+   !> cards.
    pure function fixed_error(m, request) result(error)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
@@ -116,8 +117,8 @@ contains
       if (max(one%state, row%state) >= centre_starting) lost(3, :) = .true.
    end function lost_numbers
 
-   !> What sums leave open of the pole or curve `row` (3, 0:2), through the relative velocity u and its angular velocity
-   !> w, or through v and v x a. `of_sums`: as above.
+   !> Bounds what sums leave open of the pole or curve `row` (3, 0:2), through the relative velocity u and its
+   !> angular velocity w, or through v and v x a. `of_sums`: as above.
    pure function error_of_centre(of_sums, request, row) result(error)
       real(wp), intent(in) :: of_sums(3, 0:2)
       type(request_t), intent(in) :: request

@@ -24,7 +24,7 @@ module ball_numbers
 
 contains
 
-   !> Those of the blocks `b` of `m`, whose unit of length is `length`.
+   !> Makes the ball numbers of the blocks `b` of `m`, whose unit of length is `length`.
    function new_ball_numbers(m, b, length) result(x)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -114,8 +114,9 @@ contains
       end associate
    end subroutine add_terms
 
-   !> What is open of the vector to `point` from the origin of its link or, on the ground, from that of the motion; in
-   !> the deck's unit of length. `turned`: of its turned part; `summed`: of all its parts, where they are added up.
+   !> Bounds what is open of the vector to `point` from the origin of its link or, on the ground, from that of the
+   !> motion; in the deck's unit of length. `turned`: of its turned part; `summed`: of all its parts, where they are
+   !> added up.
    pure real(wp) function point_error(m, point, turned, summed) result(error)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: point

@@ -133,7 +133,7 @@ contains
 
    contains
 
-      !> The same of a part of a step, none less than `shortest`.
+      !> Proves a part of a step, none less than `shortest`.
       recursive subroutine prove_part(from, to, shortest)
          type(placed_t), intent(in) :: from, to
          real(wp), intent(in) :: shortest

@@ -131,7 +131,7 @@ contains
          end do
       end subroutine bound_drives
 
-      !> What Hermite's interpolation makes of what row `row` leaves open at both ends.
+      !> Bounds what Hermite's interpolation makes of what row `row` leaves open at both ends.
       pure real(wp) function ends_open(row)
          integer, intent(in) :: row
 

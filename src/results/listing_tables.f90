@@ -102,7 +102,7 @@ contains
       used = used + len(text)
    end subroutine append
 
-   !> The same of the number `x`, of which `error` is unknown, without blanks.
+   !> Appends the number `x`, of which `error` is unknown, without blanks.
    pure subroutine append_number(x, error, decimals, power, line, used, masked)
       real(wp), intent(in) :: x, error
       integer, intent(in) :: decimals, power
@@ -115,8 +115,8 @@ contains
       call append(number(verify(number, ' '):), line, used)
    end subroutine append_number
 
-   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or in the
-   !> unit of length.
+   !> Bounds what roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians
+   !> or in the unit of length.
    pure real(wp) function law_error(d, t) result(error)
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t

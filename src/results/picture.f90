@@ -340,8 +340,8 @@ contains
       if (all(high >= low)) sides = high - low
    end function sides_of
 
-   !> Those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are like it or
-   !> like one another.
+   !> Chooses those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are
+   !> like it or like one another.
    function faint_frames(d, own, best) result(list)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: own(:), best

@@ -44,7 +44,7 @@ contains
       call begin_analysis(s, findings)
    end subroutine make_set_analysis
 
-   !> The same of the set s%now, which is divided.
+   !> Begins the analysis of the set s%now, which is divided.
    subroutine begin_analysis(s, findings)
       type(set_analysis_t), intent(inout) :: s
       type(findings_t), intent(inout), optional :: findings
@@ -215,8 +215,8 @@ contains
       end do
    end function set_bounds
 
-   !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed, in
-   !> their order.
+   !> Tells what there is to say after the last instant: of BRANCH cards after whose instants no change point was
+   !> passed, in their order.
    pure function set_closing_diagnostics(s) result(list)
       type(set_analysis_t), intent(in) :: s
       type(diagnostic_t), allocatable :: list(:)

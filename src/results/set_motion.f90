@@ -95,7 +95,8 @@ contains
       end associate
    end subroutine find_row_in_set
 
-   !> What rounding leaves open (3, 0:2) of the `row` of request number `i`; 0 where no digit of a table is in doubt.
+   !> Tells what rounding leaves open (3, 0:2) of the `row` of request number `i`; 0 where no digit of a table is in
+   !> doubt.
    pure function doubt_in_set(row, s, i) result(error)
       type(row_t), intent(in) :: row
       type(set_motion_t), intent(in) :: s
@@ -109,7 +110,7 @@ contains
       end associate
    end function doubt_in_set
 
-   !> Of which numbers (3, 0:2) of the `row` of request number `i`, as far as it has them, a digit is known.
+   !> Tells of which numbers (3, 0:2) of the `row` of request number `i`, as far as it has them, a digit is known.
    pure function known_numbers(row, s, i) result(known)
       type(row_t), intent(in) :: row
       type(set_motion_t), intent(in) :: s

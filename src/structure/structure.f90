@@ -109,8 +109,8 @@ contains
 
    contains
 
-      !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that
-      !> are too many with its drives and not without.
+      !> Finds the drives of `f` that are too many: in each independent mechanism of `m` as many as there are
+      !> equations that are too many with its drives and not without.
       subroutine find_spare_drives()
          type(incidence_t) :: of_pairs
          integer, allocatable :: part(:), part_of(:), alone(:), by_pairs(:), spare(:), many(:)
@@ -171,7 +171,8 @@ contains
          end do
       end function parts_that_lack
 
-      !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
+      !> Finds these parts by unknowns of the tree that found no equation: two links that a prismatic pair joins
+      !> have one angle.
       function parts_on_tree(t, free) result(parts)
          type(tree_t), intent(in) :: t
          integer, intent(in) :: free(:)

@@ -186,7 +186,8 @@ contains
       end do
    end subroutine put_sums
 
-   !> What is left of body vectors that cancel is rounding: it would put an angle into equations that do not hold it.
+   !> Tells whether what is left of body vectors that cancel is rounding, which would put an angle into equations
+   !> that do not hold it.
    pure logical function vanishes(x, k)
       type(loop_sums_t), intent(in) :: x
       integer, intent(in) :: k

@@ -212,7 +212,8 @@ contains
       if (row%mark == 'NO-POSITION') is_allowed = is_allowed .or. is_too_long
       is_allowed = is_allowed .or. may_miss(s)
       if (is_allowed) then
-         v%flagged = v%flagged + 1
+         ! Digits that rounding has taken are masked; the instant is not flagged by that alone.
+         if (row%mark /= 'UNKNOWN') v%flagged = v%flagged + 1
       else
          call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
       end if
