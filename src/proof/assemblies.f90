@@ -69,10 +69,10 @@ contains
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
 
-   !> Finds all assemblies as `find_assemblies`, and which of them a run begins in: that which the estimate of `m` chooses,
-   !> unless another one is nearer and all are known. Then the nearest is the estimate of `m` from now on; also
-   !> where the estimate chooses a position that is not separate. Where it chooses another one that was not found,
-   !> some may be missing.
+   !> Finds all assemblies as `find_assemblies`, and which of them a run begins in: that which the estimate of `m`
+   !> chooses, unless another one is nearer and all are known. Then the nearest is the estimate of `m` from now on;
+   !> also where the estimate chooses a position that is not separate. Where it chooses another one that was not
+   !> found, some may be missing.
    subroutine find_nearest(m, t, a)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: t

@@ -7,6 +7,9 @@ module bench_scenes
    use motion, only: motion_t, new_motion, mark_none
    use deck, only: read_deck
    use scales, only: characteristic_length, characteristic_rate
+   use lapack, only: gesv
+   use closure_equations, only: jacobian
+   use dense_method, only: dense_t
    use analysis, only: analysis_t, make_analysis, advance
    use planar, only: degree
    use quad_jet, only: qp
@@ -178,11 +181,28 @@ contains
          if (one%mark /= mark_none) g%flagged = g%flagged + 1
          if (two%mark /= mark_none) g%has_change_point = .true.
          if (one%mark /= mark_none .or. two%mark /= mark_none) cycle
-         g%condition = max(g%condition, 1.0_wp/dense%convergence%reciprocal_condition)
+         g%condition = max(g%condition, condition_of(dense%dense))
          call widen(s, one, two, .false., g)
       end do
       g%has_change_point = g%has_change_point .or. dense%certificate_counts%passed > 0
    end function gap_of
+
+   !> The condition |A| |A^-1|, in the 1-norm, of all closure equations at the position that `d` has found.
+   real(wp) function condition_of(d) result(condition)
+      type(dense_t), intent(in) :: d
+      real(wp), dimension(d%system%n, d%system%n) :: a, factors, inverse
+      integer :: pivots(d%system%n), info, k
+
+      call jacobian(d%system, d%pose, a)
+      factors = a
+      inverse = 0.0_wp
+      do k = 1, d%system%n
+         inverse(k, k) = 1.0_wp
+      end do
+      call gesv(d%system%n, d%system%n, factors, d%system%n, pivots, inverse, d%system%n, info)
+      condition = huge(condition)
+      if (info == 0) condition = maxval(sum(abs(a), dim=1))*maxval(sum(abs(inverse), dim=1))
+   end function condition_of
 
    !> Instant number `k`.
    pure real(wp) function instant_of(s, k) result(t)
