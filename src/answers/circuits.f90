@@ -246,7 +246,8 @@ contains
       dead = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle, value=value)
       there = held
       ! A drive at rest leaves open which singular position that is.
-      there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, p%value(0)), 1.0_wp]
+      there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, p%value(0)), &
+         merge(1.0_wp, found%curve%closure%length, found%curve%is_angle)]
       call put_estimate(there, deck_position(found%curve, p%q))
       call make_analysis(a, there)
       q = new_motion(size(there%links))

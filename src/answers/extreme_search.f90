@@ -197,7 +197,7 @@ contains
          end do
       end subroutine take_limits
 
-      !> Takes a node at the time `t`; `always`: see `find_node`.
+      !> Takes a node at the time `t`; `always`: see `look`.
       subroutine look_at(t, always)
          real(wp), intent(in) :: t
          logical, intent(in) :: always

@@ -33,12 +33,12 @@ module lane_state
       real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
    end type lane_block_t
 
-   !> Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
+   !> Lanes serve the variants of one set. Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
    type :: lanes_t
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)
       logical :: is_polynomial = .true.                 !< no law of any lane has terms
-      type(drive_t), allocatable :: laws(:, :)            !< (drives, lanes)
+      type(drive_t), allocatable :: laws(:, :)          !< (drives, lanes)
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
       real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last

@@ -233,8 +233,8 @@ contains
       if (n%kind == number_pair) call put_number(m, n, value)
    end subroutine set_number
 
-   !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
-   !> points.
+   !> Gives number `n` of `m` the `value`, and leaves all others as they are; the spline of a table is solved again. A
+   !> place of a JOINT card moves both of its points.
    subroutine put_number(m, n, value)
       type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: n
