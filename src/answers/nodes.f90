@@ -75,13 +75,12 @@ contains
       type(row_t) :: rows(size(requests))
       real(wp) :: error(3, 0:2, size(requests)), growth
       integer :: i
-      logical :: is_found
 
       associate (part => s%now%rows(requests(1))%part)
          if (present(always)) then
-            call rows_at(s, part, requests, t, rows, is_found, always, error, growth)
+            call rows_at(s, part, requests, t, rows, always, error, growth)
          else
-            call rows_at(s, part, requests, t, rows, is_found)
+            call rows_at(s, part, requests, t, rows)
             error = 0.0_wp
             growth = 0.0_wp
          end if

@@ -33,7 +33,8 @@ module lane_state
       real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
    end type lane_block_t
 
-   !> Lanes serve the variants of one set. Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
+   !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own engine. Of `blocks` all that
+   !> is no number of kind `wp` counts.
    type :: lanes_t
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)

@@ -122,17 +122,17 @@ contains
    end subroutine advance_set
 
    !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
-   !> time `t` between the instants; nothing else changes. `is_found`: all of them is known. `error` (3, 0:2, rows):
+   !> time `t` between the instants; nothing else changes. rows%known is -1 without a motion. `error` (3, 0:2, rows):
    !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0.
-   subroutine rows_at(s, c, list, t, rows, is_found, always, error, growth)
+   subroutine rows_at(s, c, list, t, rows, always, error, growth)
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, list(:)
       real(wp), intent(in) :: t
       type(row_t), intent(inout) :: rows(size(list))
-      logical, intent(out) :: is_found
       logical, intent(in), optional :: always
       real(wp), intent(out), optional :: error(3, 0:2, size(list)), growth
       type(motion_t) :: q
+      logical :: is_found
 
       if (present(error)) error = 0.0_wp
       if (present(growth)) growth = 0.0_wp
@@ -143,7 +143,6 @@ contains
          if (is_found) call take(q)
       else
          call come_back(s%list(c))
-         is_found = s%now%motions(c)%known == 2
          call take(s%now%motions(c))
       end if
 
