@@ -63,7 +63,7 @@ module command_line
       character(:), allocatable :: show
    end type options_t
 
-   !> A printed message is known by its words, if these have as many letters: more than LINKS and one name.
+   !> Words of a printed message count if they have so many letters together: more than LINKS and one name have.
    integer, parameter :: known_length = 14
    !> More processes than any machine has processors would only take memory.
    integer, parameter :: max_jobs = 1024
@@ -337,7 +337,8 @@ contains
       end do
    end function explained
 
-   !> How many letters the words of the printed message `key` have that are words of `message`; 0 if they are few.
+   !> Counts the letters of those words of the printed message `key` that are words of `message`, each word once; 0 if
+   !> they are few.
    pure integer function likeness(message, key) result(letters)
       character(*), intent(in) :: message, key
       integer :: first, last
@@ -346,7 +347,8 @@ contains
       first = 1
       do while (first <= len(key))
          last = first + index(key(first:)//' ', ' ') - 2
-         if (index(' '//message//' ', ' '//key(first:last)//' ') > 0) letters = letters + last - first + 1
+         if (index(' '//message//' ', ' '//key(first:last)//' ') > 0 .and. &
+            index(' '//key(:first - 1), ' '//key(first:last)//' ') == 0) letters = letters + last - first + 1
          first = last + 2
       end do
       if (letters < known_length) letters = 0

@@ -272,9 +272,12 @@ contains
       if (allocated(m%echo)) deallocate (m%echo)
       if (o%options%check) return
       if (first <= 1) then
-         call open_set_outputs(o%options, set_suffix(o%first, o%last, i), o, failure)
+         call open_set_outputs(o%options, set_suffix(o%first, o%last, i), .false., o, failure)
          if (allocated(failure)) call move_alloc(failure, o%failure)
-         if (allocated(o%failure)) return
+         if (allocated(o%failure)) then
+            call break_off(o, m, say_broken_set, m%set_number - 1)
+            return
+         end if
          if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m, o%options%errors)
          if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(a%now)
          if (o%asked(out_table)) call table_head(o%files(out_table), o%table)

@@ -4,7 +4,7 @@ module outputs
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected
    use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
-   use system_calls, only: make_directory, signal_received
+   use system_calls, only: identity_t, identity_of, same_file, remove_file, make_directory, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_shared, out_last
    implicit none
@@ -50,7 +50,10 @@ contains
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: name
-      integer :: k, i
+      type(identity_t) :: of_files((out_last - out_shared)*max(0, last - first + 1))
+      type(output_t) :: made(size(of_files))
+      type(identity_t) :: id
+      integer :: k, i, files
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
       do k = 1, out_last
@@ -62,10 +65,12 @@ contains
             else if (len_trim(file_options(k)%in_directory) > 0) then
                call make_directory(path)
             else if (first < last) then
-               ! The tables of several sets would be mixed on standard output or a device.
+               ! The tables of several sets would be mixed on standard output, a device or a pipe.
                name = ''
+               id = identity_of(path=path)
                if (len(path) == 0) name = 'STANDARD OUTPUT'
-               if (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1) name = 'FILE '//path
+               if (id%device_or_pipe .or. (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1)) &
+                  name = 'FILE '//path
                if (len(name) > 0) call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
                   //whole(count)//' WITH --sets K/'//whole(count))
             end if
@@ -73,25 +78,45 @@ contains
       end do
 
       if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
+      ! Files that are made stay until all are tried: a link may lead to one of another set.
+      files = 0
       do i = first, last
          if (allocated(failure)) exit
-         call open_set_outputs(options, set_suffix(first, last, i), o, failure)
+         call open_set_outputs(options, set_suffix(first, last, i), .true., o, failure)
+         do k = out_shared + 1, out_last
+            if (.not. allocated(o%files(k)%buffer) .or. o%files(k)%descriptor < 0) cycle
+            files = files + 1
+            of_files(files) = identity_of(descriptor=o%files(k)%descriptor)
+            if (any(same_file(of_files(files), of_files(:files - 1)))) &
+               call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
+            made(files)%path = o%files(k)%path
+            made(files)%made = o%files(k)%made
+            o%files(k)%made = .false.
+         end do
          call abandon_output(o%files(out_shared + 1:))
+      end do
+      do i = 1, files
+         if (made(i)%made) call remove_file(made(i)%path)
       end do
       if (allocated(failure)) call abandon_output(o%files)
    end subroutine open_outputs
 
-   !> Opens the outputs of the set whose files have the `suffix`. Errors: as for `open_outputs`.
-   subroutine open_set_outputs(options, suffix, o, failure)
+   !> Opens the outputs of the set whose files have the `suffix`; one that `tries` them leaves devices and pipes alone,
+   !> whose readers would go. Errors: as for `open_outputs`.
+   subroutine open_set_outputs(options, suffix, tries, o, failure)
       type(options_t), intent(in) :: options
       character(*), intent(in) :: suffix
+      logical, intent(in) :: tries
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
+      type(identity_t) :: there
       integer :: k
 
       if (.not. any(o%asked(out_shared + 1:))) return
       do k = out_shared + 1, out_last
-         if (o%asked(k) .and. .not. allocated(failure)) call open_output(o%files(k), path(), failure)
+         if (allocated(failure) .or. .not. o%asked(k)) cycle
+         if (tries) there = identity_of(path=path())
+         if (.not. (tries .and. there%device_or_pipe)) call open_output(o%files(k), path(), failure)
       end do
       if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
 

@@ -11,7 +11,7 @@ module progress
    !> Runs shorter than this many seconds show nothing; the line then changes so many times a second.
    integer, parameter :: first_seconds = 2, changes_a_second = 4
    !> Every line has this length, so that each covers the one before it.
-   integer, parameter :: line_length = 72
+   integer, parameter :: line_length = 58
    character(1), parameter :: return = achar(13)
 
    type :: progress_t

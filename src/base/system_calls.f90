@@ -20,6 +20,7 @@ module system_calls
       integer(c_int32_t) :: device(2) = 0  !< major and minor number
       integer(c_int64_t) :: inode = 0
       logical :: regular = .false.         !< not a device, not a pipe, not a directory, and not missing
+      logical :: device_or_pipe = .false.  !< neither regular nor a directory, and not missing
    end type identity_t
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
@@ -31,7 +32,7 @@ module system_calls
    !> Read and write for all, of a directory also its use, less the user's mask.
    integer(c_int), parameter :: permissions = int(o'666', c_int), directory_permissions = int(o'777', c_int)
    !> Kinds of files within a mode.
-   integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000')
+   integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000'), kind_directory = int(o'040000')
 
    integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
    integer(c_int), parameter :: watched(2) = [signal_interrupt, signal_terminate]
@@ -162,6 +163,7 @@ contains
       id%device = facts%device
       id%inode = facts%inode
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular
+      id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
    end function identity_of
 
    !> Whether `a` and `b` are one regular file. A device, pipe or terminal may be used twice without harm.

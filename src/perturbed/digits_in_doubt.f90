@@ -57,9 +57,10 @@ contains
       end do
    end function sizes_of
 
-   !> By how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks of `e` is small; without
-   !> limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the
-   !> position to the last digits all the same; all equations at once have lost up to half of them.
+   !> Finds by how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks of `e` is small;
+   !> without limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found
+   !> the position to the last digits all the same; all equations at once have lost up to half of them. These have one
+   !> unit of length for large links and small ones: pivots of blocks say nothing of them, and they always are in doubt.
    pure subroutine find_growth(s, m, e, q, growth, in_doubt)
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
@@ -88,7 +89,7 @@ contains
       usual = max(size_of, min(angle, usual_angle))
       call find_growths(e, growth, of_angles)
       growth = usual*growth
-      in_doubt = max(usual, growth) > safe_growth
+      in_doubt = max(usual, growth) > safe_growth .or. m%method /= method_newton
       if (.not. angle > usual_angle) return
       in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
       growth = growth*max(1.0_wp, angle/usual)

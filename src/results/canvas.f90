@@ -268,23 +268,38 @@ contains
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i
       character(:), allocatable :: name
-      real(wp) :: p(2, c%d%films)            ! pixels
-      logical :: known(c%d%films + 1)
-      integer :: first, last
+      real(wp) :: p(2, c%d%films), here(2)   ! pixels
+      integer :: k, n
 
       name = trim(c%m%points(i)%name)
-      known = [(c%d%frame(last)%known(c%m%points(i)%link), last=1, c%d%films), .false.]
       call put_group(c%o, attribute('data-path', name), name)
-      first = 1
-      do last = 1, c%d%films
-         p(:, last) = to_pixels(c, point_place(c%m, c%d%frame(last), i))
-         if (.not. known(last)) first = last + 1
-         if (known(last + 1) .or. last <= first) cycle
-         call put_line(c%o, 'polyline', p(:, first:last), &
-            'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
-         call add_lines(c, p(:, first:last), path_weight)
+      n = 0
+      do k = 1, c%d%films
+         if (c%d%frame(k)%known(c%m%points(i)%link)) then
+            here = to_pixels(c, point_place(c%m, c%d%frame(k), i))
+            ! A point that stands still, to a hundredth of a pixel, has one place.
+            if (n > 0) then
+               if (all(nint(100.0_wp*here) == nint(100.0_wp*p(:, n)))) cycle
+            end if
+            n = n + 1
+            p(:, n) = here
+         else
+            call put_piece()
+         end if
       end do
+      call put_piece()
       call put_end(c%o, 'g')
+
+   contains
+
+      !> Draws the places gathered, if they are a line, and begins again.
+      subroutine put_piece()
+         if (n > 1) then
+            call put_line(c%o, 'polyline', p(:, :n), 'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
+            call add_lines(c, p(:, :n), path_weight)
+         end if
+         n = 0
+      end subroutine put_piece
    end subroutine put_path
 
    !> Draws the ring of the instant centre of pole number `i` at the pixel `p` (2).

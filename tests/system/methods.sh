@@ -127,4 +127,17 @@ for method in NEWTON DENSE MATRIX; do
    equal "METHOD $method: none is larger" 0 "$(awk '$2 > 9' "$w/solved" | grep -c .)"
 done
 
+# A dyad of 1E-7 on a crank of 1, of which all equations at once lose digits: those that are printed are NEWTON's, to a unit
+# of the last, and the others are masked.
+for method in NEWTON DENSE; do
+   by $method tests/system/decks/dense_tiny_dyad.deck
+   grep -E '^ (CRANK|TCR|TCO|BLK) .*[0-9]' "$w/$method.lst" > "$w/$method.rows"
+done
+equal 'a tiny dyad by DENSE: wrong digits, any masked' '0 yes' "$(paste "$w/NEWTON.rows" "$w/DENSE.rows" | LC_ALL=C awk '
+   NF == 20 { for (i = 2; i <= 10; i++) {
+      if ($i $(i + 10) ~ /[?]/) { masked = "yes"; continue }
+      unit = 10^-(length($i) - index($i, "."))
+      if ($i - $(i + 10) > 1.5*unit || $(i + 10) - $i > 1.5*unit) wrong++ } }
+   END { print wrong + 0, masked }')"
+
 conclude
