@@ -18,7 +18,6 @@ module card_reader
       type(card_t), allocatable :: star         !< the `*` card below it
       integer :: form = form_unknown            !< its place in `forms`
       logical :: valid = .true.                 !< it and its `*` card have no error of their own
-      integer :: small = 0                      !< the column of the first small letter of its name and labels; 0: none
       logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
       character(label_length) :: label(label_a:label_c) = ''
       integer :: whole = 0                      !< the whole number in a label field
@@ -57,11 +56,9 @@ contains
       end do
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
-      call check_characters(parsed%card, parsed%names_certain, parsed%small, errors)
-      ! A title may have them.
-      if (parsed%small > card_fields(merge(card_name, label_c, parsed%form == form_title))%last) parsed%small = 0
-      if (parsed%small > 0) parsed%label = capitals(parsed%label)
-      if (errors%count == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
+      call check_characters(parsed%card, parsed%names_certain, errors)
+      parsed%label = capitals(parsed%label)
+      if (errors%count == before .and. parsed%form == form_unknown) call refuse_name(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before
       if (.not. parsed%valid .or. parsed%form == form_title) return
@@ -76,76 +73,40 @@ contains
       parsed%valid = errors%count == before
    end subroutine read_card
 
-   !> Makes the text of the TITLE card `card` printable: letters without their accents, cut at the last column. Both are
-   !> remarks.
+   !> Makes the text of the TITLE card `card` printable: with ? for a letter that is not ASCII, cut at the last column.
+   !> Both are remarks.
    subroutine read_title(card, errors)
       type(card_t), intent(inout) :: card
       type(input_errors_t), intent(inout) :: errors
-      character(:), allocatable :: typed, title
-      integer :: i
+      character(:), allocatable :: title
+      integer :: i, first
 
-      typed = trim(card%text(title_field%first:))
-      if (card%overrun > 0) typed = card%text(title_field%first:) &
-         //repeat(' ', min(card%overrun - card_columns - 1, card_columns))//trim(card%beyond)
-      title = typed
-      i = findloc([(ichar(typed(i:i)) > 127, i=1, len(typed))], .true., dim=1)
-      if (i > 0) title = without_accents(typed)
-      if (i > 0) call add_remark(errors, remark_title_letters, card, title_field%first + i - 1, '')
-      ! Of the text beyond the last column only the beginning is known.
-      if (len(title) > card_columns - title_field%first + 1 .or. card%beyond(len(card%beyond):) /= ' ') &
-         call add_remark(errors, remark_title_long, card, card_columns + 1, '')
+      title = ''
+      first = 0
+      do i = title_field%first, card_columns
+         associate (code => ichar(card%text(i:i)))
+            if (code > 127 .and. first == 0) first = i
+            ! Bytes of 128 to 191 continue a character of UTF-8.
+            if (code < 128) title = title//card%text(i:i)
+            if (code > 191) title = title//'?'
+         end associate
+      end do
+      if (first > 0) call add_remark(errors, remark_title_letters, card, first, '')
+      if (card%overrun > 0) call add_remark(errors, remark_title_long, card, card_columns + 1, '')
       card%text(title_field%first:) = title
       card%overrun = 0
    end subroutine read_title
-
-   !> `text`, in UTF-8, with the Latin letter for a Latin letter with an accent, plain dashes and quotation marks, and ?
-   !> for any other character that is not ASCII.
-   pure function without_accents(text) result(plain)
-      character(*), intent(in) :: text
-      character(:), allocatable :: plain
-      !> The letters of U+00C0 to U+017F; a character of UTF-8 begins with one of the bytes 195, 196, 197.
-      character(*), parameter :: letters = 'AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty' &
-         //'AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSs' &
-         //'SsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs'
-      character(*), parameter :: dashes = char(226)//char(128)
-      integer :: i, length, code
-
-      plain = ''
-      i = 1
-      do while (i <= len(text))
-         code = ichar(text(i:i))
-         length = 1
-         ! Bytes of 128 to 191 continue the character.
-         do while (code > 127 .and. length < 4 .and. i + length <= len(text))
-            if (iand(ichar(text(i + length:i + length)), 192) /= 128) exit
-            length = length + 1
-         end do
-         associate (c => text(i:i + length - 1))
-            if (code < 128) then
-               plain = plain//c
-            else if (code >= 195 .and. code <= 197 .and. len(c) == 2) then
-               code = 64*(code - 195) + modulo(ichar(c(2:2)), 64) + 1
-               plain = plain//letters(code:code)
-            else if (len(c) == 3 .and. index(c, dashes) == 1) then
-               plain = plain//trim(merge('-', merge('''', '"', ichar(c(3:3)) < 156), ichar(c(3:3)) < 152))
-            else
-               plain = plain//'?'
-            end if
-         end associate
-         i = i + length
-      end do
-   end function without_accents
 
    !> Reads the `*` card `card` to `above`, the card above it, whose reals it gives. Errors are added to `errors`.
    subroutine read_star(card, above, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
       type(input_errors_t), intent(inout) :: errors
-      integer :: before, small, i
+      integer :: before, i
       logical :: clean, cut(3)
 
       before = errors%count
-      call check_characters(card, clean, small, errors)
+      call check_characters(card, clean, errors)
       if (errors%count > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
@@ -176,33 +137,23 @@ contains
    end subroutine read_star
 
    !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
-   !> printable ASCII; `small`: the column of the first small letter before another character; 0: none.
-   subroutine check_characters(card, clean, small, errors)
+   !> printable ASCII.
+   subroutine check_characters(card, clean, errors)
       type(card_t), intent(in) :: card
       logical, intent(out) :: clean
-      integer, intent(out) :: small
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       type(field_t) :: field
-      character(:), allocatable :: word
       integer :: column, last
 
-      small = 0
       last = len_trim(card%text)
       do column = 1, last
-         if (card%text(column:column) >= ' ' .and. card%text(column:column) < 'a') cycle
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
-         if (small == 0 .and. card%text(column:column) <= 'z') small = column
       end do
       clean = column > last
       if (clean) then
-         if (card%overrun == 0) return
-         ! The word that crosses the last column, as far as it is known.
-         word = ''
-         if (card%overrun == card_columns + 1 .and. card%text(card_columns:) /= ' ') &
-            word = card%text(index(card%text, ' ', back=.true.) + 1:)//card%beyond(:index(card%beyond//' ', ' ') - 1)
-         call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond, &
-            trim(adjustl(longer_number(card, word))))
+         if (card%overrun > 0) &
+            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
          return
       end if
       code = control_character
@@ -212,30 +163,22 @@ contains
       call add_error(errors, code, card, field, column, field_text(card, field))
    end subroutine check_characters
 
-   !> Adds the error of a card name that does not exist. `form`: the form that was probably meant, or form_unknown.
-   subroutine guess_form(card, form, errors)
+   !> Adds the error of a card name that does not exist. `form`: that of a name that does not begin in column 1, or
+   !> form_unknown.
+   subroutine refuse_name(card, form, errors)
       type(card_t), intent(in) :: card
       integer, intent(out) :: form
       type(input_errors_t), intent(inout) :: errors
-      character(:), allocatable :: name, hint
+      character(:), allocatable :: name
       type(error_code_t) :: code
 
       name = field_text(card, card_fields(card_name))
       form = find_form(name)
       code = card_unknown
-      hint = ''
-      if (form /= form_unknown) then
-         code = card_indented
-      else if (name == '') then
-         code = field_blank
-      else if (errors%count < max_printed) then
-         associate (nearest => nearest_words(capitals(name), forms%layout(:label_length)))
-            if (size(nearest) > 0) form = nearest(1)
-            hint = proposal(forms(nearest)%layout(:label_length))
-         end associate
-      end if
-      call add_field_error(errors, code, card, card_fields(card_name), hint)
-   end subroutine guess_form
+      if (form /= form_unknown) code = card_indented
+      if (name == '') code = field_blank
+      call add_field_error(errors, code, card, card_fields(card_name))
+   end subroutine refuse_name
 
    !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
    !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues
@@ -274,20 +217,9 @@ contains
          end if
          cut(i:i + 1) = .true.
          call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), whole(border) &
-            //' AND '//whole(border + 1)//longer_number(card, card%text(start:finish)))
+            //' AND '//whole(border + 1))
       end do
    end subroutine find_cuts
-
-   !> ' ' and where a number may stand that is longer than the fields of `card`, if `text` is one; otherwise ''.
-   pure function longer_number(card, text) result(hint)
-      type(card_t), intent(in) :: card
-      character(*), intent(in) :: text
-      character(:), allocatable :: hint
-
-      hint = ''
-      if (len(text) <= card_fields(real_1)%last - card_fields(real_1)%first + 1 .or. card%text(1:1) == '*') return
-      if (is_real(text)) hint = ' (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
-   end function longer_number
 
    !> Whether `text` is a real number without an error.
    pure logical function is_real(text)

@@ -10,7 +10,6 @@ module card_sets
    use card_numbers, only: angle_in_radians
    use drawn_values, only: take_drawn, coincides
    use name_table, only: name_table_t, put_name, find_name
-   use names, only: subject_name, listed
    use numerals, only: whole
    implicit none
    private
@@ -28,7 +27,6 @@ module card_sets
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      logical :: has_small = .false.                !< a card has small letters
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
       type(input_errors_t) :: errors                !< all errors of the deck so far
@@ -60,7 +58,6 @@ contains
       set%count = 0
       set%number_of = 0
       set%names_certain = .true.
-      set%has_small = .false.
       call begin_mechanism(set, number)
    end subroutine begin_set
 
@@ -232,45 +229,20 @@ contains
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, i
       integer, intent(out) :: n
+      character(5), parameter :: kinds(request_link:request_pair) = ['LINK ', 'POINT', 'PAIR ']
+      character(:), allocatable :: hint
+      integer :: other
 
       n = 0
       if (set%cards(k)%label(i) == '') return
       n = find_name(set%named(kind)%table, set%cards(k)%label(i))
-      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, kind, k, i))
-   end subroutine look_up
-
-   !> Tells what the name in label `i` (label_a to label_c) of card `k` may be, which no link, point or pair
-   !> (`kind`) has; '' if nothing is known, or if the error is only counted.
-   function hint_for(set, kind, k, i) result(hint)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: kind, k, i
-      character(:), allocatable :: hint
-      character(label_length), allocatable :: names(:)
-      integer :: link, point, n
-
+      if (n > 0 .or. .not. set%names_certain) return
       hint = ''
-      if (set%errors%count >= max_printed) return
-      associate (card => set%cards(k), text => set%cards(k)%card%text, field => card_fields(i), m => set%mechanism)
-         link = find_name(set%named(request_link)%table, card%label(i))
-         point = find_name(set%named(request_point)%table, card%label(i))
-         if (link > 0) then
-            hint = '(A LINK HAS IT)'
-            if (any(m%points%link == link)) &
-               hint = '(A LINK HAS IT; ITS POINTS: '//listed(pack(m%points%name, m%points%link == link), .false.)//')'
-         else if (point > 0) then
-            hint = '(A POINT HAS IT)'
-         else if (find_name(set%named(request_pair)%table, card%label(i)) > 0) then
-            hint = '(A PAIR HAS IT)'
-         else if (index(text(field%last:field%last + 1), ' ') == 0) then
-            hint = '(IS IT LONGER THAN 8 LETTERS?)'
-         else if (index(text(field%first - 1:field%first), ' ') == 0 .and. i > label_a) then
-            hint = '(IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)'
-         else
-            names = [(subject_name(m, kind, n), n=1, size(set%named(kind)%card))]
-            hint = proposal(names(nearest_words(card%label(i), names)))
-         end if
-      end associate
-   end function hint_for
+      do other = request_pair, request_link, -1
+         if (find_name(set%named(other)%table, set%cards(k)%label(i)) > 0) hint = '(A '//trim(kinds(other))//' HAS IT)'
+      end do
+      call add_card_error(set, unknown(kind), k, i, hint)
+   end subroutine look_up
 
    !> The place in `words` of label A of card `k`; 0 if it is none of them: for a card without other errors, that is the
    !> error `code`.

@@ -5,7 +5,7 @@ module cards
    use kinds, only: label_length
    use failures, only: capitals
    implicit none
-   private :: int64, label_length, capitals, form_t, star_layout, keys, edits
+   private :: int64, label_length, capitals, form_t, star_layout, keys
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80
@@ -140,7 +140,7 @@ contains
       taken = 0
       if (form /= form_unknown) taken = forms(form)%reals
       if (form /= form_add) return
-      if (any(capitals(word) == ['POWER', 'TABLE'])) taken = 2
+      if (any(word == ['POWER', 'TABLE'])) taken = 2
    end function reals_of
 
    !> The card name of a form.
@@ -160,51 +160,4 @@ contains
       if (form == form_unknown) form = findloc(keys, transfer(capitals(key), keys(1)), dim=1)
       if (len_trim(name) > label_length) form = form_unknown
    end function find_form
-
-   !> The places in `words` of those nearest to `name`, each word once: they differ by at most two letters, and by at
-   !> most half of their own. Of more than three only three.
-   pure function nearest_words(name, words) result(nearest)
-      character(*), intent(in) :: name, words(:)
-      integer, allocatable :: nearest(:)
-      integer :: i, distance, least
-
-      allocate (nearest(0))
-      least = 2
-      do i = 1, size(words)
-         distance = edits(trim(name), trim(words(i)))
-         if (distance > least .or. 2*distance > len_trim(words(i))) cycle
-         if (distance < least) nearest = nearest(:0)
-         least = distance
-         if (size(nearest) < 3 .and. all(words(nearest) /= words(i))) nearest = [nearest, i]
-      end do
-   end function nearest_words
-
-   !> The question whether one of `words` is meant; '' if there are none, or more than two.
-   pure function proposal(words) result(hint)
-      character(*), intent(in) :: words(:)
-      character(:), allocatable :: hint
-
-      hint = ''
-      if (size(words) == 1) hint = '(IS IT '//trim(words(1))//'?)'
-      if (size(words) == 2) hint = '(IS IT '//trim(words(1))//' OR '//trim(words(2))//'?)'
-   end function proposal
-
-   !> The smallest number of insertions, deletions and replacements of letters that make `b` of `a` (Levenshtein
-   !> distance).
-   pure integer function edits(a, b)
-      character(*), intent(in) :: a, b
-      integer :: row(0:len(b)), i, j, corner, above
-
-      row = [(j, j=0, len(b))]
-      do i = 1, len(a)
-         corner = row(0)
-         row(0) = i
-         do j = 1, len(b)
-            above = row(j)
-            row(j) = min(above + 1, row(j - 1) + 1, corner + merge(0, 1, a(i:i) == b(j:j)))
-            corner = above
-         end do
-      end do
-      edits = row(len(b))
-   end function edits
 end module cards

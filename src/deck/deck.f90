@@ -2,14 +2,14 @@
 !> computed from a deck with an error.
 module deck
    use, intrinsic :: iso_fortran_env, only: int64
-   use mechanism, only: mechanism_t, remark_small_letters
+   use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
    use cards
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
-   use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
+   use deck_remarks, only: check_unused, check_angles, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
    use input_errors
@@ -136,7 +136,6 @@ contains
       type(reading_t), intent(inout) :: progress
       type(parsed_card_t) :: parsed
       type(parsed_card_t), allocatable :: larger(:)
-      integer :: i
 
       associate (set => progress%set)
          if (card%text(1:1) == '*') then
@@ -148,12 +147,6 @@ contains
             return
          end if
          call read_card(card, parsed, set%errors)
-         if (parsed%small > 0 .and. .not. set%has_small) then
-            set%has_small = .true.
-            i = findloc(card_fields%last >= parsed%small, .true., dim=1)
-            call add_remark(set%errors, remark_small_letters, card, first_column(card, card_fields(i)), &
-               field_text(card, card_fields(i)))
-         end if
          if (parsed%form /= form_end) then
             if (set%count == size(set%cards)) then
                allocate (larger(2*set%count))
@@ -202,7 +195,6 @@ contains
             call check_unused(set)
             call check_centres(set)
             call check_angles(set)
-            call check_guides(set)
             if (set%errors%count == progress%errors_before) call check_drawing(set)
             call build_echo(set)
          end if

@@ -1,16 +1,14 @@
 !> What the listing has of a set without errors: its echo, the cards as they were understood with the values in use; and
-!> remarks on what is harmless or likely not what was meant: names that nothing uses, degrees for radians, a guide that
-!> is off by a right angle. Of a deck with JOINT cards, whose drawing is the mechanism: numbers that are as drawn,
-!> numbers that contradict the drawing, and joints that may be meant as one point.
+!> remarks on what is harmless or likely not what was meant: names that nothing uses, degrees for radians. Of a deck
+!> with JOINT cards, whose drawing is the mechanism: numbers that are as drawn, and numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
-   use planar, only: pi, in_degrees, without_turns, direction
+   use planar, only: pi, in_degrees, without_turns
    use mechanism
    use drives, only: drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_drive
    use scales, only: solver_length
-   use grouping, only: sorted_t, sorted, members
    use numerals, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
@@ -18,7 +16,7 @@ module deck_remarks
    use input_errors, only: link_unused
    implicit none
    private
-   public :: check_unused, check_angles, check_guides, check_drawing, build_echo
+   public :: check_unused, check_angles, check_drawing, build_echo
 
    !> The echo: its characters in a line, and in a real.
    integer, parameter :: line_length = 119, real_width = 25
@@ -30,8 +28,6 @@ module deck_remarks
    !> What the listing has of links whose axes are those of a drawing.
    character(*), parameter :: angles = 'PHI, VPHI, APHI', of_some = ' OF THOSE WITHOUT NUMBERS'
 
-   !> Parts of the characteristic length: an estimate closes a pair to `closed`; a guide at `open` is not met.
-   real(wp), parameter :: closed = 0.05_wp, open = 0.3_wp
    !> Angles beyond this are no degrees that someone has read from a drawing.
    real(wp), parameter :: max_degrees = 720.0_wp
    !> Digits of a number as drawn, as far as its kind has them.
@@ -40,13 +36,6 @@ module deck_remarks
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
    real(wp), parameter :: drawn_digits = 1.0e-4_wp
-   !> Two joints of a link that are nearer than this part of the greatest distance of joints may be meant as one point.
-   !> That is, some per thousand too small at most, the greatest extent of all joints in one of so many directions.
-   real(wp), parameter :: near = 0.03_wp
-   integer, parameter :: directions = 32
-   !> So many such remarks are enough. Of more joints than some thousand of one link many are near one another: the
-   !> search then ends early.
-   integer, parameter :: max_near = 50
 
 contains
 
@@ -101,32 +90,6 @@ contains
          end do
       end do
    end subroutine check_angles
-
-   !> A remark on each guide that the estimate of the links does not meet, eq. (9), but would meet if it were turned by
-   !> a right angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
-   subroutine check_guides(set)
-      type(card_set_t), intent(inout) :: set
-      type(pair_t) :: turned
-      real(wp) :: length, opening(-1:1)
-      integer :: i, k
-
-      if (set%number_of(form_prism) == 0) return
-      associate (m => set%mechanism)
-         length = solver_length(m)
-         if (any([(m%pairs(i)%kind /= pair_prismatic .and. norm2(drawn_way(m, m%pairs(i))) > closed*length, &
-                   i=1, size(m%pairs))])) return
-         do i = 1, size(m%pairs)
-            if (m%pairs(i)%kind /= pair_prismatic) cycle
-            turned = m%pairs(i)
-            do k = -1, 1
-               turned%alpha = m%pairs(i)%alpha + 0.5_wp*pi*k
-               opening(k) = abs(drawn_opening(m, turned))
-            end do
-            if (opening(0) < open*length .or. min(opening(-1), opening(1)) > closed*length) cycle
-            call add_card_remark(set, remark_guide, set%named(request_pair)%card(i), real_1)
-         end do
-      end associate
-   end subroutine check_guides
 
    !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
    !> TITLE, and one for each default that no card replaces.
@@ -257,52 +220,7 @@ contains
                call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, x, is_angle))
          end associate
       end do
-      call check_joints(set)
    end subroutine check_drawing
-
-   !> A remark on each JOINT card whose place is very near that of another one of the same link, but not at it. Three
-   !> links at one point, with two cards of the same place, are as they should be.
-   subroutine check_joints(set)
-      type(card_set_t), intent(inout) :: set
-      type(sorted_t) :: joints_of
-      real(wp), allocatable :: place(:, :), along(:)
-      logical, allocatable :: is_remarked(:)
-      integer, allocatable :: cards(:), list(:)
-      real(wp) :: limit, distance
-      integer :: i, j, k, link, found
-
-      cards = pack([(k, k=1, set%count)], set%cards(:set%count)%form == form_joint)
-      place = reshape([(set%cards(cards(i))%real(1:2), i=1, size(cards))], [2, size(cards)])
-      allocate (is_remarked(size(cards)), source=.false.)
-      found = 0
-      limit = 0.0_wp
-      do i = 1, directions
-         along = matmul(direction(pi*real(i, wp)/real(directions, wp)), place)
-         limit = max(limit, near*(maxval(along) - minval(along)))
-      end do
-      associate (m => set%mechanism)
-         joints_of = sorted([m%points(set%cards(cards)%subject)%link, m%points(set%cards(cards)%subject + 1)%link], &
-            size(m%links))
-      end associate
-      do link = 1, size(set%mechanism%links)
-         list = modulo(members(joints_of, link) - 1, size(cards)) + 1
-         do i = 2, size(list)
-            do j = 1, i - 1
-               distance = norm2(place(:, list(i)) - place(:, list(j)))
-               if (distance >= limit .or. .not. distance > 0.0_wp) cycle
-               k = max(list(i), list(j))
-               if (is_remarked(k)) exit
-               is_remarked(k) = .true.
-               found = found + 1
-               call add_card_remark(set, remark_near_joints, cards(k), label_a, &
-                  with_unit(set%mechanism, distance, .false.) &
-                  //' ('//trim(set%cards(cards(min(list(i), list(j))))%label(label_a))//')')
-               exit
-            end do
-            if (found == max_near) return
-         end do
-      end do
-   end subroutine check_joints
 
    !> The length or angle `x` (rad) of `m`, with its unit.
    pure function with_unit(m, x, is_angle) result(text)

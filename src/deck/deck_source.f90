@@ -28,7 +28,6 @@ module deck_source
       character(:), allocatable :: buffer    !< bytes of the deck
       integer :: at = 1                      !< the next byte of the buffer
       logical :: ended = .false.             !< there is no more to read
-      logical :: after_return = .false.      !< the last line ended with a carriage return
    end type source_t
 
 contains
@@ -59,28 +58,21 @@ contains
       end if
    end subroutine open_source
 
-   !> Reads the next `card`; `found` is false at the end. A line ends in LF, CR-LF or CR. Errors: status_system;
+   !> Reads the next `card`; `found` is false at the end. A line ends in LF or CR-LF. Errors: status_system;
    !> status_rejected for a line of more than `max_columns`.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
       logical, intent(out) :: found
       type(failure_t), allocatable, intent(out) :: failure
-      integer :: length, i
+      integer :: length, next, i
       logical :: is_whole
 
       found = .false.
       do
-         if (source%after_return .and. source%at <= len(source%buffer)) then
-            ! A line feed after a carriage return belongs to the line before.
-            if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
-            source%after_return = .false.
-         end if
-         do i = source%at, len(source%buffer)
-            if (source%buffer(i:i) == line_feed .or. source%buffer(i:i) == carriage_return) exit
-         end do
-         length = i - source%at
-         is_whole = i <= len(source%buffer)
+         length = index(source%buffer(source%at:), line_feed) - 1
+         is_whole = length >= 0
+         if (.not. is_whole) length = len(source%buffer) - source%at + 1
          if (length > max_columns) then
             call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines + 1) &
                //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')
@@ -94,6 +86,10 @@ contains
       if (.not. found) return
       source%lines = source%lines + 1
       card%number = source%lines
+      next = source%at + length + 1
+      if (length > 0) then
+         if (source%buffer(next - 2:next - 2) == carriage_return) length = length - 1
+      end if
       associate (line => source%buffer(source%at:source%at + length - 1))
          card%text = line(:min(length, card_columns))
          i = 0
@@ -101,8 +97,7 @@ contains
          if (i > 0) card%overrun = card_columns + i
          if (i > 0) card%beyond = line(card%overrun:)
       end associate
-      source%at = source%at + length + 1
-      if (is_whole) source%after_return = source%buffer(source%at - 1:source%at - 1) == carriage_return
+      source%at = next
    end subroutine next_card
 
    !> Closes the file of `source`; standard input stays open.

@@ -57,19 +57,12 @@ module input_errors
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
    type(error_code_t), parameter, public :: &
       number_other = error_code_t(20, 'IS NOT A NUMBER'), &
-      number_letter_o = error_code_t(21, 'IS NOT A NUMBER (LETTER O)'), &
-      number_letter_l = error_code_t(22, 'IS NOT A NUMBER (LETTER L OR I)'), &
       number_blank = error_code_t(23, 'IS NOT A NUMBER (EMBEDDED BLANK)'), &
       number_comma = error_code_t(24, 'IS NOT A NUMBER (DECIMAL COMMA)'), &
-      number_sign = error_code_t(25, 'IS NOT A NUMBER (MISSING E BEFORE THE EXPONENT?)'), &
-      number_nan = error_code_t(26, 'IS NOT A NUMBER (NAN)'), &
-      number_inf = error_code_t(27, 'IS NOT A FINITE NUMBER'), &
       number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
       number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'IS NOT A REAL NUMBER: WRITE A DECIMAL POINT OR AN EXPONENT (5.0)'), &
-      number_fraction = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT'), &
-      number_no_digits = error_code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
-      number_exponent = error_code_t(33, 'IS NOT A NUMBER (NO DIGITS IN THE EXPONENT)')
+      number_fraction = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT')
    ! Fields, and the cards that belong to the one above them: `*` and TOLER.
    type(error_code_t), parameter, public :: &
       field_blank = error_code_t(34, 'THE FIELD IS BLANK: FILL IT IN', own_layout), &

@@ -7,18 +7,13 @@
 !> As in Fortran, a number with the exponent D is of double precision in every kind of reals: 0.1D0 is the double
 !> nearest to 0.1, so that programs in real64 and real128 read the same number.
 module numbers
-   use, intrinsic :: iso_fortran_env, only: int64, dp => real64
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use failures, only: capitals
    use input_errors
    implicit none
    private
    public :: read_real, read_whole
 
-   !> Numbers of digits (in int64) and powers of ten up to which both are exact in `wp`, so that one rounding gives the
-   !> nearest real: 15 and 22 for 53 bits, since 5**22 < 2**53.
-   integer, parameter :: exact_digits = min(precision(1.0_wp), 18)
-   integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
    !> Larger exponents are set to this one: far beyond the range, whatever the digits are.
    integer, parameter :: exponent_cap = 100000
 
@@ -31,12 +26,11 @@ contains
       real(wp), intent(out) :: value
       type(error_code_t), intent(out) :: error
       integer, intent(out) :: place
-      integer(int64) :: mantissa
       integer :: n, power, letter
       real(dp) :: double
 
       value = 0.0_wp
-      call split_real(text, mantissa, n, power, letter, place, error)
+      call split_real(text, n, power, letter, place, error)
       place = min(place, len(text))
       if (error%number > 0) return
       place = 1
@@ -48,11 +42,6 @@ contains
       if (scan(text(letter:), 'Dd') == 1 .and. abs(n + power) < range(double)) then
          read (text, '(f80.0)') double
          value = real(double, wp)
-      else if (n <= exact_digits .and. abs(power) <= exact_power) then
-         value = real(mantissa, wp)
-         if (power > 0) value = value*10.0_wp**power
-         if (power < 0) value = value/10.0_wp**(-power)
-         if (text(1:1) == '-') value = -value
       else
          read (text, '(f80.0)') value
       end if
@@ -71,7 +60,7 @@ contains
       first = merge(2, 1, scan(text(1:1), '+-') == 1)
       wrong = verify(text(first:), '0123456789') + first - 1
       if (first > len(text)) then
-         error = number_no_digits
+         error = number_other
       else if (wrong >= first) then
          place = wrong
          error = error_at(text, wrong)
@@ -84,27 +73,23 @@ contains
       end if
    end subroutine read_whole
 
-   !> Splits `text` = digits x 10**power. `n`: the number of its digits from the first that is not 0 on; `mantissa`:
-   !> they themselves, or the first ones where there are more than `exact_digits`. `letter`: the place of the letter of
-   !> the exponent, or of the character behind `text`. `place`: the character at which the grammar stops, which is
-   !> len(text) + 1 if there is no error; of a number without a point the first.
-   pure subroutine split_real(text, mantissa, n, power, letter, place, error)
+   !> Splits `text` = digits x 10**power. `n`: the number of its digits from the first that is not 0 on. `letter`: the
+   !> place of the letter of the exponent, or of the character behind `text`. `place`: the character at which the
+   !> grammar stops, which is len(text) + 1 if there is no error; of a number without a point the first.
+   pure subroutine split_real(text, n, power, letter, place, error)
       character(*), intent(in) :: text
-      integer(int64), intent(out) :: mantissa
       integer, intent(out) :: n, power, letter, place
       type(error_code_t), intent(out) :: error
       integer :: first, point, exponent
       character(1) :: c
 
       first = merge(2, 1, scan(text(1:1), '+-') == 1)
-      mantissa = 0_int64
       n = 0
       point = 0
       do place = first, len(text)
          c = text(place:place)
          if (c >= '0' .and. c <= '9') then
             if (n > 0 .or. c > '0') n = n + 1
-            if (n <= exact_digits) mantissa = 10_int64*mantissa + iachar(c) - iachar('0')
          else if (c == '.' .and. point == 0) then
             point = place
          else
@@ -115,7 +100,7 @@ contains
       power = 0
       if (point > 0) power = point + 1 - place
       if (place == first + merge(1, 0, point > 0)) then
-         error = number_no_digits
+         error = number_other
       else if (scan(text(letter:), 'EeDd') == 1) then
          first = place + 1
          if (scan(text(first:), '+-') == 1) first = first + 1
@@ -124,7 +109,7 @@ contains
             if (text(place:place) < '0' .or. text(place:place) > '9') exit
             exponent = min(10*exponent + iachar(text(place:place)) - iachar('0'), exponent_cap)
          end do
-         if (place == first) error = number_exponent
+         if (place == first) error = number_other
          power = power + merge(-exponent, exponent, text(first - 1:first - 1) == '-')
       else if (point == 0 .and. place > len(text)) then
          error = number_no_point
@@ -139,23 +124,9 @@ contains
       character(*), intent(in) :: text
       integer, intent(in) :: i
       type(error_code_t) :: error
-      character(3) :: word
 
-      word = capitals(text(i:min(i + 2, len(text))))
       error = number_other
-      select case (text(i:i))
-      case (' ')
-         error = number_blank
-      case (',')
-         error = number_comma
-      case ('O', 'o')
-         error = number_letter_o
-      case ('l', 'I')
-         error = number_letter_l
-      case ('+', '-')
-         if (i > 1) error = merge(number_sign, number_other, scan(text(i - 1:i - 1), '0123456789.') == 1)
-      end select
-      if (word == 'NAN') error = number_nan
-      if (word == 'INF') error = number_inf
+      if (text(i:i) == ' ') error = number_blank
+      if (text(i:i) == ',') error = number_comma
    end function error_at
 end module numbers

@@ -55,26 +55,23 @@ module mechanism
 
    !> The kinds of remarks: what a deck has that is harmless, or likely not what was meant.
    enum, bind(c)
-      enumerator :: remark_small_letters = 1    !< small letters are read as capitals
-      enumerator :: remark_title_long           !< a title is cut
+      enumerator :: remark_title_long = 1       !< a title is cut
       enumerator :: remark_title_letters        !< a title has letters that are not ASCII
       enumerator :: remark_touching             !< two numbers touch
       enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
       enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
-      enumerator :: remark_guide                !< a guide fits its points if it is turned by a right angle
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_drawn_value          !< the value of a drive at t = 0 is the one of the drawing
       enumerator :: remark_drawn_offset         !< the h of a guide is the one of the drawing: P and Q are not along it
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
       enumerator :: remark_off_drawing          !< at the first instant a drive is off the drawing
-      enumerator :: remark_near_joints          !< two joints of a link are very near one another
       enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 
    !> A remark about `text`, which begins at `column` of a card; its sentence ends with `value`.
    type :: remark_t
-      integer :: kind = 0                      !< remark_small_letters, ...
+      integer :: kind = 0                      !< remark_title_long, ...
       integer :: card = 0, column = 0          !< number of the card in the deck, and column
       character(24) :: text = ''
       character(40) :: value = ''              !< a number with its unit; '' if the sentence has none

@@ -5,10 +5,10 @@
 module listing
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_small_letters, remark_more, request_t, request_link
+   use mechanism, only: settings_t, mechanism_t, remark_title_long, remark_more, request_t, request_link
    use names, only: drive_name, listed, more
    use motion
-   use structure, only: findings_t, spare_drives_text
+   use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
    use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -42,10 +42,9 @@ module listing
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
    !> The words of remarks, by their kind.
-   type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
-      [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_guide, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, &
-      say_near_joints, say_more]
+   type(phrase_t), parameter :: remark_words(remark_title_long:remark_more) = &
+      [say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
+      say_radians, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, say_more]
 
 contains
 
@@ -77,9 +76,8 @@ contains
          call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
             //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
             //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
-         if (f%degrees_of_freedom < f%drives .and. f%spare_drives == 0) call put(o, ' --- '//phrase(say_repeating, pl) &
-            //' '//whole(f%drives - f%degrees_of_freedom))
-         if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f, pl))
+         if (f%degrees_of_freedom < f%drives) call put(o, ' --- '//phrase(say_repeating, pl)//' ' &
+            //whole(f%drives - f%degrees_of_freedom))
 
          ! A line of links for each group, continued where they are many.
          if (size(f%groups) > 0) call put(o, ' '//phrase(say_groups, pl))

@@ -219,9 +219,9 @@ module phrases
    type(phrase_t), parameter, public :: &
       say_card = phrase_t('CARD', 'KARTA'), &
       say_column = phrase_t('COLUMN', 'KOLUMNA'), &
-      say_small_letters = phrase_t('SMALL LETTERS ARE READ AS CAPITALS', 'MALE LITERY SA CZYTANE JAK DUZE'), &
       say_title_long = phrase_t('THE TITLE IS CUT AT COLUMN 80', 'TYTUL JEST OBCIETY NA KOLUMNIE 80'), &
-      say_title_letters = phrase_t('THE TITLE IS PRINTED WITHOUT ACCENTS', 'TYTUL JEST BEZ ZNAKOW DIAKRYTYCZNYCH'), &
+      say_title_letters = phrase_t('THE TITLE IS PRINTED WITH ? FOR LETTERS THAT ARE NOT ASCII', &
+         'W TYTULE ZNAKI SPOZA ASCII ZASTAPIONO PRZEZ ?'), &
       say_touching = phrase_t('TOUCHES THE NUMBER BEFORE IT: TWO NUMBERS ARE READ', &
          'STYKA SIE Z LICZBA PRZED NIA: CZYTANE SA DWIE'), &
       say_link_unused = phrase_t('IS A LINK WITHOUT PAIR OR DRIVE: IT COUNTS AS GROUND', &
@@ -230,19 +230,14 @@ module phrases
          'PUNKTU NIE UZYWA ZADNA PARA, NAPED ANI KARTA PRINT'), &
       say_radians = phrase_t('IS READ IN RADIANS: DID YOU MEAN DEGREES (UNITS DEG)?', &
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
-      say_guide = phrase_t('IS A GUIDE THAT MAY BE OFF BY 90 DEG: CHECK ALPHA', &
-         'PROWADNICA WYGLADA NA OBROCONA O KAT PROSTY (ALPHA)'), &
       say_drawn_value = phrase_t('VALUE AT T = 0, AS DRAWN:', 'WARTOSC W T = 0 WEDLUG RYSUNKU:'), &
       say_drawn_offset = phrase_t('PQ IS NOT DRAWN ALONG ALPHA; FOR A CYLINDER TAKE CARD CYLINDER; H =', &
          'PQ NIE LEZY WZDLUZ ALPHA; DO SILOWNIKA SLUZY KARTA CYLINDER; H ='), &
       say_open = phrase_t('ITS NUMBERS CONTRADICT THE DRAWING; CLOSURE ERROR THERE:', &
          'LICZBY SPRZECZNE Z RYSUNKIEM; BLAD ZAMKNIECIA NA RYSUNKU:'), &
       say_off_drawing = phrase_t('THE MOTION BEGINS OFF THE DRAWING BY', 'RUCH ZACZYNA SIE POZA RYSUNKIEM O'), &
-      say_near_joints = phrase_t('IS VERY NEAR A JOINT OF THE SAME LINK: ONE POINT? DISTANCE', &
-         'BARDZO BLISKO INNEJ PARY TEGO OGNIWA: JEDEN PUNKT? ODLEGLOSC'), &
       say_jumps = phrase_t('HAS JUMPS OF ACCELERATION: VALUES AFTER THE JUMP ARE PRINTED', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
-      say_spare_drives = phrase_t('TOO MANY DRIVES BY', 'ZA DUZO NAPEDOW O'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')
 
 contains

@@ -186,21 +186,6 @@ for deck in drawn_slider drawn_cylinder drawing; do
       END { print compared ", " off + 0 " off" }' "$w/drawn.csv" "$w/typed.csv")"
 done
 
-# Two joints of one link that are near: below 3 per cent of the greatest distance of joints, not at one place.
-# near X Y: three bars at a pin, the second joint at (X, Y) instead of (3, 4); the greatest distance is 10
-near() {
-   { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK ROD-1; card LINK ROD-2; card LINK ARM; card LINK RAM
-     card JOINT O BASE CRANK 0.0 0.0; card JOINT A CRANK ROD-1 0.0 1.0; card JOINT K ROD-1 ARM 3.0 4.0
-     card JOINT K2 ARM ROD-2 "$1" "$2"; card JOINT T BASE ARM 6.0 0.0; card JOINT R RAM ROD-2 6.0 8.0; card POINT S BASE '' 6.0 8.0
-     card PRISM S R GUIDE 90.0; card DRIVE ANGLE CRANK '' '' 30.0; card AT '' '' '' 0.0; card PRINT POINTS; card END; } > "$w/near.deck"
-   run near
-   remarks near
-}
-equal 'near joints' '"K2" IS VERY NEAR A JOINT OF THE SAME LINK: ONE POINT? DISTANCE 0.1 M (K)' "$(near 3.0 4.1)"
-equal 'near joints: 2.9 per cent' '"K2" IS VERY NEAR A JOINT OF THE SAME LINK: ONE POINT? DISTANCE 0.29 M (K)' "$(near 3.0 4.29)"
-equal 'near joints: 3.1 per cent' '' "$(near 3.0 4.31)"
-equal 'three links at one point' '' "$(near 3.0 4.0)"
-equal 'near joints: in no deck of input/' '' "$(for deck in input/*.deck; do "$kinmat" --check "$deck" | grep 'VERY NEAR'; done)"
 # The numbers of a drawing that contradict it by points: a pair of two points that lie apart.
 slider '' "$(card LINK ARM)" "$(card POINT S ROD '' 1.5 0.75)" "$(card POINT S2 ARM '' 1.5 1.0)" "$(card REVOLUTE S S2 PIN)" \
    "$(card JOINT T BASE ARM 1.5 3.0)" "$turn" "$(card DRIVE ANGLE SLIDER)" "$(card AT '' '' '' 0.0)" > "$w/pin.deck"

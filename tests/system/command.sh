@@ -160,14 +160,14 @@ same '--no-listing: the log' "$w/m.log" "$w/o.log"
 rejected '--no-listing and -o' 1 ' *** OPTIONS --no-listing AND -o EXCLUDE EACH OTHER' "$w/m.deck" --no-listing -o "$w/x"
 
 # --quiet: no remarks on standard error, but errors.
-sed 's/^PRINT /print /' "$w/m.deck" > "$w/remark.deck"
+sed 's/^PRINT /GROUND  IDLE\n&/' "$w/m.deck" > "$w/remark.deck"
 "$kinmat" "$w/remark.deck" --no-listing > "$w/out" 2> "$w/err"
-equal 'without --quiet there are remarks' 2 "$(grep -c '^ --- .*SMALL LETTERS' "$w/err")"
+equal 'without --quiet there are remarks' 2 "$(grep -c '^ --- .*IS A LINK WITHOUT' "$w/err")"
 "$kinmat" "$w/remark.deck" --no-listing --quiet > "$w/out" 2> "$w/err"
 equal '--quiet: status' 0 $?
 equal '--quiet: standard error' '' "$(cat "$w/err")"
 "$kinmat" --quiet "$w/remark.deck" > "$w/out" 2> "$w/err"
-equal '--quiet: the listing has its remarks' 2 "$(grep -c '^ --- .*SMALL LETTERS' "$w/out")"
+equal '--quiet: the listing has its remarks' 2 "$(grep -c '^ --- .*IS A LINK WITHOUT' "$w/out")"
 sed '/^DRIVE/d' "$w/remark.deck" > "$w/quiet.deck"
 "$kinmat" "$w/quiet.deck" --quiet > "$w/out" 2> "$w/err"
 equal '--quiet: errors are told, and no remarks' '*** E101 *** E103 *** E101 *** E103 ' "$(awk '{ printf "%s %s ", $1, $2 }' "$w/err")"
@@ -316,7 +316,7 @@ equal '--ruler CARD: a line for each field' '' "$(for name in $("$kinmat" --rule
 equal '--explain CODE' 'E102   TOO MANY EQUATIONS BY n AMONG PAIRS ... AND DRIVES ...
        CAUSE  with E101: a drive is in the wrong place
        CURE   move it to the links of E101' "$("$kinmat" --explain E102 | sed -n '/TOO MANY/,$p')"
-equal '--explain CODE in small letters' "$("$kinmat" --explain E021)" "$("$kinmat" --explain e021)"
+equal '--explain CODE in small letters' "$("$kinmat" --explain E024)" "$("$kinmat" --explain e024)"
 equal '--explain WORDS' '*** NO POSITION FOUND' "$("$kinmat" --explain 'NO POSITION FOUND' | head -n 1)"
 equal '--explain WORDS, in small letters and as several words' "$("$kinmat" --explain 'NO POSITION FOUND')" "$("$kinmat" --explain no position  found)"
 equal '--explain WORDS: all entries' 4 "$("$kinmat" --explain 'the name of a' | grep -c '^E0[15][0-9]')"

@@ -99,7 +99,6 @@ told 'two mechanisms without drives' 1 ' *** E101  SET 1: LINKS CRANK1, COUPL1, 
 told 'two drives on one mechanism, none on the other' 1 \
    ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA01, PA1, PB1, PB01 AND DRIVES ANGLE CRANK1, ANGLE ROCK1
- *** E106  SET 1: TOO MANY DRIVES BY 1: ANGLE CRANK1, ANGLE ROCK1; DRIVE THE LINKS OF E101
  *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 2'
 { head_of CHAIN; point P0 BASE
    for i in 1 2 3 4 5 6 7 8 9 10; do
@@ -107,11 +106,9 @@ told 'two drives on one mechanism, none on the other' 1 \
       if [ $i = 1 ]; then joint P0 P1 J1; else joint "Q$((i - 1))" "P$i" "J$i"; fi
    done; card PRINT POINTS Q10; until_time 2 1.0; } > "$w/deck"
 told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS
- *** E101  SET 1: NO SECOND PAIR HOLDS LINK BAR-10: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 0'
 sed 's/^TIME /'"$(drive ANGLE BAR-5 '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
 told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS
- *** E101  SET 1: NO SECOND PAIR HOLDS LINK BAR-10: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 1'
 pendulums() { head_of PENDULUMS; awk -v n="$1" 'BEGIN { print "POINT   O       BASE"; for (i = 1; i <= n; i++)
    printf "LINK    L%d\nPOINT   P%-7dL%-7d        1.0\nREVOLUTEO       P%-7dR%d\n", i, i, i, i, i }'; until_time 2 1.0; }
@@ -119,7 +116,6 @@ pendulums 22 > "$w/deck"
 told 'twenty-two pendulums' 1 "$(awk 'BEGIN { for (i = 1; i <= 20; i++)
    print " *** E101  SET 1: LINK L" i ": 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR" }')
  *** E101  SET 1: AND 2 MORE PARTS THAT CAN MOVE
- *** E101  SET 1: NO SECOND PAIR HOLDS LINKS L1, L2, L3, L4, L5, L6, L7, L8 AND 14 MORE: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 69 COORDINATES LESS R = 47 EQUATIONS LEAVE S = 22 DEGREES OF FREEDOM, DRIVES ARE 0"
 # A forgotten pair, at a link that carries another, and at the ground; a driven link at the end of a chain is none.
 drawn() { head_of DRAWING; card LINK CRANK; card LINK COUPLER; card LINK ROCKER; card JOINT A0 BASE CRANK; card JOINT A CRANK COUPLER 1.0
@@ -128,11 +124,9 @@ left=' *** E103  SET 1: W = 12 COORDINATES LESS R = 9 EQUATIONS LEAVE S = 3 DEGR
 drawn card JOINT B0 ROCKER BASE 4.0 > "$w/deck"
 told 'no pair of coupler and rocker' 1 " *** E101  SET 1: LINK COUPLER: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
  *** E101  SET 1: LINK ROCKER: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
- *** E101  SET 1: NO SECOND PAIR HOLDS LINKS COUPLER, ROCKER: IS ONE FORGOTTEN?
 $left 1"
 drawn card JOINT B COUPLER ROCKER 3.0 2.5 > "$w/deck"
 told 'no pair of rocker and base' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 2 DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS
- *** E101  SET 1: NO SECOND PAIR HOLDS LINK ROCKER: IS ONE FORGOTTEN?
 $left 1"
 sed 's/^TIME/'"$(drive ANGLE ROCKER '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
 told 'a driven link at the end' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
@@ -142,11 +136,10 @@ press() { head_of PRESS MM; for link in CRANK COUPLER UPPER LOWER RAM; do card L
    card JOINT A CRANK COUPLER 500.0 310.0; card JOINT K COUPLER UPPER 80.0 400.0; card JOINT K2 UPPER LOWER 80.0 400.0
    card JOINT T BASE UPPER 0.0 800.0; "$@"; card POINT TOP BASE '' 0.0 800.0
    drive ANGLE CRANK '' '' 360.0; until_time 2 1.0; }
-meant='; PAIR GUIDE HOLDS LINK LOWER AT JOINT R, NOT LINK RAM: FOR RAM NAME A POINT OF ITS OWN'
 guided() { card JOINT R "$@" 0.0 0.0; card PRISM TOP R GUIDE -90.0; }
 press guided LOWER RAM > "$w/deck"
-told 'a guide at a joint that holds the other link' 1 " *** E101  SET 1: LINK RAM: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR$meant
- *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS O, A, K, K2, T, GUIDE AND DRIVE ANGLE CRANK$meant
+told 'a guide at a joint that holds the other link' 1 " *** E101  SET 1: LINK RAM: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
+ *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS O, A, K, K2, T, GUIDE AND DRIVE ANGLE CRANK
  *** E103  SET 1: W = 18 COORDINATES LESS R = 17 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1"
 press guided RAM LOWER > "$w/deck"
 "$kinmat" --check "$w/deck" > "$w/out" 2> "$w/err"
@@ -169,8 +162,7 @@ told 'a drive on a fixed pivot moves nothing' 1 ' *** E101  SET 1: LINKS CRANK, 
 { head_of MATRIX; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; drive RELANGLE CRANK COUPL 1.0; card METHOD MATRIX
    until_time 2 1.0; } > "$w/deck"
 told 'too many equations for METHOD MATRIX' 1 \
-   ' *** E104  SET 1: ONLY METHOD NEWTON TAKES TOO MANY EQUATIONS BY 1 AMONG PAIRS PA0, PA, PB, PB0 AND DRIVES ANGLE CRANK, RELANGLE CRANK COUPL
- *** E106  SET 1: TOO MANY DRIVES BY 1: ANGLE CRANK, RELANGLE CRANK COUPL; TAKE IT AWAY'
+   ' *** E104  SET 1: ONLY METHOD NEWTON TAKES TOO MANY EQUATIONS BY 1 AMONG PAIRS PA0, PA, PB, PB0 AND DRIVES ANGLE CRANK, RELANGLE CRANK COUPL'
 
 # Freedoms by rank: the count is right and the structure too, the numbers are not.
 parallelogram() { head_of PARALLEL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; "$@"; until_time 1 1.0; }
@@ -249,8 +241,7 @@ told 'three cranks without a drive' 2 "0:$(singular LINKS CRANK-1, CRANK-2, CRAN
 # Redundant and consistent: of those that depend on one another, the last of the deck.
 { head_of TWICE; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0
    drive ANGLE CRANK '' 14.0 9.0; until_time 2 1.0; } > "$w/deck"
-told 'one drive twice' 0 ": --- TOO MANY DRIVES BY 1: ANGLE CRANK, ANGLE CRANK
-0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+told 'one drive twice' 0 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
 $below"
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 1 2.0; } > "$w/deck"
 told 'three cranks' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
@@ -283,20 +274,17 @@ swing() { head_of SWING; link BLOCK 0.5 0.0 0.0; link BAR 0.5 0.0 -90.0; point O
    joint O1 P PIVOT; card PRISM O O1 GUIDE 0.0 0.0 0.0; drive ANGLE BAR '' -90.0 30.0; "$@"; until_time 1 1.0; }
 two_drives() { drive SLIDE GUIDE '' 0.5 0.25; drive "$@"; }
 swing two_drives SLIDE GUIDE '' 0.5 0.25 > "$w/deck"
-told 'one slide driven twice' 0 ": --- TOO MANY DRIVES BY 1: SLIDE GUIDE, SLIDE GUIDE
-0: --- REDUNDANT EQUATION: DRIVE SLIDE GUIDE
+told 'one slide driven twice' 0 "0: --- REDUNDANT EQUATION: DRIVE SLIDE GUIDE
 $below"
 equal 'one slide driven twice: the pendulum' ' BAR        0.7500000   0.0000000  -60.000000   0.2500000   0.0000000    30.00000' \
    "$(grep '^ BAR ' "$w/out" | tail -n 1 | cut -c 1-81)"
 swing two_drives X P '' 0.5 0.25 > "$w/deck"
-told 'a slide driven, and its point' 0 ": --- TOO MANY DRIVES BY 1: SLIDE GUIDE, X P
-0: --- REDUNDANT EQUATION: DRIVE X P
+told 'a slide driven, and its point' 0 "0: --- REDUNDANT EQUATION: DRIVE X P
 $below"
 
 # Redundant and inconsistent. Least squares: two drives or guides that differ by e are open by e/2 each, the last is named.
 swing two_drives SLIDE GUIDE '' 0.51 0.25 > "$w/deck"
-told 'one slide driven to two places' 2 ": --- TOO MANY DRIVES BY 1: SLIDE GUIDE, SLIDE GUIDE
-0:$open
+told 'one slide driven to two places' 2 "0:$open
 0: *** DRIVE SLIDE GUIDE: CLOSURE ERROR $(small 0.005) M
 1:$open
 1: *** DRIVE SLIDE GUIDE: CLOSURE ERROR $(small 0.005) M
@@ -304,8 +292,7 @@ $largest 1.E-02"
 # The second drive leaves the first by 0.2 t**3, which begins without velocity and acceleration.
 { head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 20.0
    card ADD POWER '' '' 0.2 3.0; until_time 4 4.0; } > "$w/deck"
-told 'drives that part on the way' 2 ": --- TOO MANY DRIVES BY 1: ANGLE CRANK, ANGLE CRANK
-0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+told 'drives that part on the way' 2 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
 1:$open
 1: *** DRIVE ANGLE CRANK: CLOSURE ERROR $(small 0.1) DEG
 2:$open
@@ -317,8 +304,7 @@ told 'drives that part on the way' 2 ": --- TOO MANY DRIVES BY 1: ANGLE CRANK, A
 $largest 1.E-01"
 { head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 22.0; until_time 1 1.0
    } > "$w/deck"
-told 'drives that agree in position alone' 2 ": --- TOO MANY DRIVES BY 1: ANGLE CRANK, ANGLE CRANK
-0:$open
+told 'drives that agree in position alone' 2 "0:$open
 0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
 1:$open
 1: *** DRIVE ANGLE CRANK: CLOSURE ERROR $(small 1) DEG
@@ -512,8 +498,7 @@ crossing card BRANCH '' '' '' 17.0 > "$w/deck"
 told 'a card after the last change point' 0 "4: --- $at16: PASSED ON THE SMOOTH BRANCH
 4: *** BRANCH FROM T = 17.00000 S: NO CHANGE POINT WAS PASSED"
 { crossing card BRANCH ROCK '' '' 16.0; } | sed 's/^TIME /'"$(drive ANGLE CRANK '' 20.0 10.0)"'\n&/' > "$w/deck"
-told 'a change point with its card, the drive given twice' 0 ": --- TOO MANY DRIVES BY 1: ANGLE CRANK, ANGLE CRANK
-0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+told 'a change point with its card, the drive given twice' 0 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
 4: --- CHANGE POINT AT T = 16.00000 S, LINKS COUPL, ROCK: PASSED TO THE OTHER BRANCH (CARD BRANCH)
 $below"
 equal 'a change point with its card, the drive given twice: the rocker' "$crossed" "$(rocker)"
@@ -733,9 +718,7 @@ forgiven() {
    same "$1: debug build" "$w/out" "$w/debug.out"
 }
 forgiven 'comments' '/^POINT/ { print "# " $0; print "  ! a block of comments"; print "$" } 1' ''
-forgiven 'small letters' '{ print tolower($0) }' ' --- CARD 1  COLUMN 1: "title" SMALL LETTERS ARE READ AS CAPITALS'
-forgiven 'small letters of one label' '/^LINK    ROD/ { sub(/ROD/, "Rod") } 1' \
-   ' --- CARD 5  COLUMN 9: "Rod" SMALL LETTERS ARE READ AS CAPITALS'
+forgiven 'small letters' '{ print tolower($0) }' ''
 forgiven 'a point without a use' '/^DRIVE/ { print "POINT   TIP     ROD" } 1' \
    ' --- CARD 18  COLUMN 9: "TIP" IS A POINT THAT NO PAIR, DRIVE OR PRINT CARD USES'
 forgiven 'a number that touches the one before it' '/^LINK    ROD/ { $0 = sprintf("%-61s0.0-10.0", "LINK    ROD") } 1' \
@@ -743,8 +726,8 @@ forgiven 'a number that touches the one before it' '/^LINK    ROD/ { $0 = sprint
 forgiven 'a long title' '/^TITLE/ { $0 = $0 "                                                                 AND MORE" } 1' \
    ' --- CARD 1  COLUMN 81: THE TITLE IS CUT AT COLUMN 80'
 forgiven 'a title with accents' '/^TITLE/ { $0 = "TITLE   wybaczaj\304\205cy" } 1' \
-   ' --- CARD 1  COLUMN 17: THE TITLE IS PRINTED WITHOUT ACCENTS'
-equal 'a title without its accents' 1 "$(grep -c '   TITLE   wybaczajacy$' "$w/out")"
+   ' --- CARD 1  COLUMN 17: THE TITLE IS PRINTED WITH ? FOR LETTERS THAT ARE NOT ASCII'
+equal 'a title without its accents' 1 "$(grep -c '   TITLE   wybaczaj?cy$' "$w/out")"
 changed '/^DRIVE/ { print "GROUND  WALL"; print "LINK    IDLE"; print "LANG    PL" } 1'
 "$kinmat" "$w/deck" > "$w/out"
 equal 'links without a use, in Polish: status' 0 $?
@@ -766,11 +749,6 @@ equal 'long names: what is left out, in Polish' '' "$(grep ' AND [0-9]* MORE' "$
 # often FILE WORDS: how often they stand there, across lines as well
 often() { tr -s '\n ' '  ' < "$1" | grep -o "$2" | wc -l | tr -d ' '; }
 equal 'long names: as often' "$(often "$w/EN" ' AND [0-9]* MORE')" "$(often "$w/PL" ' I [0-9]* INNE')"
-{ head_of DRIVEN; four_bar '' $crank_rocker; for i in 1 2 3 4 5; do drive RELANGLE BASE CRANK 0.0 9.0; done; card METHOD NEWTON
-  card LANG PL; until_time 1 1.0; } | sed 's/CRANK   /LONGNAME/' > "$w/deck"
-"$kinmat" "$w/deck" > "$w/out"
-equal 'drives too many, long names' ' --- ZA DUZO NAPEDOW O 4: RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME I 2 INNE' \
-   "$(grep -e '---' "$w/out" | head -n 1)"
 
 # A crank whose pivot is very far away, along the guide: the rod's angle is that of sin = (0.5 - sin 15)/3, and roundings of
 # the distance leave fewer and fewer of its digits, which are masked; where none is left the CSV and the table have no number.
@@ -808,10 +786,6 @@ changed '/^UNITS/ { next } 1'
 "$kinmat" "$w/deck" > "$w/out"
 equal 'degrees without UNITS' ' --- CARD 3  COLUMN 65: "60.0" IS READ IN RADIANS: DID YOU MEAN DEGREES (UNITS DEG)?' \
    "$(grep '^ --- CARD' "$w/out")"
-changed '/^LINK    CRANK/ { sub(/60.0$/, "0.0") } /^LINK    ROD/ { $0 = "LINK    ROD                     1.0             0.0             0.0" }
-   /^LINK    PISTON/ { sub(/3.0/, "4.0") } /^DRIVE/ { sub(/60.0/, "0.0 ") } /^PRISM/ { sub(/0.0/, "90.0") } 1'
-"$kinmat" "$w/deck" > "$w/out"
-equal 'a guide a right angle off' ' --- CARD 17  COLUMN 33: "90.0" IS A GUIDE THAT MAY BE OFF BY 90 DEG: CHECK ALPHA' "$(grep '^ --- CARD' "$w/out")"
 
 # Without a listing, and before the errors of the structure, the remarks stand on standard error.
 changed '/^DRIVE/ { print "POINT   TIP     ROD" } 1'
@@ -835,20 +809,20 @@ explained 'a name of nine letters' '/^LINK    PISTON/ { print "LINK    PISTONROD
    ' *** E037  CARD 6  COLUMN 9  FIELD LABEL-A: "PISTONROD" IS TOO LONG: NAMES HAVE AT MOST 8 CHARACTERS
  LAYOUT    |LINK    LINK                    X               Y               PHI'
 explained 'a name of nine letters before another' '/^REVOLUTEA1/ { $0 = "REVOLUTEA1      POINT-A21PAIR-A" } 1' \
-   ' *** E052  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A2" IS NOT THE NAME OF A POINT (IS IT LONGER THAN 8 LETTERS?)
+   ' *** E052  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A2" IS NOT THE NAME OF A POINT
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
 explained 'a name behind one of nine letters' '/^POINT   B / { $0 = "POINT   B-PISTONRPISTON" } 1' \
-   ' *** E051  CARD 13  COLUMN 17  FIELD LABEL-B: "RPISTON" IS NOT THE NAME OF A LINK (IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)
+   ' *** E051  CARD 13  COLUMN 17  FIELD LABEL-B: "RPISTON" IS NOT THE NAME OF A LINK
  LAYOUT    |POINT   POINT   LINK            XI              ETA
- *** E052  CARD 16  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT (IS IT B2?)
+ *** E052  CARD 16  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR
- *** E052  CARD 17  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT (IS IT B2?)
+ *** E052  CARD 17  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT
  LAYOUT    |PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'
 explained 'a pair without a name' '/^REVOLUTEA1/ { $0 = substr($0, 1, 24) } 1' \
    ' *** E034  CARD 15  COLUMN 25  FIELD LABEL-C: THE FIELD IS BLANK: FILL IT IN
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
 explained 'a link for a point' '/^REVOLUTEA1/ { sub(/A1 /, "ROD") } 1' \
-   ' *** E052  CARD 15  COLUMN 9  FIELD LABEL-A: "ROD" IS NOT THE NAME OF A POINT (A LINK HAS IT; ITS POINTS: A2, B2)
+   ' *** E052  CARD 15  COLUMN 9  FIELD LABEL-A: "ROD" IS NOT THE NAME OF A POINT (A LINK HAS IT)
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
 explained 'a point for a link' '/^DRIVE/ { sub(/CRANK/, "A1   ") } 1' \
    ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "A1" IS NOT THE NAME OF A LINK (A POINT HAS IT)
@@ -856,17 +830,17 @@ explained 'a point for a link' '/^DRIVE/ { sub(/CRANK/, "A1   ") } 1' \
 explained 'a pair for a point' '/^DRIVE/ { sub(/ANGLE   CRANK /, "X       PAIR-A") } 1' \
    ' *** E052  CARD 18  COLUMN 17  FIELD LABEL-B: "PAIR-A" IS NOT THE NAME OF A POINT (A PAIR HAS IT)
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
-explained 'letters of a link that are swapped' '/^DRIVE/ { sub(/CRANK/, "CRNAK") } 1' \
-   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRNAK" IS NOT THE NAME OF A LINK (IS IT CRANK?)
+explained 'a link that does not exist' '/^DRIVE/ { sub(/CRANK/, "CRNAK") } 1' \
+   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRNAK" IS NOT THE NAME OF A LINK
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
-explained 'a letter of a pair that is missing' '/^DRIVE/ { print "PRINT   PAIRS   GUDE" } 1' \
-   ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" IS NOT THE NAME OF A PAIR (IS IT GUIDE?)
+explained 'a pair that does not exist' '/^DRIVE/ { print "PRINT   PAIRS   GUDE" } 1' \
+   ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" IS NOT THE NAME OF A PAIR
  LAYOUT    |PRINT   KIND    NAME    EVERY'
 explained 'a number of more than 16 columns' '/^POINT   B2/ { $0 = "POINT   B2      ROD             3.0000000000000004E-001" } 1' \
-   ' *** E018  CARD 12  COLUMN 33  FIELD REAL-1: "3.0000000000000004E-001" CROSSES THE FIELD BORDER BETWEEN COLUMNS 48 AND 49 (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)
+   ' *** E018  CARD 12  COLUMN 33  FIELD REAL-1: "3.0000000000000004E-001" CROSSES THE FIELD BORDER BETWEEN COLUMNS 48 AND 49
  LAYOUT    |POINT   POINT   LINK            XI              ETA'
 explained 'a number of more than 16 columns, at the end' '/^LINK    ROD/ { $0 = substr($0, 1, 64) "-10.00000000000000001" } 1' \
-   ' *** E014  CARD 5  COLUMN 81  FIELD PAST-80: "00001" IS BEYOND COLUMN 80 (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
+   ' *** E014  CARD 5  COLUMN 81  FIELD PAST-80: "00001" IS BEYOND COLUMN 80'
 explained 'too many steps for the field' '/^TIME/ { $0 = "TIME    1000000000              0.0             1.0" } 1' \
    ' *** E038  CARD 19  COLUMN 9  FIELD LABEL-A: "1000000000" IS TOO LONG: INTEGERS HAVE AT MOST 8 DIGITS
  LAYOUT    |TIME    STEPS                   T0              T1'
@@ -899,7 +873,7 @@ last=$(wc -l < "$w/deck")
 cut_at 'cut in the TIME card' $((bytes - 6)) \
    " *** E002  CARD $((last - 1))  COLUMN 1  FIELD NAME: \"TIME\" IS THE LAST CARD OF THE DECK: ADD AN END CARD AFTER IT"
 cut_at 'cut in the END card' $((bytes - 2)) \
-   " *** E010  CARD $last  COLUMN 1  FIELD NAME: \"EN\" IS NOT THE NAME OF A CARD (IS IT END?)"
+   " *** E002  CARD $last  COLUMN 1  FIELD NAME: \"EN\" IS THE LAST CARD OF THE DECK: ADD AN END CARD AFTER IT"
 head -c $((bytes - 1)) "$w/deck" | "$kinmat" > "$w/out"
 equal 'cut after END: status' 0 $?
 (head -c 300 "$w/deck"; sleep 1; tail -c +301 "$w/deck") | "$kinmat" > "$w/slow.out"
