@@ -37,8 +37,7 @@ program main
       call show(explained(options%deck))
    case default
       if (options%study .or. options%time) then
-         call run_study(options%deck, options%files(out_listing)%text, options%time, options%quiet, status, &
-            message)
+         call run_study(options%deck, options%files(out_listing)%text, options%time, status, message)
       else
          call run_job(options, status, message)
       end if

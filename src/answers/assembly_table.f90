@@ -178,7 +178,8 @@ contains
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
-      digits = digits_of(estimate_digits, largest, characteristic_length(m))
+      ! As many digits behind the point as a number of the characteristic length has.
+      digits = min(drawing_digits, estimate_digits + floor(log10(largest/characteristic_length(m))))
       if (any(is_joint)) digits = drawing_digits
       call put(o, ruler_card)
       do i = 1, size(m%links)
@@ -189,7 +190,7 @@ contains
          numbers(2) = number_text(position(2, i), largest, digits)
          associate (angle => position(3, i)/merge(degree, 1.0_wp, m%degrees))
             numbers(3) = number_text(angle, max(largest_angle, abs(angle)), &
-               digits_of(digits, abs(angle), largest_angle))
+               min(drawing_digits, digits + floor(log10(max(1.0_wp, abs(angle)/largest_angle)))))
          end associate
          call put_card(o, 'LINK    ', names, numbers)
       end do
@@ -243,15 +244,6 @@ contains
          call put(o, stars)
       end if
    end subroutine put_card
-
-   !> So many digits a number as large as `largest` has that has `digits` where it is no larger than `usual`: as many as
-   !> a card has columns for at most.
-   pure integer function digits_of(digits, largest, usual)
-      integer, intent(in) :: digits
-      real(wp), intent(in) :: largest, usual
-
-      digits_of = min(drawing_digits, digits + floor(log10(max(1.0_wp, largest/usual))))
-   end function digits_of
 
    !> `x` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
    function number_text(x, largest, digits) result(text)

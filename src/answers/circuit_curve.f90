@@ -1,9 +1,8 @@
 !> The curve of all positions of a mechanism whose one drive is set free: its equations, its points, and steps from one
 !> to another.
 !>
-!> Its pairs and its other drives, at rest, are one equation less than it has coordinates. Of more, those that are most
-!> independent where the curve is at the moment are solved: every position of the curve satisfies them too, and what is
-!> unique by them is unique by all. The others are looked at. Lengths are those of METHOD DENSE's system.
+!> Its pairs and its other drives, at rest, are one equation less than it has coordinates; a mechanism with more has no
+!> such curve here. Lengths are those of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
 !> singular at change points alone. K of `root_distance`, taken from B, bounds how fast B^-1 B changes: along t, up to
@@ -15,7 +14,7 @@ module circuit_curve
    use planar, only: without_turns
    use mechanism, only: drive_t, mechanism_t, drive_x, drive_y
    use scales, only: is_length
-   use linear_solver, only: factors_t, new_factors, factor, solve, determinant_sign
+   use linear_solver, only: factors_t, new_factors, factor, solve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values, drive_residual, drive_row, &
       drive_remainder
@@ -29,8 +28,6 @@ module circuit_curve
    integer, parameter :: max_iterations = 12
    !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
    real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
-   !> Equations that are too many hold to this, in rad and lengths: twice what the engine allows.
-   real(wp), parameter :: fits = max(2.0e-10_wp, 1.0e3_wp*epsilon(1.0_wp))
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
@@ -38,11 +35,8 @@ module circuit_curve
    real(wp), parameter :: max_step = 0.1_wp
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
-   !> A position off the curve by less than this part of the certified step is on it, for the curve is unique there:
-   !> rounding of the dimensions, where equations are too many, makes the positions differ by more than `same`.
+   !> A position off the curve by less than this part of the certified step is on it, for the curve is unique there.
    real(wp), parameter :: unique = 0.1_wp
-   !> Equations that are too many let the mechanism move where they change by less along the curve.
-   real(wp), parameter :: moves = sqrt(same)
 
    !> The numbers of a position on the curve: the drive's value, its first and second derivative, and the largest
    !> coordinate in lengths.
@@ -55,8 +49,6 @@ module circuit_curve
       type(system_t) :: driven                !< with the one drive that is free
       type(coordinates_t) :: free             !< in which the equations are not linear
       real(wp), allocatable :: held(:)        !< (drives held) their values
-      integer, allocatable :: row(:)          !< (coordinates - 1) the equations that are solved
-      logical :: is_held = .false.            !< at some position its pairs and other drives let nothing move
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
@@ -72,7 +64,6 @@ module circuit_curve
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
       real(wp) :: value(of_value:of_size) = 0.0_wp
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
-      integer :: sign = 1                     !< of the determinant of B
       logical :: is_dead = .false.            !< the drive turns back here
    end type curve_point_t
 
@@ -102,70 +93,27 @@ contains
       c%free = new_coordinates(c%closure)
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
-      c%row = [(i, i=1, c%closure%n - 1)]
    end subroutine make_curve
 
-   !> The equations: two of each pair, one of each drive that is held.
-   pure integer function equations_of(c)
-      type(curve_t), intent(in) :: c
-
-      equations_of = 2*size(c%closure%pairs) + size(c%closure%laws)
-   end function equations_of
-
-   !> Some equations are too many, by count.
+   !> Some equations are too many, by count: two of each pair, one of each drive that is held.
    pure logical function is_redundant(c)
       type(curve_t), intent(in) :: c
 
-      is_redundant = equations_of(c) > c%closure%n - 1
+      is_redundant = 2*size(c%closure%pairs) + size(c%closure%laws) > c%closure%n - 1
    end function is_redundant
-
-   !> Puts `c` at the position `q` (3, links), and chooses the equations that are solved there: of more than are needed,
-   !> one after another, that with the largest part across `border` (coordinates) and all those before it. `left`
-   !> (coordinates): the direction across all of them.
-   subroutine move_to(c, q, border, left)
-      type(curve_t), intent(inout) :: c
-      real(wp), intent(in) :: q(:, :), border(:)
-      real(wp), intent(out), optional :: left(:)
-      real(wp) :: a(equations_of(c) + c%closure%n, c%closure%n), across(c%closure%n)
-      real(wp) :: along(equations_of(c) + c%closure%n)
-      integer :: i, k, row
-
-      c%pose%q = q
-      call set_pose(c%closure, c%pose)
-      if (.not. (is_redundant(c) .or. present(left))) return
-      associate (m => equations_of(c))
-         a(m + 1:, :) = 0.0_wp
-         do i = 1, c%closure%n
-            a(m + i, i) = 1.0_wp
-         end do
-         call jacobian(c%closure, c%pose, a(:m, :))
-         across = border/max(tiny(1.0_wp), norm2(border))
-         do i = 0, size(c%row)
-            if (i > 0) across = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
-            along = matmul(a, across)
-            do k = 1, size(across)
-               a(:, k) = a(:, k) - along*across(k)
-            end do
-            if (i > 0 .and. is_redundant(c)) c%row(i) = row
-            row = maxloc(sum(a(:m, :)**2, dim=2), dim=1)
-         end do
-         row = m + maxloc(sum(a(m + 1:, :)**2, dim=2), dim=1)
-      end associate
-      if (present(left)) left = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
-   end subroutine move_to
 
    !> Newton's method from `c%pose`, with the row `border` at rest.
    subroutine correct(c, border, ok)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
       logical, intent(out) :: ok
-      real(wp) :: r(c%closure%n), all_of_them(equations_of(c)), change, before
+      real(wp) :: r(c%closure%n), change, before
       integer :: i, info
 
       before = huge(before)
       do i = 1, max_iterations
-         call residual(c%closure, c%pose, c%held, all_of_them)
-         r = [all_of_them(c%row), 0.0_wp]
+         call residual(c%closure, c%pose, c%held, r(:c%closure%n - 1))
+         r(c%closure%n) = 0.0_wp
          call factor_with(c, border, info)
          ok = info == 0
          if (.not. ok) return
@@ -181,7 +129,6 @@ contains
          before = change
       end do
       ok = change <= stalled
-      if (ok .and. is_redundant(c)) ok = maxval(abs(all_of_them)) <= fits
    end subroutine correct
 
    !> The factors of the equations' Jacobian with `border` as its last row.
@@ -189,10 +136,8 @@ contains
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
       integer, intent(out) :: info
-      real(wp) :: a(equations_of(c), c%closure%n)
 
-      call jacobian(c%closure, c%pose, a)
-      c%factors%a(:c%closure%n - 1, :) = a(c%row, :)
+      call jacobian(c%closure, c%pose, c%factors%a(:c%closure%n - 1, :))
       c%factors%a(c%closure%n, :) = border
       call factor(c%factors, info)
    end subroutine factor_with
@@ -227,11 +172,34 @@ contains
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
       real(wp) :: row(1, c%closure%n), q(3, size(position, 2)), along(c%closure%n)
+      real(wp) :: a(2*c%closure%n - 1, c%closure%n), across(c%closure%n), part(2*c%closure%n - 1)
+      integer :: i, k
 
       q = position
       q(:2, :) = q(:2, :)/c%closure%length
+      c%pose%q = q
+      call set_pose(c%closure, c%pose)
+
+      ! The direction across all equations: what they leave of the axes, the largest of them.
+      associate (n => c%closure%n)
+         call jacobian(c%closure, c%pose, a(:n - 1, :))
+         a(n:, :) = 0.0_wp
+         do i = 1, n
+            a(n - 1 + i, i) = 1.0_wp
+         end do
+         do i = 1, n - 1
+            k = maxloc(sum(a(:n - 1, :)**2, dim=2), dim=1)
+            across = a(k, :)/max(tiny(1.0_wp), norm2(a(k, :)))
+            part = matmul(a, across)
+            do k = 1, n
+               a(:, k) = a(:, k) - part*across(k)
+            end do
+         end do
+         k = n - 1 + maxloc(sum(a(n:, :)**2, dim=2), dim=1)
+      end associate
+      along = a(k, :)/max(tiny(1.0_wp), norm2(a(k, :)))
+
       row = 0.0_wp
-      call move_to(c, q, row(1, :), along)
       call drive_row(c%driven, c%pose, 1, row, 1)
       call find_point(c, q, sign(1.0_wp, dot_product(row(1, :), along))*along, p, ok)
    end subroutine start_point
@@ -317,11 +285,11 @@ contains
       real(wp), intent(in) :: q(:, :), border(:)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: x(c%closure%n), row(1, c%closure%n), along(3, size(q, 2)), a(equations_of(c), c%closure%n), &
-         all_of_them(equations_of(c)), k, speed
+      real(wp) :: x(c%closure%n), row(1, c%closure%n), along(3, size(q, 2)), k, speed
       integer :: info
 
-      call move_to(c, q, border)
+      c%pose%q = q
+      call set_pose(c%closure, c%pose)
       call correct(c, border, ok)
       if (.not. ok) return
       p%q = c%pose%q
@@ -336,20 +304,13 @@ contains
       call factor_with(c, p%tangent, info)
       ok = info == 0
       if (.not. ok) return
-      ! Equations that are too many may let nothing move.
-      if (is_redundant(c)) then
-         call jacobian(c%closure, c%pose, a)
-         ok = .not. maxval(abs(matmul(a, p%tangent))) > moves
-      end if
-      c%is_held = c%is_held .or. .not. ok
-      if (.not. ok) return
 
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
-      call remainder(c%closure, c%pose, along, all_of_them)
-      x = -[all_of_them(c%row), 0.0_wp]
+      call remainder(c%closure, c%pose, along, x(:c%closure%n - 1))
+      x(c%closure%n) = 0.0_wp
       call solve(c%factors, x)
-      p%bend = x
+      p%bend = -x
 
       row = 0.0_wp
       call drive_row(c%driven, c%pose, 1, row, 1)
@@ -360,10 +321,9 @@ contains
       p%value(of_size) = maxval(abs(p%q(:2, :)))
 
       call measure_slots(c%closure, c%free, c%pose)
-      call kantorovich(c%closure, c%free, c%factors, c%pose, c%row, k)
+      call kantorovich(c%closure, c%free, c%factors, c%pose, k)
       speed = distance(c%closure, c%free, 0.0_wp*along, along)
       p%reach = max_step
       if (speed > 0.0_wp) p%reach = min(certified/max(k, tiny(k)), max_step)/speed
-      p%sign = determinant_sign(c%factors)
    end subroutine find_point
 end module circuit_curve

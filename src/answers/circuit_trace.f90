@@ -6,6 +6,7 @@ module circuit_trace
    use system_calls, only: signal_received
    use circuit_curve, only: curve_t, curve_point_t, of_slope, of_bend, of_size, step_along, step_between, &
       lies_between, offset_from
+   use drives, only: halve, middle_of
    use pose, only: add_to_links
    implicit none
    private
@@ -16,7 +17,7 @@ module circuit_trace
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
    !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
    real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
-   integer, parameter :: max_points = 50000, max_iterations = 100
+   integer, parameter :: max_points = 50000
    !> Rounding makes the tangent uncertain by some roundings over the square of the certified step, and with it the
    !> sense in which the drive moves.
    real(wp), parameter :: unsure = 16.0_wp*epsilon(1.0_wp)
@@ -90,7 +91,6 @@ contains
       r = p
       r%tangent = -p%tangent
       r%value(1) = -p%value(1)
-      r%sign = -p%sign
    end function reversed
 
    !> Follows the curve from `start` in the sense of its tangent to its end.
@@ -236,8 +236,7 @@ contains
    end function sense
 
    !> The point `p` between the neighbours `a` and `b` at which number `order` (of_value, ..., of_size) is `level`,
-   !> which is between theirs. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
-   !> 1971). `ok`: it was found.
+   !> which is between theirs, by halving the step from `a`. `ok`: it was found.
    subroutine find_root(c, a, b, order, level, p, ok)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: a, b
@@ -245,30 +244,15 @@ contains
       real(wp), intent(in) :: level
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: h1, h2, h, g1, g2, g
+      real(wp) :: near, far
       integer :: i
 
-      h1 = 0.0_wp
-      h2 = step_between(c, a, b)
-      g1 = a%value(order) - level
-      g2 = b%value(order) - level
-      do i = 1, max_iterations
-         h = h1
-         if (abs(g2 - g1) > 0.0_wp) h = h2 - g2*((h2 - h1)/(g2 - g1))
-         if (.not. (h - h1)*(h2 - h) >= 0.0_wp) h = 0.5_wp*(h1 + h2)
-         call step_along(c, a, h, p, ok)
-         if (.not. ok) return
-         g = p%value(order) - level
-         if (abs(g) <= 0.0_wp .or. abs(h2 - h1) <= 4.0_wp*epsilon(1.0_wp)) return
-         if (abs(h - h2) <= epsilon(1.0_wp)) return
-         if (g*g2 < 0.0_wp) then
-            h1 = h2
-            g1 = g2
-         else
-            g1 = 0.5_wp*g1
-         end if
-         h2 = h
-         g2 = g
+      near = 0.0_wp
+      far = step_between(c, a, b)
+      do i = 1, digits(1.0_wp)
+         call step_along(c, a, middle_of(near, far), p, ok)
+         if (.not. ok .or. abs(far - near) <= 4.0_wp*epsilon(1.0_wp)) return
+         call halve((p%value(order) - level)*(a%value(order) - level) > 0.0_wp, near, far)
       end do
    end subroutine find_root
 end module circuit_trace

@@ -22,13 +22,12 @@ module circuits
    use ranges, only: held_at, put_estimate
    implicit none
    private
-   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, turns_of, no_sign
+   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, turns_of
 
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie = 1.0e-6_wp
 
-   integer, parameter :: no_sign = 2
    !> More circuits are not looked for, nor any after so much work: points times the cube of the coordinates.
    integer, parameter :: max_circuits = 64
    real(wp), parameter :: max_work = 1.0e9_wp
@@ -39,8 +38,6 @@ module circuits
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
-      !> Of the Jacobian's determinant; 0: it changes, at change points; no_sign: there are too many equations.
-      integer :: sign = 0
    end type circuit_branch_t
 
    !> An assembly at the drive's value of the first instant.
@@ -54,7 +51,7 @@ module circuits
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
       integer :: part = 1                      !< the number of its independent mechanism
-      logical :: is_held = .false.             !< its other drives let nothing move
+      logical :: is_redundant = .false.        !< there are too many equations: none is followed
       logical :: is_complete = .true.          !< all assemblies of the first instant were known
       logical :: are_more = .false.            !< than are followed
       real(wp) :: work = 0.0_wp                !< of those that are followed
@@ -95,6 +92,8 @@ contains
       found%is_complete = all_of_them%is_known
       allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
+      found%is_redundant = is_redundant(found%curve)
+      if (found%is_redundant) return
       do i = 1, size(all_of_them%list)
          associate (size_of => maxval(abs(all_of_them%list(i)%position(:2, :)))/found%curve%closure%length)
             found%curve%far = max(found%curve%far, beyond*size_of)
@@ -112,9 +111,7 @@ contains
          call add_branches(found, held, i)
          call add_meetings(found, i)
       end do
-      found%is_held = found%curve%is_held .and. size(found%list) == 0
       call add_assemblies(found, all_of_them%list)
-      if (is_redundant(found%curve)) found%branches%sign = no_sign
    end subroutine find_circuits
 
    !> Adds the circuits through the assemblies of `m`, in which all drives rest, at values of the drive over its whole
@@ -265,7 +262,7 @@ contains
       type(mechanism_t), intent(in) :: held
       integer, intent(in) :: i
       type(circuit_branch_t) :: b
-      integer, allocatable :: ends(:), numbers(:), signs(:)
+      integer, allocatable :: ends(:), numbers(:)
       real(wp), allocatable :: values(:)       ! of the drive at the points, in the deck's unit
       real(wp) :: middle
       integer :: k, n, dead
@@ -295,29 +292,19 @@ contains
                b%range = b%range(2:1:-1)
                b%dead = b%dead(2:1:-1)
             end if
-            ! The determinant with the drive's row is that with the tangent as its row times the drive's derivative.
-            associate (p => points(b%first:b%last))
-               signs = pack(p%sign*nint(sign(1.0_wp, p%value(1))), .not. p%is_dead)
-            end associate
-            b%sign = 0
-            if (size(signs) > 0) then
-               if (all(signs == signs(1))) b%sign = signs(1)
-            end if
             found%branches = [found%branches, b]
          end do
       end associate
    end subroutine add_branches
 
-   !> Adds the assemblies of the `list`, those of card ASSEMBLY, that are on circuits on which the drive moves. The
-   !> determinant has the sign of the product of its blocks'.
+   !> Adds the assemblies of the `list`, those of card ASSEMBLY, that are on circuits on which the drive moves.
    subroutine add_assemblies(found, list)
       type(circuits_t), intent(inout) :: found
       type(assembly_t), intent(in) :: list(:)
       type(curve_point_t) :: p, again
-      integer :: number, i, k, b, turn_round
+      integer :: number, i, k, b
       logical :: ok
 
-      turn_round = 0
       do number = 1, size(list)
          call start_point(found%curve, list(number)%position, p, ok)
          if (.not. ok) cycle
@@ -328,9 +315,7 @@ contains
             .true., dim=1)
          found%assemblies = [found%assemblies, circuit_assembly_t(number, b, &
             drive_value(found%curve, again%value(0) + found%list(i)%shift), again%q)]
-         if (turn_round == 0) turn_round = found%branches(b)%sign*product(list(number)%sign_of)
       end do
-      if (turn_round < 0) found%branches%sign = -found%branches%sign
    end subroutine add_assemblies
 
    !> Adds the change points of circuit number `i`.

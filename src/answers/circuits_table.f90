@@ -7,7 +7,7 @@ module circuits_table
    use independent, only: set_t
    use assemblies, only: assemblies_t
    use circuit_trace, only: end_closed, end_far, end_lost
-   use circuits, only: circuits_t, circuit_branch_t, no_sign, turns_of, find_circuits, free_drives
+   use circuits, only: circuits_t, circuit_branch_t, turns_of, find_circuits, free_drives
    use ranges, only: range_t, find_range, side_words, low, high
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -19,8 +19,8 @@ module circuits_table
    private
    public :: find_ranges, find_all_circuits, put_circuits
 
-   !> The ends of the columns of circuit, branch, sign and assemblies; the range of the drive follows.
-   integer, parameter :: column_ends(4) = [9, 17, 22, 36]
+   !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
+   integer, parameter :: column_ends(3) = [9, 17, 31]
    !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
    type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_not_limited, say_lost]
    !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
@@ -122,8 +122,8 @@ contains
             if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
             if (found%are_more) &
                call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(size(found%list)))
-            if (found%is_held) then
-               call put(o, '   '//phrase(say_held, m%polish))
+            if (found%is_redundant) then
+               call put(o, ' *** '//phrase(say_not_followed, m%polish))
             else if (size(found%list) == 0) then
                call put(o, '   '//phrase(say_none, m%polish))
             else
@@ -139,16 +139,14 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
-      character(column_ends(4)) :: row
+      character(column_ends(3)) :: row
       character(:), allocatable :: text
       type(diagnostic_t) :: limit
       integer :: i, k
 
       row = ' '//phrase(say_circuit, m%polish)
       row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
-      row(column_ends(2) + 1:) = 'DET'
-      row(column_ends(3) + 1:) = phrase(say_assembly_number, m%polish)
+      row(column_ends(2) + 1:) = phrase(say_assembly_number, m%polish)
       call put(o, row//phrase(say_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
          //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
       do k = 1, size(found%branches)
@@ -156,10 +154,9 @@ contains
             text = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
             row = ' '//whole(b%circuit)
             row(column_ends(1) + 1:) = whole(k)
-            row(column_ends(2) + 1:) = ' '//signs(b%sign)
             ! Where there are more assemblies than the column has room for, the range stands behind them.
             text = text(2:)
-            text = row(:column_ends(3))//text//repeat(' ', max(1, column_ends(4) - column_ends(3) - len(text)))
+            text = row(:column_ends(2))//text//repeat(' ', max(1, column_ends(3) - column_ends(2) - len(text)))
             call put_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
          end associate
       end do

@@ -31,8 +31,6 @@ module proof_table
    type :: reason_t
       integer :: step = 0
       character(:), allocatable :: words
-      real(wp) :: t = 0.0_wp                     !< the time that they end with, if `at_time`
-      logical :: at_time = .false.
    end type reason_t
 
    type :: proof_table_t
@@ -79,9 +77,6 @@ contains
                      reason%words = phrase(say_near_singular, m%polish)
                      if (proof%too_many > 0) &
                         reason%words = phrase(say_too_wide, m%polish)//' '//whole(proof%too_many)
-                     reason%at_time = proof%is_proved
-                     reason%t = proof%step%t
-                     if (proof%is_proved) reason%words = reason%words//', T ='
                      if (allocated(proof%failed)) then
                         if (size(proof%failed) > 0) reason%words = phrase(say_links, m%polish)//' ' &
                            //listed(m%links(proof%failed)%name, m%polish)//': '//reason%words
@@ -105,7 +100,7 @@ contains
       type(layout_t), intent(in) :: l
       type(proof_table_t), intent(in) :: p
       class(settings_t), intent(in) :: m
-      character(:), allocatable :: start, text, gap
+      character(:), allocatable :: start, gap
       integer :: i
 
       call put(o, '')
@@ -127,11 +122,9 @@ contains
       end do
       do i = 1, size(p%reasons)
          associate (r => p%reasons(i))
-            text = phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
-               //': '//phrase(say_not_proved, m%polish)//': '//r%words
-            if (r%at_time) text = text//' '//time_text(l, r%t)
+            call put_folded(o, ' *** ', phrase(say_instant, m%polish)//' '//whole(r%step)//', T = ' &
+               //time_text(l, instant(m, r%step))//': '//phrase(say_not_proved, m%polish)//': '//r%words)
          end associate
-         call put_folded(o, ' *** ', text)
       end do
       if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
          //': '//whole(p%instants - p%proved))

@@ -6,7 +6,7 @@ module ranges
    use system_calls, only: signal_received
    use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
-   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change
+   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
    use drives, only: drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
@@ -25,9 +25,6 @@ module ranges
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
    integer, parameter :: max_turns = 12
    real(wp), parameter :: max_lengths = 100.0_wp
-   !> How close its end is looked for where none is told. Reason: rounding leaves the root of a rounding open there, and
-   !> each try takes as long as the whole way to it.
-   real(wp), parameter :: closest = max(1.0e-9_wp, 4.0_wp*epsilon(1.0_wp))
    !> A motion closes where positions agree to this part of a radian and of the characteristic length.
    real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
@@ -68,7 +65,9 @@ contains
             else
                do side = low, high
                   words = limit_words(m, r%limit(side))
-                  if (is_lost(r, side)) words = words//'   '//phrase(say_close, m%polish)
+                  ! Where no limit is told rounding is too coarse to follow the motion farther.
+                  if (r%has_limit(side) .and. r%limit(side)%links(1) == 0) &
+                     words = words//'   '//phrase(say_close, m%polish)
                   if (r%has_limit(side)) then
                      call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
                   else
@@ -107,14 +106,6 @@ contains
          if (r%is_all) return
       end do
    end subroutine find_range
-
-   !> The motion ends on this `side` of `r`, and no limit is told: rounding is too coarse to follow it farther.
-   pure logical function is_lost(r, side)
-      type(range_t), intent(in) :: r
-      integer, intent(in) :: side
-
-      is_lost = r%has_limit(side) .and. r%limit(side)%links(1) == 0
-   end function is_lost
 
    !> `m` with all drives at rest at their values of the time `t`, by METHOD NEWTON, with all links asked for.
    function held_at(m, t) result(held)
@@ -155,7 +146,7 @@ contains
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step, part, off(3, size(d%links))
+      real(wp) :: t, step, off(3, size(d%links))
       integer :: i, k, steps_a_turn, begin
       logical :: is_angle
 
@@ -177,18 +168,12 @@ contains
          if (allocated(now%diagnostics)) r%change_points = r%change_points &
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
-            t = a%t
-            ! It was found at this time, and not a step later. Where no limit is told, as so close to a change point
-            ! that rounding leaves none, the last time is looked for at which there is a motion.
-            part = step
-            do while (limit_in(now) == 0 .and. part > closest .and. signal_received() == 0)
-               part = 0.5_wp*part
-               call advance(a, t + part, now)
-               if (now%known >= 0) t = t + part
-            end do
             r%has_limit(side) = .true.
-            r%limit(side)%value = value + rate*t
-            i = limit_in(now)
+            r%limit(side)%value = value + rate*a%t
+            if (.not. allocated(now%diagnostics)) return
+            ! The limit, or to where the motion was followed: so close to a change point rounding leaves no limit.
+            i = findloc(now%diagnostics%kind == diagnostic_limit .or. now%diagnostics%kind == diagnostic_close, &
+               .true., dim=1, back=.true.)
             if (i == 0) return
             associate (found => r%limit(side), told => now%diagnostics(i))
                found%links = told%links
@@ -214,12 +199,4 @@ contains
       end do
       r%limit(side)%value = value + rate*t
    end subroutine follow
-
-   !> The number of the last diagnostic of `q` that is a limit; 0: none is.
-   pure integer function limit_in(q) result(i)
-      type(motion_t), intent(in) :: q
-
-      i = 0
-      if (allocated(q%diagnostics)) i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1, back=.true.)
-   end function limit_in
 end module ranges

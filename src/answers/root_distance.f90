@@ -75,55 +75,46 @@ contains
       end do
    end function distance
 
-   !> Bounds (n) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
-   !> pair have one bound, that of their vector. Where there are more rows than unknowns, of all of them.
+   !> Bounds (rows) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
+   !> pair have one bound, that of their vector.
    pure function jacobian_lipschitz(s, c, p) result(bound)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(pose_t), intent(in) :: p
-      real(wp) :: bound(max(s%n, 2*size(s%pairs) + size(s%laws)))
-      real(wp) :: body(size(s%link_of)), slot(size(s%pairs))
+      real(wp) :: bound(2*size(s%pairs) + size(s%laws))
+      real(wp) :: body(size(s%link_of))
       integer :: k, row
 
-      ! The length of the body vector of each point, and the bound of the row of each prismatic pair; 0 where the link,
-      ! or the guide, does not move.
+      ! The length of the body vector of each point; 0 where the link does not move.
       body = merge(norm2(s%offset, dim=1), 0.0_wp, s%column(s%link_of) > 0)
-      slot = 0.0_wp
-      do k = 1, size(c%slots)
-         associate (pair => s%pairs(c%slots(k)))
-            slot(c%slots(k)) = 2.0_wp*c%unit(c%slots(k)) &
-               + norm2(p%q(:2, s%link_of(pair%point_i)) - p%q(:2, s%link_of(pair%point_j)))
-         end associate
-      end do
-
       bound = 0.0_wp
       do k = 1, size(s%pairs)
-         if (s%pairs(k)%kind == pair_revolute) then
-            bound(2*k - 1:2*k) = body(s%pairs(k)%point_i) + body(s%pairs(k)%point_j)
-         else
-            bound(2*k - 1) = slot(k)
-         end if
+         associate (i => s%pairs(k)%point_i, j => s%pairs(k)%point_j)
+            if (s%pairs(k)%kind == pair_revolute) then
+               bound(2*k - 1:2*k) = body(i) + body(j)
+            else if (s%column(s%link_of(i)) > 0) then
+               bound(2*k - 1) = 2.0_wp*c%unit(k) + norm2(p%q(:2, s%link_of(i)) - p%q(:2, s%link_of(j)))
+            end if
+         end associate
       end do
       do k = 1, size(s%laws)
          row = 2*size(s%pairs) + k
          associate (subject => s%laws(k)%subject)
             if (any(s%laws(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
-            if (s%laws(k)%kind == drive_slide) bound(row) = slot(subject)
+            if (s%laws(k)%kind == drive_slide) bound(row) = bound(2*subject - 1)
          end associate
       end do
    end function jacobian_lipschitz
 
-   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `rows`:
-   !> those of the system that the first rows of the matrix are; its others are linear.
-   subroutine kantorovich(s, c, f, p, rows, k)
+   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. The first
+   !> rows of the matrix are those of the system; its others are linear.
+   subroutine kantorovich(s, c, f, p, k)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
-      integer, intent(in) :: rows(:)
       real(wp), intent(out) :: k
-      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(max(s%n, 2*size(s%pairs) + size(s%laws))), &
-         y(size(bound), size(g, 2))
+      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(2*size(s%pairs) + size(s%laws))
       integer :: m, axis
 
       k = 0.0_wp
@@ -145,29 +136,24 @@ contains
       call solve_transposed(f, g)
 
       bound = jacobian_lipschitz(s, c, p)
-      y = 0.0_wp
-      y(rows, :) = g(:size(rows), :)
       do m = 1, size(c%angles)
-         k = max(k, row_sum(s, y(:, m), bound))
+         k = max(k, row_sum(m))
       end do
       do m = 1, size(c%slots)
          associate (last => size(c%angles) + 2*m)
-            k = max(k, hypot(row_sum(s, y(:, last - 1), bound), row_sum(s, y(:, last), bound))/c%unit(c%slots(m)))
+            k = max(k, hypot(row_sum(last - 1), row_sum(last))/c%unit(c%slots(m)))
          end associate
       end do
+
+   contains
+
+      !> The sum over the rows of |g . J^-1 e_k| L_k for column `m` of g, the two of a pair as one vector.
+      pure real(wp) function row_sum(m) result(total)
+         integer, intent(in) :: m
+
+         associate (pairs => 2*size(s%pairs), y => g(:size(bound), m)*bound)
+            total = sum(hypot(y(1:pairs:2), y(2:pairs:2))) + sum(abs(y(pairs + 1:)))
+         end associate
+      end function row_sum
    end subroutine kantorovich
-
-   !> The sum over the rows of |y_k| L_k, the two of a pair as one vector.
-   pure real(wp) function row_sum(s, y, bound) result(total)
-      type(system_t), intent(in) :: s
-      real(wp), intent(in) :: y(:), bound(:)
-      integer :: k
-
-      associate (pairs => 2*size(s%pairs))
-         total = sum(abs(y(pairs + 1:))*bound(pairs + 1:))
-         do k = 1, pairs, 2
-            total = total + hypot(y(k)*bound(k), y(k + 1)*bound(k + 1))
-         end do
-      end associate
-   end function row_sum
 end module root_distance

@@ -123,8 +123,7 @@ contains
       integer, intent(in) :: c, k
       type(share_t), intent(in) :: share
       character(:), allocatable :: unit
-      integer :: column, coordinate, what, decimals, i, j
-      integer, allocatable :: order(:)
+      integer :: column, coordinate, what, decimals, i
       real(wp), allocatable :: part(:)
       real(wp) :: size_of
       character(12) :: sensitivity
@@ -145,27 +144,20 @@ contains
 
       ! A line for each number with a share of note, the largest first: share, name, sensitivity, tolerance.
       part = (share%s*m%tolerances%size_of/share%root)**2
-      allocate (order(size(part)))
-      do i = 1, size(part)
+      do while (any(part >= least_share))
          ! Of those that are alike the first one comes first.
-         do j = i - 1, 1, -1
-            if (part(order(j)) >= part(i)*(1.0_wp - alike)) exit
-            order(j + 1) = order(j)
-         end do
-         order(j + 1) = i
-      end do
-      do j = 1, size(order)
-         associate (one => m%tolerances(order(j)))
-            if (part(order(j)) < least_share) exit
-            write (sensitivity, '(es12.4e3)') share%s(order(j))/size_of
+         i = findloc(part >= maxval(part)*(1.0_wp - alike), .true., dim=1)
+         associate (one => m%tolerances(i))
+            write (sensitivity, '(es12.4e3)') share%s(i)/size_of
             name = one%name
             ! A half is rounded up, whatever the last bit.
-            call put(o, fixed(100.0_wp*part(order(j))*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
+            call put(o, fixed(100.0_wp*part(i)*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
                //name(:max(number_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
                //trim(one%unit_name))
          end associate
+         part(i) = -1.0_wp
       end do
-      if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(size(order) - j + 1))
+      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(count(part >= 0.0_wp)))
 
    contains
 

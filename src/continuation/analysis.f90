@@ -7,19 +7,17 @@ module analysis
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
    use drives, only: is_at_rest
-   use drive_excursion, only: time_within
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
-   use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
-      branch_crossed
+   use branch_certificate, only: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
       get_driven_links, stay
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
-   use at_bifurcation, only: go_by_value, leave
+   use at_bifurcation, only: go_by_value, leave, time_beside
    use following, only: following_t, step_record_t, begin_following, continue_to, go_on_from, &
       go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before
    implicit none
@@ -28,8 +26,8 @@ module analysis
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: almost_there = 1.0e-3_wp
-   !> Beside a first position that is singular the motion begins where no drive has gone further, in rad or
-   !> characteristic lengths.
+   !> Beside a first position that is singular the motion begins where a drive has gone so far, in the units of the
+   !> blocks.
    real(wp), parameter :: beside_start = 1.0e-3_wp
 
    !> The motion that is followed, and what is known of the instants so far.
@@ -112,9 +110,9 @@ contains
          call arrive(a, step, list, found)
       else
          if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-         a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
          call give_up(a, t, step, found)
       end if
+      a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
       goes_on = found%known == 2 .and. .not. found%rests
       if (allocated(a%dense)) then
          if (step%arrived) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
@@ -179,7 +177,7 @@ contains
       type(step_record_t) :: step
       real(wp) :: beside
 
-      beside = time_within(a%drives, a%last, t, beside_start)
+      beside = time_beside(a%engine, a%last, t, beside_start)
       call continue_to(a%following_t, beside, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
          call go_on_from(a%following_t, beside)
@@ -257,7 +255,6 @@ contains
          call cut(found, -1, mark_not_converged)
          call get_driven_links(a%engine, found%t, found)
          a%branch = branch_t()
-         a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
             other=a%convergence%ended == ended_elsewhere)], found)
          return
@@ -271,7 +268,10 @@ contains
          if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
       end if
       if (a%begins) a%branch%kind = branch_first
-      call count_in(a%certificate_counts, a%branch, passed_of(step))
+      associate (counts => a%certificate_counts)
+         if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
+         if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
+      end associate
 
       if (a%has_begun .and. .not. (a%begins .and. found%known == 2)) return
       if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)

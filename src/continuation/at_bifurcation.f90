@@ -7,6 +7,7 @@ module at_bifurcation
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
+   use block_engine, only: block_engine_t
    use first_instant, only: solve_instant
    use block_branches, only: take_other_branch
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
@@ -15,7 +16,7 @@ module at_bifurcation
       passed_of
    implicit none
    private
-   public :: leave, go_by_value
+   public :: leave, go_by_value, time_beside
 
    !> How far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
    !> length: far enough for rates, near enough for the same branch.
@@ -25,8 +26,7 @@ module at_bifurcation
    real(wp), parameter :: almost_at_rest = 0.1_wp
    integer, parameter :: value_steps = 64
    !> After an instant at a singular position the motion takes the other branch where a drive has gone so far, in the
-   !> units of the blocks: the branches are still close there, and no longer singular. Bounds of its
-   !> rate are too coarse.
+   !> units of the blocks: the branches are still close there, and no longer singular.
    real(wp), parameter :: leaving = 1.0e-5_wp
 
 contains
@@ -43,9 +43,9 @@ contains
       type(place_t) :: before
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: at_end(:)
-      real(wp) :: beside, high
+      real(wp) :: beside
       logical :: found
-      integer :: i, k
+      integer :: k
 
       allocate (list(size(blocks)))
       do k = 1, size(blocks)
@@ -54,13 +54,7 @@ contains
       end do
       if (size(f%branch_requests%cards) == 0) return
 
-      beside = last
-      high = t
-      do i = 1, digits(1.0_wp)
-         call halve(all([(abs(value_at(f%engine%laws(k), middle_of(beside, high)) - value_at(f%engine%laws(k), last)) &
-            *f%engine%unit_of(k), k=1, size(f%engine%laws))] <= leaving), beside, high)
-      end do
-
+      beside = time_beside(f%engine, last, t, leaving)
       f%branch_requests%stood_until = beside
       call note_place(f, before)
       call continue_to(f, beside, step)
@@ -198,6 +192,23 @@ contains
          if (arrived .and. .not. stands) call go_on_from(f, to)
       end subroutine go_to
    end subroutine go_from_turn_to_turn
+
+   !> The time on the way from `last` to `t` at which some drive of the `engine` has gone `distance` from its value at
+   !> `last`, in the units of the blocks; `t` if none does. Bounds of the rate are too coarse for that.
+   pure real(wp) function time_beside(engine, last, t, distance) result(beside)
+      type(block_engine_t), intent(in) :: engine
+      real(wp), intent(in) :: last, t, distance
+      real(wp) :: high
+      integer :: i, k
+
+      beside = last
+      high = t
+      do i = 1, digits(1.0_wp)
+         call halve(all([(abs(value_at(engine%laws(k), middle_of(beside, high)) - value_at(engine%laws(k), last)) &
+            *engine%unit_of(k), k=1, size(engine%laws))] <= distance), beside, high)
+      end do
+      if (abs(t - high) <= 0.0_wp) beside = t
+   end function time_beside
 
    !> The value of `law` at the time `t`.
    pure real(wp) function value_at(law, t)

@@ -7,7 +7,7 @@ module branch_certificate
    use kinds, only: wp
    implicit none
    private
-   public :: branch_t, certificate_counts_t, count_in, branch_word
+   public :: branch_t, certificate_counts_t
    public :: branch_none, branch_first, branch_same, branch_crossed
 
    integer, parameter :: branch_none = 0      !< nothing is verified
@@ -28,26 +28,4 @@ module branch_certificate
       integer :: passed = 0      !< change points
       integer :: uncertain = 0   !< instants with a position but without a certificate, the first apart
    end type certificate_counts_t
-
-contains
-
-   !> Counts an instant found on the branch `b` beyond so many change points `passed`.
-   pure subroutine count_in(counts, b, passed)
-      type(certificate_counts_t), intent(inout) :: counts
-      type(branch_t), intent(in) :: b
-      integer, intent(in) :: passed
-
-      counts%passed = counts%passed + passed
-      if (b%kind == branch_none) counts%uncertain = counts%uncertain + 1
-      if (b%kind >= branch_same) counts%followed = counts%followed + 1
-   end subroutine count_in
-
-   !> The word of the log for the branch `b`.
-   pure function branch_word(b) result(word)
-      type(branch_t), intent(in) :: b
-      character(7) :: word
-      character(7), parameter :: words(0:3) = [character(7) :: 'NONE', 'FIRST', 'SAME', 'CROSSED']
-
-      word = words(b%kind)
-   end function branch_word
 end module branch_certificate

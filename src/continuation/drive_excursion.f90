@@ -10,11 +10,10 @@ module drive_excursion
    use mechanism, only: drive_t, mechanism_t, find_instants
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
-   use drives, only: drive_motion, bounds_t, bounds_of, halve, middle_of
+   use drives, only: drive_motion, bounds_t, bounds_of
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
-      time_within, judge_step
+   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -173,30 +172,6 @@ contains
          end if
       end do
    end function largest_derivative
-
-   !> The last time from `t1` on towards `t2` until which no drive goes further than `distance`, in radians or
-   !> characteristic lengths, by bounds of its rate.
-   pure real(wp) function time_within(p, t1, t2, distance) result(t)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t1, t2, distance
-      real(wp) :: high
-      integer :: i
-
-      t = merge(t2, t1, is_near(t2))
-      high = t2
-      do i = 1, digits(1.0_wp)
-         call halve(is_near(middle_of(t, high)), t, high)
-      end do
-
-   contains
-
-      !> No drive goes further until `t`.
-      pure logical function is_near(t)
-         real(wp), intent(in) :: t
-
-         is_near = abs(t - t1)*largest_derivative(p, 1, t1, t) <= distance
-      end function is_near
-   end function time_within
 
    !> `t1` and `t2` lie within the time of all instants.
    pure logical function is_within(p, t1, t2)

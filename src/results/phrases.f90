@@ -158,7 +158,8 @@ module phrases
       say_and = phrase_t('AND', 'I'), &
       say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
       say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
-      say_held = phrase_t('THE DRIVES THAT ARE HELD DETERMINE THIS DRIVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
+      say_not_followed = phrase_t('REDUNDANT EQUATIONS: CIRCUITS ARE NOT FOLLOWED', &
+         'ROWNANIA NADLICZBOWE: OBWODOW SIE NIE SLEDZI'), &
       say_more_circuits = phrase_t('MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST', &
          'OBWODOW JEST WIECEJ, PODANO PIERWSZE'), &
       say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &

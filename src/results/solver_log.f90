@@ -4,7 +4,7 @@ module solver_log
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_words
    use convergence, only: convergence_t, ending
-   use branch_certificate, only: branch_t, branch_word
+   use branch_certificate, only: branch_t, branch_none, branch_crossed
    use text_output, only: output_t, put
    use numerals, only: whole
    use known_digits, only: nothing_known
@@ -37,12 +37,13 @@ contains
       type(convergence_t), intent(in) :: c
       type(branch_t), intent(in) :: b
       real(wp), intent(in), optional :: errors(0:2)
+      character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
       character(200) :: line
       integer :: k, last
 
       write (line, '(i8, es25.16e3, 1x, a9, i6, 3es11.3, es22.3, i13, a9, i10, es13.3)') step, t, adjustr(ending(c)), &
-         c%iterations, c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), &
-         b%substeps, b%kantorovich_ratio
+         c%iterations, c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, &
+         adjustr(branch_words(b%kind)), b%substeps, b%kantorovich_ratio
       last = 149
       if (present(errors)) then
          do k = 0, 2

@@ -21,7 +21,6 @@ module study
    use numerals, only: whole
    use processes, only: memfd_create
    use system_calls, only: close_descriptor
-   use progress, only: progress_t, start_progress, show_progress, end_progress
    implicit none
    private
    public :: run_study, seconds, median
@@ -70,23 +69,20 @@ module study
 contains
 
    !> Prints the study of the deck in the file `path` to `output`, '' for standard output; with `only_times` the time of
-   !> a step of each set. Then the deck may be '', standard input. `quiet`: without progress on a terminal. `message`:
-   !> lines for standard error, '' for none.
-   subroutine run_study(path, output, only_times, quiet, status, message)
+   !> a step of each set. Then the deck may be '', standard input. `message`: lines for standard error, '' for none.
+   subroutine run_study(path, output, only_times, status, message)
       character(*), intent(in) :: path, output
-      logical, intent(in) :: only_times, quiet
+      logical, intent(in) :: only_times
       integer, intent(out) :: status
       character(:), allocatable, intent(out) :: message
       type(mechanism_t), allocatable :: sets(:)
       type(findings_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(output_t) :: o
-      type(progress_t) :: progress
       integer :: i
 
       status = status_solved
       message = ''
-      call start_progress(progress, .not. quiet, .false.)
       call read_deck(path, sets, message, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
@@ -101,7 +97,6 @@ contains
             else
                call study_set(sets(i), findings(i)%redundant > 0)
             end if
-            call end_progress(progress)
             call flush_output(o)
             if (has_failed(o)) exit
          end do
@@ -131,10 +126,7 @@ contains
          else if (last == 0) then
             line(27:) = '   NOT TIMED: ONE INSTANT'
          else
-            do k = 1, repeats
-               call show_progress(progress, 'MEASUREMENT', k, repeats)
-               t%time(k) = step_time(m, last, t%seconds)
-            end do
+            t%time = [(step_time(m, last, t%seconds), k=1, repeats)]
             write (line(27:), '(3f15.4)') median(t%time), minval(t%time), maxval(t%time)
          end if
          call put(o, trim(line))
@@ -166,7 +158,6 @@ contains
          allocate (tried(size(trials)))
          call read_truth(m, last, path, size(sets), truth)
          do i = 1, size(trials)
-            call show_progress(progress, 'TRIAL', i, size(trials))
             ! The mechanism as the trial solves it, with no question of the deck but its rows.
             tried(i) = m
             tried(i)%method = trials(i)%method
@@ -177,7 +168,6 @@ contains
          end do
          ! All trials take turns, so that what else the machine does meets all of them.
          do k = 1, repeats
-            call show_progress(progress, 'MEASUREMENT', k, repeats)
             do i = 1, size(trials)
                if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
             end do

@@ -150,10 +150,9 @@ contains
       call find_all(name, m, list)
       call put(o, '')
       call put(o, ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK')
-      call put(o, ' CIRCUIT BRANCH  DET  ASSEMBLY NO.  RANGE OF ANGLE CRANK, DEG')
+      call put(o, ' CIRCUIT BRANCH  ASSEMBLY NO.  RANGE OF ANGLE CRANK, DEG')
       do k = 1, 2
-         write (line, '(a, i0, 3a, i0, 13x, 3a)') ' 1       ', k, '        ', &
-            merge('+', '-', list(3 - k)%determinant > 0.0_qp), '   ', 3 - k, in_degrees(-crank_limit()), ' .. ', &
+         write (line, '(a, i0, a, i0, 13x, 3a)') ' 1       ', k, '       ', 3 - k, in_degrees(-crank_limit()), ' .. ', &
             in_degrees(crank_limit())
          call put(o, trim(line))
       end do
