@@ -74,6 +74,6 @@ tests/make_deck lattice 17 300 | sed 's/^TIME    300 /TIME    1   /; s/^END/PROV
 equal 'a lattice is proved' '19 / 19' "$("$kinmat" "$w/narrow.deck" 2> "$w/net.err" | sed -n 's/^ INSTANTS PROVED \(.*\),  PARTS.*/\1/p')"
 # Of 449 unknowns, near the limit, a step that must be divided is broken off after some tries, in seconds.
 tests/make_deck lattice 15 300 | sed 's/^TIME    300 .*/TIME    1                       0.0             0.3/; s/^END/PROVE\nEND/' > "$w/divided.deck"
-equal 'a step of many unknowns is broken off' 1 "$("$kinmat" "$w/divided.deck" 2> "$w/net.err" | unfolded | grep -o 'BLOCK TOO LARGE, UNKNOWNS 449, T = ' | grep -c .)"
+equal 'a step of many unknowns is broken off' 1 "$("$kinmat" "$w/divided.deck" 2> "$w/net.err" | unfolded | grep -o 'BLOCK TOO LARGE, UNKNOWNS 449 ' | grep -c .)"
 equal 'a net is too wide for a proof' 2 "$("$kinmat" "$w/net.deck" 2> "$w/net.err" | unfolded | grep -o ': NOT PROVED: LINKS [^:]* MORE: BLOCK TOO LARGE, UNKNOWNS 577 ' | grep -c .)"
 conclude
