@@ -52,7 +52,7 @@ included := $(sort $(shell find src -name '*.inc'))
 helpers := $(filter-out $(sources),$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
-command := main allocation
+command := main
 # document_texts is made from the documents.
 modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_texts
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
@@ -85,7 +85,7 @@ $(BUILD)/$(1)/command_line.o: $(BUILD)/$(1)/document_texts.o
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
-	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS) -ldl
+	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
 # The programs of tests/: depends.mk adds the modules of tests/ that each uses.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
 	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)

@@ -52,7 +52,7 @@ module command_line
       character(:), allocatable :: deck
       type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
       logical :: no_listing = .false.        !< no listing, not even on standard output
-      logical :: quiet = .false.             !< no remarks on standard error, no progress
+      logical :: quiet = .false.             !< no remarks on standard error
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and log have an error estimate of every number
       logical :: study = .false.             !< speed against error, instead of the listing
@@ -93,7 +93,7 @@ module command_line
       '  --jobs N             run N processes (default: one for each processor)', &
       '  --study              measure speed against error', &
       '  --time               measure the time of a step', &
-      '  --quiet              suppress remarks and progress', &
+      '  --quiet              suppress remarks', &
       '  --ruler [CARD]       print the layouts of all cards, or the fields of CARD', &
       '  --explain WORDS      explain the message with this code, or these words', &
       '  --help               print this text', &
@@ -104,7 +104,7 @@ module command_line
       '  0                    every instant is solved', &
       '  1                    the deck or the command is rejected', &
       '  2                    the listing is complete, an instant is flagged', &
-      '  3                    error of file, memory or disk', &
+      '  3                    error of file or disk', &
       'Examples:', &
       '  kinmat four_bar.deck -o four_bar.lst', &
       '  kinmat --no-listing --svg four_bar.svg --table four_bar.csv four_bar.deck', &

@@ -13,13 +13,12 @@ module job
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
    use deck, only: read_deck, job_share_t, variants_before, build_variant
    use deck_variants, only: variation_t
-   use progress, only: progress_t, start_progress, show_progress, end_progress
-   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
-   use text_output, only: put, flush_output, turn_lost
-   use processes, only: processor_count, report, end_process
+   use system_calls, only: watch_signals, signal_received
+   use text_output, only: put, flush_output
+   use processes, only: processor_count
    use command_line
    use outputs, only: outputs_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
-   use shares, only: run_shares, next_part, write_in_turn
+   use shares, only: run_shares, next_part, end_child
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use plot_script, only: put_script
@@ -57,7 +56,6 @@ module job
    type, extends(outputs_t) :: writers_t
       type(options_t) :: options
       integer :: status = status_solved             !< the exit status of what was computed
-      type(progress_t) :: progress
       integer :: first = 1, last = 0                !< the sets that were read
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
@@ -83,7 +81,6 @@ contains
 
       status = status_solved
       o%options = options
-      call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
       share = job_share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
@@ -125,12 +122,10 @@ contains
          if (processes == 0) processes = merge(processor_count(), 1, work > least_work)
          if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits]))) processes = 1
          processes = min(processes, variants_before(sets, size(sets) + 1))
-         if (processes > 1) call run_shares(o, processes, o%progress, status, message)
-         if (o%share%is_child) o%progress%shown = .false.
+         if (processes > 1) call run_shares(o, processes, status, message)
          do while (next_part(o))
             call run_sets(sets, findings, o)
          end do
-         call end_progress(o%progress)
          call close_outputs(o, 1, out_shared)
          if (allocated(o%failure)) call move_alloc(o%failure, failure)
          status = max(status, o%status)
@@ -143,21 +138,9 @@ contains
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
-      ! A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
-      ! without a word, unless other outputs were asked for, which end there too.
-      if (signal_received() > 0) then
-         status = status_signal + signal_received()
-      else if (broken_pipe_kills) then
-         if (any(o%files%error == broken_pipe)) then
-            status = status_signal + signal_pipe
-            if (count(o%asked) == 1) message = ''
-         end if
-      end if
-      if (.not. o%share%is_child) return
-      ! A child ends here: its parent takes over the status and the message, unless its turn has never come.
-      if (any(o%files%error == turn_lost)) call end_process(status_solved)
-      if (len(message) > 0) call report(message)
-      call end_process(status)
+      ! A run that a signal has ended ends by that signal.
+      if (signal_received() > 0) status = status_signal + signal_received()
+      if (o%share%is_child) call end_child(o, status, message)
 
    contains
 
@@ -241,8 +224,6 @@ contains
          if (every == 0 .and. k == film%steps + 1) call make_set_analysis(with_all_links(m), a)
          call advance_set(a, instant(film, k))
          call record_instant(d, a%now, k)
-         if (o%progress%shown) call show_progress(o%progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, &
-            instant_count(film) - 1)
          if (signal_received() > 0) return
       end do
       if (m%assemblies) call make_set_analysis(m, a)
@@ -273,8 +254,8 @@ contains
       if (o%options%check) return
       if (first <= 1) then
          call open_set_outputs(o%options, set_suffix(o%first, o%last, i), .false., o, failure)
-         if (allocated(failure)) call move_alloc(failure, o%failure)
-         if (allocated(o%failure)) then
+         if (allocated(failure)) then
+            call move_alloc(failure, o%failure)
             call break_off(o, m, say_broken_set, m%set_number - 1)
             return
          end if
@@ -288,18 +269,18 @@ contains
          call flush_output(o%files)
       end if
       if (m%variants == 0) then
-         call run_motion(a, i, findings, .true., o, counts, asked)
+         call run_motion(a, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) o%status = status_flagged
          call close_outputs(o, out_shared + 1, out_last)
       else
-         call run_variants(a%now, i, max(1, first), min(m%variants, last), o%variations(i), o)
+         call run_variants(a%now, max(1, first), min(m%variants, last), o%variations(i), o)
       end if
    end subroutine run_set
 
-   !> Solves and writes the variants `first` to `last` of `v`, those of set number `i`, `m`.
-   subroutine run_variants(m, i, first, last, v, o)
+   !> Solves and writes the variants `first` to `last` of `v`, those of the set `m`.
+   subroutine run_variants(m, first, last, v, o)
       class(set_t), intent(in) :: m
-      integer, intent(in) :: i, first, last
+      integer, intent(in) :: first, last
       type(variation_t), intent(inout) :: v
       type(writers_t), intent(inout) :: o
       type(layout_t) :: layout
@@ -390,7 +371,7 @@ contains
          row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
       end subroutine check_variant
 
-      !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
+      !> Solves and writes the variant of `v` whose `row` this is: it is `variant` now. `full`: its
       !> tables are asked for.
       subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant
@@ -405,7 +386,7 @@ contains
             call new_set_motion(variant, a%now, findings)
             if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
             if (o%asked(out_log)) call log_head(o%files(out_log), variant, o%options%errors)
-            call run_motion(a, i, findings, full, o, row, asked)
+            call run_motion(a, findings, full, o, row, asked)
             call fill_row(summary, a%now, asked, row)
          else
             call fill_row(summary, m, asked, row)
@@ -418,9 +399,7 @@ contains
 
          if (o%asked(out_summary)) call summary_row(o%files(out_summary), summary, m, row)
          if (o%asked(out_listing)) call put_variant_row(o%files(out_listing), layout, summary, m, row)
-         call write_in_turn(o)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
-         if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
       end subroutine write_row
    end subroutine run_variants
 
@@ -434,11 +413,10 @@ contains
       are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
    end function are_together
 
-   !> Solves and writes set number `i`, a%now, instant by instant; `full`: its tables too. `row`: how many instants are
+   !> Solves and writes the set a%now, instant by instant; `full`: its tables too. `row`: how many instants are
    !> solved and flagged, and the first of those; `asked`: the answers to its cards.
-   subroutine run_motion(a, i, findings, full, o, row, asked)
+   subroutine run_motion(a, findings, full, o, row, asked)
       type(set_analysis_t), intent(inout) :: a
-      integer, intent(in) :: i
       type(findings_t), intent(inout) :: findings
       logical, intent(in) :: full
       type(writers_t), intent(inout) :: o
@@ -480,11 +458,8 @@ contains
                call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch, errors)
             end do
          end if
-         call write_in_turn(o)
 
          call take_instant(asked, a, k, due)
-         if (o%progress%shown .and. a%now%variants == 0) &
-            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(a%now) - 1)
          if (.not. is_over(o)) cycle
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return

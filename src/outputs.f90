@@ -4,7 +4,7 @@ module outputs
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected
    use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
-   use system_calls, only: identity_t, identity_of, same_file, remove_file, make_directory, signal_received
+   use system_calls, only: identity_t, identity_of, make_directory, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_shared, out_last
    implicit none
@@ -18,14 +18,10 @@ module outputs
       integer :: length = huge(1)               !< so many of them are a part
       integer :: unit = 1                       !< so many variants are solved together
       logical :: is_child = .false., is_parent = .false.
-      !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
-      !> lock of a part is that of a byte of the first.
-      integer(c_int) :: taken = -1, done = -1
+      !> The descriptor of a file whose position all processes share: how many parts are taken.
+      integer(c_int) :: counter = -1
       integer :: part = 0                       !< the one at hand
-      logical :: held = .false.                 !< its text is held
-      integer :: look = 0                       !< it is looked for the turn where an output holds so much
-      integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
-      integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
+      type(output_t) :: reports                 !< of a child to its parent
    end type share_of_job_t
 
    type :: outputs_t
@@ -41,19 +37,17 @@ module outputs
 
 contains
 
-   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of the sets `first` to
-   !> `last` of the deck's `count` can be opened. Errors: status_system; status_rejected where two of them are one file,
-   !> or would be one after another on standard output.
+   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of each of the sets `first`
+   !> to `last`, of `count` in the deck, can be opened. Errors: status_system; status_rejected where one of them is a file
+   !> of all sets or of the same set, or where tables would be one after another on standard output.
    subroutine open_outputs(options, first, last, count, o, failure)
       type(options_t), intent(in) :: options
       integer, intent(in) :: first, last, count
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: name
-      type(identity_t) :: of_files((out_last - out_shared)*max(0, last - first + 1))
-      type(output_t) :: made(size(of_files))
       type(identity_t) :: id
-      integer :: k, i, files
+      integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
       do k = 1, out_last
@@ -66,37 +60,22 @@ contains
                call make_directory(path)
             else if (first < last) then
                ! The tables of several sets would be mixed on standard output, a device or a pipe.
-               name = ''
                id = identity_of(path=path)
+               name = 'FILE '//path
                if (len(path) == 0) name = 'STANDARD OUTPUT'
-               if (id%device_or_pipe .or. (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1)) &
-                  name = 'FILE '//path
-               if (len(name) > 0) call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
+               if (len(path) == 0 .or. id%device_or_pipe .or. &
+                  (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1)) &
+                  call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
                   //whole(count)//' WITH --sets K/'//whole(count))
             end if
          end associate
       end do
 
       if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
-      ! Files that are made stay until all are tried: a link may lead to one of another set.
-      files = 0
       do i = first, last
          if (allocated(failure)) exit
          call open_set_outputs(options, set_suffix(first, last, i), .true., o, failure)
-         do k = out_shared + 1, out_last
-            if (.not. allocated(o%files(k)%buffer) .or. o%files(k)%descriptor < 0) cycle
-            files = files + 1
-            of_files(files) = identity_of(descriptor=o%files(k)%descriptor)
-            if (any(same_file(of_files(files), of_files(:files - 1)))) &
-               call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
-            made(files)%path = o%files(k)%path
-            made(files)%made = o%files(k)%made
-            o%files(k)%made = .false.
-         end do
          call abandon_output(o%files(out_shared + 1:))
-      end do
-      do i = 1, files
-         if (made(i)%made) call remove_file(made(i)%path)
       end do
       if (allocated(failure)) call abandon_output(o%files)
    end subroutine open_outputs
