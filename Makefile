@@ -110,7 +110,7 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 # Nearly all time is spent in `hot`: a step, and its row in a table. In double precision `warm` is optimized by itself,
 # without the link; the rest and what tests/ has of its own are compiled with less optimization, in half the time.
 modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
-hot  := $(filter-out picture% animation canvas drawing plot_script svg,\
+hot  := $(filter-out picture% animation canvas drawing svg,\
    $(call modules_in,base linear mechanism blocks continuation perturbed proof $(if $(filter single,$(KIND)),,results)))
 warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
@@ -310,7 +310,7 @@ install: $(BUILD)/kinmat $(BUILD)/kinmat.1
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
-	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/first.deck $(documents)/docs
+	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/plot.gp docs/first.deck $(documents)/docs
 	install -m 644 $(wildcard docs/howto/*.md) $(documents)/docs/howto
 	install -m 644 $(wildcard docs/pictures/*.svg) $(documents)/docs/pictures
 	install -m 644 $(decks) $(documents)/input

@@ -9,38 +9,21 @@ module command_line
    implicit none
    private
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text, explained, explained_fields
-   public :: file_option_t, file_options
-   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table
-   public :: out_plot_table, out_plot_script, out_shared, out_last
+   public :: file_options
+   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table, &
+      out_shared, out_last
 
    !> The outputs that are files: up to `out_shared` those that all sets share, then, to `out_last`, those of each set.
    !> Those after `out_log` need a motion.
    enum, bind(c)
       enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits
       enumerator :: out_table
-      enumerator :: out_plot_table, out_plot_script
-      enumerator :: out_shared = out_circuits, out_last = out_plot_script
+      enumerator :: out_shared = out_circuits, out_last = out_table
    end enum
 
-   !> An option that names the file of an output.
-   type :: file_option_t
-      character(10) :: word = ''
-      character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
-   end type file_option_t
-
-   !> The options of the outputs; those of one directory name it once. A further output costs a line here and one in the
-   !> help.
-   type(file_option_t), parameter :: file_options(out_last) = [ &
-      file_option_t('-o'), &
-      file_option_t('--csv'), &
-      file_option_t('--log'), &
-      file_option_t('--summary'), &
-      file_option_t('--svg'), &
-      file_option_t('--animate'), &
-      file_option_t('--circuits'), &
-      file_option_t('--table'), &
-      file_option_t('--plot', 'table.csv'), &
-      file_option_t('--plot', 'plot.gp')]
+   !> The options that name the files of the outputs. A further output costs a word here and a line of the help.
+   character(*), parameter :: file_options(out_last) = [character(10) :: '-o', '--csv', '--log', '--summary', '--svg', &
+      '--animate', '--circuits', '--table']
 
    !> A word of the command.
    type :: word_t
@@ -81,7 +64,6 @@ module command_line
       '  --no-listing         print no listing', &
       '  --csv FILE           write the results with '//csv_digits//' digits, a row for each link', &
       '  --table FILE         write a table, a row for each instant', &
-      '  --plot DIR           write that table and a gnuplot script into DIR', &
       '  --summary FILE       write a row for each variant of sets with VARY cards', &
       '  --log FILE           write the log of the solver, a line for each instant', &
       '  --svg FILE           draw the mechanism and the paths of its points', &
@@ -155,9 +137,9 @@ contains
       i = 0
       do while (i < size(words) .and. .not. allocated(failure))
          i = i + 1
-         k = findloc(file_options%word == words(i)%text, .true., dim=1)
+         k = findloc(file_options == words(i)%text, .true., dim=1)
          if (k > 0) then
-            call take_file(options%files)
+            call take_file(options%files(k))
             cycle
          end if
          select case (words(i)%text)
@@ -236,10 +218,10 @@ contains
       first = findloc(to_standard_output(options%files), .true., dim=1)
       do k = 1, out_last
          if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
-            call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k)%word)//' NEEDS')
+            call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
          if (to_standard_output(options%files(k)) .and. k > first) &
-            call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first)%word)//' OR ' &
-               //trim(file_options(k)%word))
+            call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first))//' OR ' &
+               //trim(file_options(k)))
       end do
       if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
          word = ''
@@ -260,26 +242,20 @@ contains
          if (.not. allocated(failure)) call fail(failure, status_rejected, text)
       end subroutine reject
 
-      !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output,
-      !> or of a directory. All `files` of the option have it.
-      subroutine take_file(files)
-         type(word_t), intent(inout) :: files(:)
+      !> Takes the name of a `file` from after word number `i`, its option: `-` is standard output.
+      subroutine take_file(file)
+         type(word_t), intent(inout) :: file
          character(:), allocatable :: option, path
-         integer :: j
-         logical :: of_file
 
          option = words(i)%text
-         of_file = len_trim(file_options(k)%in_directory) == 0
          path = next_word()
-         if (len(path) == 0 .or. (path == '-' .and. .not. of_file)) then
-            call reject('OPTION '//option//' NEEDS A '//trim(merge('FILE NAME', 'DIRECTORY', of_file)))
-         else if (allocated(files(k)%text)) then
+         if (len(path) == 0) then
+            call reject('OPTION '//option//' NEEDS A FILE NAME')
+         else if (allocated(file%text)) then
             call reject('OPTION '//option//' IS GIVEN TWICE')
          end if
          if (path == '-') path = ''
-         do j = 1, out_last
-            if (file_options(j)%word == option) files(j)%text = path
-         end do
+         file%text = path
       end subroutine take_file
 
       !> The word after word number `i`, '' if there is none; that is number `i` then.

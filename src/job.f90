@@ -21,7 +21,6 @@ module job
    use shares, only: run_shares, next_part, end_child
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
-   use plot_script, only: put_script
    use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use svg, only: page_t, begin_page, end_page
@@ -94,7 +93,7 @@ contains
             'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
          do i = out_shared + 1, out_last
             if (allocated(options%files(i)%text)) call fail(failure, status_rejected, &
-               'OPTION '//trim(file_options(i)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
+               'OPTION '//trim(file_options(i))//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
          end do
       end if
       if (.not. allocated(failure) .and. allocated(options%files(out_circuits)%text)) then
@@ -260,11 +259,10 @@ contains
             return
          end if
          if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m, o%options%errors)
-         if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(a%now)
-         if (o%asked(out_table)) call table_head(o%files(out_table), o%table)
-         if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table), o%table)
-         if (o%asked(out_plot_script)) &
-            call put_script(o%files(out_plot_script), m, o%table, set_suffix(o%first, o%last, i))
+         if (o%asked(out_table)) then
+            o%table = new_table(a%now)
+            call table_head(o%files(out_table), o%table)
+         end if
          ! An output that takes nothing is known before anything is computed.
          call flush_output(o%files)
       end if
@@ -443,14 +441,13 @@ contains
          call note_flag(row, a)
 
          ! Only what is shown, and estimates that are asked for, need samples.
-         associate (shown => due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table]))))
+         associate (shown => due .and. (lists .or. any(o%asked([out_csv, out_table]))))
             if (shown .or. o%options%errors) call sample_set(a, o%options%errors, shown)
          end associate
          if (lists .and. (due .or. has_words(a%now))) &
             call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
          if (o%asked(out_table) .and. due) call table_instant(o%files(out_table), o%table, a%now)
-         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table), o%table, a%now)
          if (o%asked(out_log)) then
             do n = 1, size(a%list)
                if (o%options%errors) errors = largest_errors(a%now%parts(n), a%now%errors(n), a%now%motions(n), &

@@ -4,9 +4,9 @@ module outputs
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected
    use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
-   use system_calls, only: identity_t, identity_of, make_directory, signal_received
+   use system_calls, only: identity_t, identity_of, signal_received
    use numerals, only: whole
-   use command_line, only: options_t, file_options, out_shared, out_last
+   use command_line, only: options_t, out_shared, out_last
    implicit none
    private
    public :: outputs_t, share_of_job_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
@@ -45,8 +45,6 @@ contains
       integer, intent(in) :: first, last, count
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: name
-      type(identity_t) :: id
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
@@ -56,16 +54,8 @@ contains
          associate (path => options%files(k)%text)
             if (k <= out_shared) then
                call open_output(o%files(k), path, failure)
-            else if (len_trim(file_options(k)%in_directory) > 0) then
-               call make_directory(path)
-            else if (first < last) then
-               ! The tables of several sets would be mixed on standard output, a device or a pipe.
-               id = identity_of(path=path)
-               name = 'FILE '//path
-               if (len(path) == 0) name = 'STANDARD OUTPUT'
-               if (len(path) == 0 .or. id%device_or_pipe .or. &
-                  (index(path, '/dev/') == 1 .and. index(path, '/dev/shm/') /= 1)) &
-                  call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
+            else if (first < last .and. len(path) == 0) then
+               call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
                   //whole(count)//' WITH --sets K/'//whole(count))
             end if
          end associate
@@ -107,7 +97,6 @@ contains
          integer :: dot
 
          path = options%files(k)%text
-         if (len_trim(file_options(k)%in_directory) > 0) path = path//'/'//trim(file_options(k)%in_directory)
          if (len(path) == 0) return
          dot = index(path, '.', back=.true.)
          ! A name without an extension ends with the suffix.

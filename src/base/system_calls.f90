@@ -10,7 +10,7 @@ module system_calls
    private
    public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
-   public :: make_directory, isatty
+   public :: isatty
    public :: watch_signals, note_all_signals, signal_received, end_by_signal
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory
 
@@ -27,8 +27,8 @@ module system_calls
    integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
    integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
-   !> Read and write for all, of a directory also its use, less the user's mask.
-   integer(c_int), parameter :: permissions = int(o'666', c_int), directory_permissions = int(o'777', c_int)
+   !> Read and write for all, less the user's mask.
+   integer(c_int), parameter :: permissions = int(o'666', c_int)
    !> Kinds of files within a mode.
    integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000'), kind_directory = int(o'040000')
 
@@ -102,12 +102,6 @@ module system_calls
          import :: c_int
          integer(c_int), value :: descriptor
       end function isatty
-      !> mkdir(2): makes a directory; negative on error.
-      integer(c_int) function mkdir(path, mode) bind(c)
-         import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: mode
-      end function mkdir
       !> unlink(2): removes a file.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
@@ -227,15 +221,7 @@ contains
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
-   !> Makes the directory `path`, unless it is there. What is wrong shows when a file in it is opened.
-   subroutine make_directory(path)
-      character(*), intent(in) :: path
-      integer(c_int) :: ignored
-
-      ignored = mkdir(path//c_null_char, directory_permissions)
-   end subroutine make_directory
-
-   !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
+   !> Opens standard input, output and error where they are closed: no deck is read then, and writing fails. Otherwise the
    !> next file would take their descriptors, and what is printed would go into it.
    subroutine occupy_standard_descriptors
       integer(c_int) :: descriptor
@@ -245,9 +231,6 @@ contains
          ! The system gives the lowest free number.
          descriptor = c_open('/dev/null'//c_null_char, read_only)
          if (descriptor < 0 .or. descriptor > 2) exit
-         if (descriptor > 0) cycle
-         closed = close_descriptor(descriptor)
-         if (c_open('/dev/null'//c_null_char, write_only) /= 0) exit
       end do
       if (descriptor > 2) closed = close_descriptor(descriptor)
    end subroutine occupy_standard_descriptors

@@ -56,8 +56,6 @@ module csv
    !> A column after those of time and drives.
    type :: table_column_t
       integer :: request = 0                        !< its number among those of the set
-      !> The number of the request among those of which links, points and pairs are printed; 0: a pole or curve.
-      integer :: row = 0
       integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
@@ -278,7 +276,7 @@ contains
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: rows(:)
-      integer :: i, k, n, c, row, kind, spread, last
+      integer :: i, k, n, c, kind, spread, last
       logical :: turns
       character(5) :: word
 
@@ -304,18 +302,15 @@ contains
       n = 0
       do spread = 0, last
          do k = 0, 2
-            row = 0
             do i = 1, size(rows)
                associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
                   if (request%kind >= request_pole) cycle
-                  row = row + 1
                   turns = .false.
                   if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
                   do c = 1, coordinates_of(request%kind)
                      word = link_words(c, k)
                      if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
-                     call add_column(i, merge(row, 0, spread == 0), k, c, c == 3 .or. turns, &
-                        trim(word)//spread_words(spread))
+                     call add_column(i, k, c, c == 3 .or. turns, trim(word)//spread_words(spread))
                   end do
                end associate
             end do
@@ -327,7 +322,7 @@ contains
             if (requests(rows(i))%kind /= kind) cycle
             do c = 1, size(centre_numbers, 2)
                associate (number => centre_numbers(:, c, kind))
-                  call add_column(i, 0, number(2), number(1), number(1) == 3, centre_words(c, kind))
+                  call add_column(i, number(2), number(1), number(1) == 3, centre_words(c, kind))
                end associate
             end do
          end do
@@ -337,8 +332,8 @@ contains
 
       !> Adds a column of row number `i` of the table, whose name ends with `word`; what it is: as in its type. A point
       !> that has the name of one of the `links` in the table has that of its own link before it.
-      subroutine add_column(i, row, order, coordinate, angular, word)
-         integer, intent(in) :: i, row, order, coordinate
+      subroutine add_column(i, order, coordinate, angular, word)
+         integer, intent(in) :: i, order, coordinate
          logical, intent(in) :: angular
          character(*), intent(in) :: word
          character(:), allocatable :: name
@@ -357,7 +352,7 @@ contains
             end select
          end associate
          n = n + 1
-         t%columns(n) = table_column_t(rows(i), row, order, coordinate, angular, spread, name//'.'//word)
+         t%columns(n) = table_column_t(rows(i), order, coordinate, angular, spread, name//'.'//word)
       end subroutine add_column
    end function new_table
 

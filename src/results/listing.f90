@@ -157,43 +157,30 @@ contains
 
    contains
 
-      !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its
-      !> links.
+      !> Why some part of `s` has not all of its motion, each line once: of a limit of motion before it the time, of
+      !> singular positions the links.
       subroutine put_marks()
          character(:), allocatable :: line, lines
          integer :: k, i
 
          lines = ''
          do c = 1, s%count
-            if (s%motions(c)%mark /= mark_not_converged) cycle
-            line = phrase(say_no_position, s%polish)
-            if (allocated(s%motions(c)%diagnostics)) then
-               ! The limit of motion before it, if that is known.
-               do i = 1, size(s%motions(c)%diagnostics)
-                  associate (r => s%motions(c)%diagnostics(i))
-                     if (any(r%kind == [diagnostic_limit, diagnostic_beyond])) &
-                        line = phrase(say_beyond, s%polish)//' '//time(s%parts(c), r%t)
-                  end associate
-               end do
-            end if
-            line = ' *** '//line//new_line('a')
-            if (index(lines, line) == 0) lines = lines//line
-         end do
-         if (len(lines) > 0) call put(o, lines(:len(lines) - 1))
-         do i = singular_unclear, singular_dead
-            do c = 1, s%count
-               associate (q => s%motions(c))
-                  if (q%mark /= mark_singular .or. q%singularity /= i) cycle
-                  line = words_of_mark(q%mark, i, s%polish)
+            associate (q => s%motions(c), m => s%parts(c))
+               if (q%mark == mark_none) cycle
+               line = words_of_mark(q%mark, q%singularity, s%polish)
+               if (q%mark == mark_not_converged .and. allocated(q%diagnostics)) then
+                  do i = 1, size(q%diagnostics)
+                     if (any(q%diagnostics(i)%kind == [diagnostic_limit, diagnostic_beyond])) &
+                        line = phrase(say_beyond, s%polish)//' '//time(m, q%diagnostics(i)%t)
+                  end do
+               else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
-                  if (any(q%singular_links%links /= 0)) line = line(:k - 1)//', '//links(s%parts(c), q%singular_links) &
-                     //in_line(s%parts(c), q%singular_links, ' ')//line(k:)
-                  call put_folded(o, ' *** ', line)
-               end associate
-            end do
-         end do
-         do k = mark_overflow, mark_inconsistent
-            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, s%polish))
+                  line = line(:k - 1)//', '//links(m, q%singular_links)//in_line(m, q%singular_links, ' ')//line(k:)
+               end if
+            end associate
+            if (index(lines, line//new_line('a')) > 0) cycle
+            lines = lines//line//new_line('a')
+            call put_folded(o, ' *** ', line)
          end do
       end subroutine put_marks
    end subroutine listing_instant

@@ -200,8 +200,6 @@ module phrases
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
       say_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
-      say_angular_velocity = phrase_t('ANGULAR VELOCITY', 'PREDKOSC KATOWA'), &
-      say_angular_acceleration = phrase_t('ANGULAR ACCELERATION', 'PRZYSPIESZENIE KATOWE'), &
       say_variant = phrase_t('VARIANT', 'WARIANT'), &
       say_variants = phrase_t('VARIANTS', 'WARIANTY'), &
       say_end_variant = phrase_t('END OF VARIANT', 'KONIEC WARIANTU'), &

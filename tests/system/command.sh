@@ -275,7 +275,7 @@ equal '--help: first line' 'Usage: kinmat [OPTIONS] [DECK]' "$(head -n 1 "$w/out
 equal '--help: three examples' 3 "$(grep -c '^  kinmat ' "$w/out")"
 equal '--help: a line an option, with a verb first' '' "$(grep -E '^  -' "$w/out" | cut -c 24- | grep -vE '^(add|check|draw|explain|measure|print|run|suppress|write) ')"
 equal '--help: no line of more than 80 columns' '' "$(grep -E '^.{81}' "$w/out")"
-for option in -o --no-listing --quiet --csv --log --svg --table --plot --check --errors --sets --ruler --explain --help --version; do
+for option in -o --no-listing --quiet --csv --log --svg --table --check --errors --sets --ruler --explain --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 2.0, REAL64' "$("$kinmat" --version)"

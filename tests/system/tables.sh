@@ -94,7 +94,7 @@ equal 'what is missing: a row' '3.0000000000000000E+000,9.0000000000000000E+001,
 equal 'what is missing: cells of a row' '16 16 16 16 16 16' "$(awk -F, '{ print NF }' "$w/missing.csv" | xargs)"
 equal 'what is missing: numbers of the last row' 4,6 "$(awk -F, 'NR == 6 { for (i = 1; i <= NF; i++) n[$i == "NaN"]++; print n[0] - 6 "," n[1] }' "$w/missing.csv")"
 sed '/DRIVE   ANGLE   CRANK/s/ 0.0 / 120.0 /' "$w/missing.deck" > "$w/beside.deck"
-"$kinmat" --no-listing --table "$w/beside.csv" --plot "$w/plot_beside" "$w/beside.deck"
+"$kinmat" --no-listing --table "$w/beside.csv" "$w/beside.deck"
 sed -e '/DRIVE   ANGLE   WHEEL/a\
 VARY    R2      LIST            30.0            20.0' -e '/^PRINT/d' "$w/missing.deck" | sed '/^END/i\
 RANGE' > "$w/vary.deck"
@@ -103,39 +103,15 @@ equal 'a summary: no column has the name of another one' '' "$(head -n 1 "$w/sum
 equal 'a summary: the second drive of a name' 'ANGLE.WHEEL.RATE,ANGLE.WHEEL.RATE.2,range.min.ANGLE.WHEEL,range.min.ANGLE.WHEEL.2' \
    "$(head -n 1 "$w/summary.csv" | tr , '\n' | grep '^[AR].*RATE\|range.min.*WHEEL' | paste -sd,)"
 
-# --plot: the table, and a script that gnuplot runs from any directory. A picture for time and each drive, of five rows of
-# the listing each. Gaps where the motion has no values; where no instant has any, empty panels.
-sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/nowhere.deck"
-sed -e '/^END/q' -e "s/^TITLE.*/TITLE   'A'S \"B\" {x}_2 \`touch c\` \\\\n'/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
-for run in 'four_bar 2 5 1' 'yoke 2 14 12' 'xy_table 1 12 4' 'scott_russell_at 1 2 2' 'nowhere 1 2 1' 'quotes 1 2 1'; do
-   set -- $run
-   deck=input/$1.deck
-   [ -f "$deck" ] || deck=$w/$1.deck
-   "$kinmat" "$deck" --plot "$w/plot_$1" --table "$w/plot.csv" > "$w/lst" 2> "$w/err"
-   equal "--plot, $1: files" "$2" "$(ls "$w/plot_$1"/plot*.gp | wc -l | tr -d ' ')"
-   set=1
-   while [ "$set" -le "$2" ]; do
-      suffix=; [ "$2" -eq 1 ] || suffix=-$set
-      same "--plot, $1, set $set: the table" "$w/plot$suffix.csv" "$w/plot_$1/table$suffix.csv"
-      set=$((set + 1))
-   done
-done
+# docs/plot.gp draws a table: over time, and over the first drive. A gap is where a value is missing.
 if command -v gnuplot > /dev/null; then
-   for run in 'four_bar 10 -1' 'yoke 14 -1' 'xy_table 12 none' 'scott_russell_at 2 none' 'nowhere 2 none' 'quotes 2 none'; do
-      set -- $run
-      for script in "$w/plot_$1"/*.gp; do
-         gnuplot "$script" > "$w/out" 2> "$w/err"
-         equal "gnuplot, $1: status" 0 $?
-         equal "gnuplot, $1: no error" '' "$(grep -iE 'undefined|error|invalid|empty|too small|separators' "$w/err" | grep -v 'No valid data')"
-      done
-      equal "gnuplot, $1: pictures" "$2" "$(ls "$w/plot_$1"/*.svg | wc -l | tr -d ' ')"
+   plotted() { sort -u "$1.svg" | grep -cE '<text>[A-Z0-9-]+[.](v|a|)(x|y|phi)<'; }
+   for over in 1 2; do
+      gnuplot -e "table = '$w/four_bar.table-1.csv'; over = $over" docs/plot.gp > "$w/out" 2> "$w/err"
+      equal "gnuplot, column $over: status and messages" '0 ' "$? $(cat "$w/err")"
+      equal "gnuplot, column $over: quantities of a table" \
+         "$(head -n 1 "$w/four_bar.table-1.csv" | tr , '\n' | grep -cE '[.](v|a|)(x|y|phi)$')" "$(plotted "$w/four_bar.table-1.csv")"
    done
-   equal 'gnuplot: a title as it stands' "'A'S \"B\" {x}_2 \`touch c\` \\n'" \
-      "$(sed -n 's/.*<text>\(.*touch.*\)<\/text>.*/\1/p' "$w/plot_quotes/time.svg")"
-   equal 'gnuplot: names in a picture' yes "$(grep -q "<text>CRANK'.vphi<" "$w/plot_quotes/time.svg" && echo yes)"
-   mv "$w/plot_scott_russell_at/time.svg" "$w/time.svg"
-   (cd "$w/plot_scott_russell_at" && gnuplot plot.gp > /dev/null 2>&1)
-   same 'gnuplot, started beside the script' "$w/time.svg" "$w/plot_scott_russell_at/time.svg"
    # The table as it is: 39 instants of the four-bar, those with velocities of a mechanism in its change points.
    points() { gnuplot -e "set datafile separator ','; set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1
       grep -c ' i$' "$w/points"; }
@@ -144,9 +120,7 @@ if command -v gnuplot > /dev/null; then
       "$(points "$w/scott_russell_at.table.csv" 1:5)"
    equal 'gnuplot reads a table: velocities' "$(awk -F, '$4 == "POINT" && $15 == ""' "$w/scott_russell_at.csv" | wc -l | tr -d ' ')" \
       "$(points "$w/scott_russell_at.table.csv" 1:23)"
-   # Where the first quantity of a panel has no value at all, the others are drawn; a gap is where a value is missing.
-   equal 'gnuplot draws what is known beside what is not' '1 5' \
-      "$(gnuplot "$w/plot_beside/plot.gp" 2> "$w/err"; grep -c '<text>RIM.y' "$w/plot_beside/time.svg") $(points "$w/beside.csv" 1:8)"
+   equal 'gnuplot: what is known beside what is not' 5 "$(points "$w/beside.csv" 1:8)"
    equal 'gnuplot: a gap' 3 "$(points "$w/missing.csv" '"t":"B.x"')"
 else
    echo 'skipped: pictures of gnuplot (not installed)'
@@ -221,19 +195,6 @@ rejected 'the table of a set is the deck' 1 " *** THE DECK $w/own-1.deck WOULD B
 same 'the table of a set is the deck: it is as it was' input/four_bar.deck "$w/own-1.deck"
 rejected '--table to a file that cannot be' 3 ' *** FILE /nonexistent/x-1 CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --table /nonexistent/x
-rejected '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot
-rejected '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
-rejected '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
-rejected '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
-rejected '--plot and --study' 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
-rejected '--plot where no directory can be made' 3 ' *** FILE /nonexistent/x/table-1.csv CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
-   "$w/own-1.deck" --plot /nonexistent/x
-rejected '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
-   "$w/own-1.deck" --plot "$w/own-1.deck"
-rejected '--plot, and one of its files' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/plot_yoke" \
-   --csv "$w/plot_yoke/plot-2.gp"
-rejected 'a command with --plot' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/a" --csv "$w/b" --log "$w/b"
-rmdir "$w/a"
 equal 'no file is made by what is refused' '' "$(ls "$w"/a "$w"/a.x "$w"/a-* "$w/b" "$w/own-2.deck" 2> /dev/null)"
 if [ -w /dev/full ]; then
    "$kinmat" "$w/own-1.deck" --sets 1/2 --table /dev/full > "$w/out" 2> "$w/err"
