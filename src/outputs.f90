@@ -37,9 +37,9 @@ module outputs
 
 contains
 
-   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of each of the sets `first`
-   !> to `last`, of `count` in the deck, can be opened. Errors: status_system; status_rejected where one of them is a file
-   !> of all sets or of the same set, or where tables would be one after another on standard output.
+   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of each of the sets
+   !> `first` to `last`, of `count` in the deck, can be opened. Errors: status_system; status_rejected where one of
+   !> them is a file of all sets or of the same set, or where tables would be one after another on standard output.
    subroutine open_outputs(options, first, last, count, o, failure)
       type(options_t), intent(in) :: options
       integer, intent(in) :: first, last, count

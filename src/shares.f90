@@ -1,7 +1,7 @@
-!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. A free child
-!> takes the next part, and writes its text in frames to a pipe. The parent writes the parts in their order: it keeps
-!> what a child is ahead, up to a limit, and then reads no more of it. A child that dies or is broken off leaves its part
-!> undone, and no part after that is written.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another. A free
+!> child takes the next part, and writes its text in frames to a pipe. The parent writes the parts in their order: it
+!> keeps what a child is ahead, up to a limit, and then reads no more of it. A child that dies or is broken off leaves
+!> its part undone, and no part after that is written.
 !>
 !> Rejected: a part that belongs to a process before it begins. Unequal parts then leave one process idle.
 !>
@@ -11,7 +11,8 @@ module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_system
    use numerals, only: whole
-   use processes, only: poll, poll_t, waitpid, fork_process, interrupt_child, end_process, memfd_create, lseek, from_here
+   use processes, only: poll, poll_t, waitpid, fork_process, interrupt_child, end_process, memfd_create, lseek, &
+      from_here
    use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
    use text_output, only: add, flush_output, write_text, has_failed, frame_head
    use command_line, only: out_shared
@@ -27,8 +28,8 @@ module shares
    integer(c_int), parameter :: look_time = 200
    !> A child that is so many characters ahead waits. Characters that are read at once.
    integer, parameter :: max_ahead = 2**26, block_length = 65536
-   !> Frames that hold no text of an output: a part begins, whose number is the text; it is done; the child ends, and the
-   !> text is its message.
+   !> Frames that hold no text of an output: a part begins, whose number is the text; it is done; the child ends, and
+   !> the text is its message.
    integer, parameter :: part_begins = out_shared + 1, part_done = out_shared + 2, child_ends = out_shared + 3
 
    !> A child, and what was read from it: frames, of which the first begins at `first`.

@@ -221,8 +221,8 @@ contains
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
-   !> Opens standard input, output and error where they are closed: no deck is read then, and writing fails. Otherwise the
-   !> next file would take their descriptors, and what is printed would go into it.
+   !> Opens standard input, output and error where they are closed: no deck is read then, and writing fails. Otherwise
+   !> the next file would take their descriptors, and what is printed would go into it.
    subroutine occupy_standard_descriptors
       integer(c_int) :: descriptor
       logical :: closed
@@ -255,8 +255,8 @@ contains
       text = words(:index(words, c_null_char) - 1)
    end function reason_of
 
-   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. The limit of file sizes is a write error and no
-   !> longer a signal that kills; a broken pipe still kills, as it kills other commands (kinmat DECK | head).
+   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. The limit of file sizes is a write error and
+   !> no longer a signal that kills; a broken pipe still kills, as it kills other commands (kinmat DECK | head).
    subroutine watch_signals
       type(c_funptr) :: before
       integer :: i
