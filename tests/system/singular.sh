@@ -100,8 +100,8 @@ says 0 "JACOBIAN SINGULAR, LINKS CO+, RO+ COLLINEAR$unclear" stretched
 says 0 "DEAD POINT, LINKS C3+, R3+ COLLINEAR$dead" two_dyads
 says 0 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change
 DEAD POINT, LINKS CR++, RD++ COLLINEAR$dead" parallelogram far_end
-says 0 "CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
-DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker parallelogram
+says 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead
+CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change" rocker parallelogram
 says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
 CHANGE POINT, LINKS CO+++, RO+++ COLLINEAR$change
