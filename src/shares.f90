@@ -84,7 +84,8 @@ contains
          turn = 1
          lost = 0
          do while (any(children%descriptor >= 0))
-            if (is_stopped .or. signal_received() > 0) call interrupt_child(children(:n)%process)
+            if (is_stopped .or. signal_received() > 0 .or. any(has_failed(o%files))) &
+               call interrupt_child(children(:n)%process)
             list%descriptor = merge(children%descriptor, -1, children%part <= turn .or. &
                children%last - children%first < max_ahead)
             if (poll(list, size(list, kind=c_long), look_time) <= 0) cycle
@@ -100,7 +101,7 @@ contains
                if (turn == before) exit
             end do
 
-            ! No part is written after one that is not done, or that cannot be written.
+            ! No part is written after one that is not done.
             do k = 1, n
                associate (c => children(k))
                   if (is_stopped .or. c%descriptor >= 0 .or. all(c%part /= [0, turn])) cycle
@@ -108,7 +109,6 @@ contains
                   if (.not. c%has_ended) lost = k
                end associate
             end do
-            is_stopped = is_stopped .or. any(has_failed(o%files(:out_shared)))
          end do
 
          do k = 1, n

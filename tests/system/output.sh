@@ -217,12 +217,9 @@ told 'links in a loop' 3 $? ' *** FILE loop.a CANNOT BE OPENED (TOO MANY LEVELS 
 told '-o, links in a loop' 3 $? ' *** FILE loop.a CANNOT BE OPENED FOR WRITING (TOO MANY LEVELS OF SYMBOLIC LINKS)'
 "$kinmat" deck/deck > out 2> err
 told 'a file in the place of a directory' 3 $? ' *** FILE deck/deck CANNOT BE OPENED (NOT A DIRECTORY)'
-# A deck that comes in pieces, with ends of lines of three kinds.
+# A deck that comes in pieces.
 { head -c 100 deck; sleep 0.2; tail -c +101 deck; } | "$kinmat" > out
 same 'a deck in pieces' whole.lst out
-tr '\n' '\r' < deck > return.deck
-"$kinmat" return.deck > out
-same 'lines that end with a carriage return' whole.lst out
 # The language of the user changes no number and no word (where it is installed).
 for language in pl_PL.UTF-8 de_DE.UTF-8; do
    LC_ALL=$language LANGUAGE=${language%%_*} "$kinmat" deck --errors --csv errors.csv > out 2> err
