@@ -56,7 +56,7 @@ contains
       type(poll_t) :: list(processes)
       integer :: turn, before, lost, k, n
       integer(c_int) :: descriptor, ended, ignored
-      logical :: is_stopped
+      logical :: is_stopped, is_interrupted
 
       associate (s => o%share, total => o%share%last - o%share%first + 1)
          s%length = s%unit*max(1, total/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
@@ -83,9 +83,13 @@ contains
 
          turn = 1
          lost = 0
+         is_interrupted = .false.
          do while (any(children%descriptor >= 0))
-            if (is_stopped .or. signal_received() > 0 .or. any(has_failed(o%files))) &
+            if (.not. is_interrupted .and. (is_stopped .or. signal_received() > 0 .or. any(has_failed(o%files)))) then
+               ! Once: a child that has only just begun takes a second signal as other processes do.
+               is_interrupted = .true.
                call interrupt_child(children(:n)%process)
+            end if
             list%descriptor = merge(children%descriptor, -1, children%part <= turn .or. &
                children%last - children%first < max_ahead)
             if (poll(list, size(list, kind=c_long), look_time) <= 0) cycle
@@ -115,7 +119,7 @@ contains
             ended = 0
             ignored = waitpid(int(children(k)%process, c_int), ended, 0_c_int)
             if (children(k)%has_ended) status = max(status, ishft(iand(ended, 65535), -8))
-            if (k /= lost) cycle
+            if (k /= lost .or. any(has_failed(o%files))) cycle
             ! All parts before its own are written.
             status = status_system
             message = ' *** THE PROCESS FOR'//text_of(s, min(turn, part_count(s)))//' HAS FAILED'
