@@ -113,13 +113,7 @@ contains
          call add_field_error(errors, card_unknown, card, card_fields(card_name))
       else if (allocated(above%star)) then
          call add_field_error(errors, star_second, card, card_fields(card_name))
-      else if (above%form == form_unknown) then
-         continue
-      else if (reals_of(above%form, above%label(label_a)) == 0) then
-         call add_field_error(errors, star_no_reals, card, card_fields(card_name))
-      else if (card%text(wide_fields(1)%first:) == '') then
-         call add_field_error(errors, star_blank, card, card_fields(card_name))
-      else
+      else if (above%form /= form_unknown) then
          call find_cuts(card, wide_fields, '---', cut, errors)
          do i = 1, 3
             if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle

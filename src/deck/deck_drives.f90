@@ -97,8 +97,6 @@ contains
 
       !> Builds the drive of the DRIVE card `k`: its kind, what it drives, and its polynomial.
       subroutine build_drive()
-         type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
-            [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
          real(wp) :: minute
          integer :: kind, links(3), label
 
@@ -131,7 +129,7 @@ contains
             else
                links = drive_links(m, drive)
                if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
-               if (all(m%links(links)%ground)) call add_card_error(set, ground_errors(kind), k, label)
+               if (all(m%links(links)%ground)) call add_card_error(set, drive_ground, k, label)
             end if
          end associate
       end subroutine build_drive

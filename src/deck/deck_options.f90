@@ -156,13 +156,7 @@ contains
                   call look_up(set, request_point, k, label_a, one%subject)
                   call look_up(set, request_link, k, label_b, one%second)
                end if
-               associate (earlier => requests(:n - 1))
-                  i = findloc(one%subject > 0 .and. earlier%kind == one%kind .and. earlier%subject == one%subject &
-                     .and. earlier%second == one%second, .true., dim=1)
-               end associate
             end associate
-            if (i > 0) i = findloc(set%cards(:k)%form == form .and. set%cards(:k)%subject == i, .true., dim=1)
-            if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(i)%card%number))
             set%cards(k)%subject = n
          end do
       end do

@@ -1,13 +1,12 @@
 !> What the listing has of a set without errors: its echo, the cards as they were understood with the values in use; and
 !> remarks on what is harmless or likely not what was meant: names that nothing uses, degrees for radians. Of a deck
-!> with JOINT cards, whose drawing is the mechanism: numbers that are as drawn, and numbers that contradict the drawing.
+!> with JOINT cards, whose drawing is the mechanism: numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
    use planar, only: pi, in_degrees, without_turns
    use mechanism
-   use drives, only: drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
-   use drawn_values, only: drawn_way, drawn_opening, drawn_drive
+   use drawn_values, only: drawn_way, drawn_opening
    use scales, only: solver_length
    use numerals, only: rounded
    use deck_variants, only: number_on_card
@@ -172,71 +171,38 @@ contains
       end subroutine add_head
    end subroutine build_echo
 
-   !> Remarks on the drawing of `set`, if it is one. The set has no errors.
+   !> A remark on each pair whose numbers or points contradict the drawing of `set`, if it is one. The set has no
+   !> errors.
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
-      real(wp) :: length, x, turn, f(3)
-      logical :: is_angle
-      integer :: i, k, label
+      real(wp) :: length, opening, turn
+      character(:), allocatable :: text
+      integer :: i, k
 
       if (.not. has_drawing(set)) return
       length = solver_length(set%mechanism)
-      ! An h as drawn of points that are not along the guide, and numbers or points that leave a closure error.
       do i = 1, size(set%mechanism%pairs)
          k = set%named(request_pair)%card(i)
-         label = merge(label_a, label_c, set%cards(k)%form == form_joint)
+         text = ''
          associate (m => set%mechanism, pair => set%mechanism%pairs(i))
-            turn = 0.0_wp
             if (pair%kind /= pair_prismatic) then
-               x = norm2(drawn_way(m, pair))
+               opening = norm2(drawn_way(m, pair))
             else
-               x = drawn_opening(m, pair)
-               if (.not. pair%drawn(3)) then
-                  associate (phi => m%links(pair_links(m, pair))%position(3))
-                     turn = without_turns(phi(2) - phi(1) - pair%beta)
-                  end associate
+               opening = drawn_opening(m, pair)
+               associate (phi => m%links(pair_links(m, pair))%position(3))
+                  turn = without_turns(phi(2) - phi(1) - pair%beta)
+               end associate
+               if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) then
+                  if (m%degrees) text = drawn_text(in_degrees(turn))//' DEG'
+                  if (.not. m%degrees) text = drawn_text(turn)//' RAD'
                end if
-               if (pair%drawn(2) .and. abs(pair%offset) > drawn_digits*length) &
-                  call add_card_remark(set, remark_drawn_offset, k, label, with_unit(m, pair%offset, .false.))
             end if
-            if (abs(x) > drawn_digits*length) &
-               call add_card_remark(set, remark_open, k, label, with_unit(m, x, .false.))
-            if (abs(turn) > drawn_digits) call add_card_remark(set, remark_open, k, label, with_unit(m, turn, .true.))
+            if (abs(opening) > drawn_digits*length) text = drawn_text(opening)//' '//trim(m%length_unit)
          end associate
-      end do
-
-      ! The value of a drive as drawn, if it is not 0, and by how much the motion begins off the drawing at the first
-      ! instant, whole turns left out.
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_drive) cycle
-         associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
-            is_angle = driven_kinds(drive%kind) == request_link
-            if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
-               call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
-            f = drive_motion(drive, instant(m, 0))
-            x = f(1) - drawn_drive(m, drive)
-            if (is_angle) x = without_turns(x)
-            if (abs(x) > drawn_digits*merge(1.0_wp, length, is_angle)) &
-               call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, x, is_angle))
-         end associate
+         if (text /= '') call add_card_remark(set, remark_open, k, merge(label_a, label_c, &
+            set%cards(k)%form == form_joint), text)
       end do
    end subroutine check_drawing
-
-   !> The length or angle `x` (rad) of `m`, with its unit.
-   pure function with_unit(m, x, is_angle) result(text)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: x
-      logical, intent(in) :: is_angle
-      character(:), allocatable :: text
-
-      if (.not. is_angle) then
-         text = drawn_text(x)//' '//trim(m%length_unit)
-      else if (m%degrees) then
-         text = drawn_text(in_degrees(x))//' DEG'
-      else
-         text = drawn_text(x)//' RAD'
-      end if
-   end function with_unit
 
    !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
    !> exponent, and two digits fewer.

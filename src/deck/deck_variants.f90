@@ -19,7 +19,7 @@ module deck_variants
       values_of_variant
 
    !> The largest number of variants of a set.
-   integer, parameter :: max_variants = 10000000
+   integer, parameter :: max_variants = 9999999
    character(*), parameter :: list_word = 'LIST'
    character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
@@ -75,8 +75,6 @@ contains
                call add_card_error(set, toler_alone, k, card_name)
             else if (any(set%cards(above + 1:k - 1)%form == form_toler)) then
                call add_card_error(set, toler_second, k, card_name)
-            else if (.not. any(card%given)) then
-               call add_card_error(set, toler_blank, k, card_name)
             else
                do i = 1, 3
                   if (.not. card%given(i)) cycle
@@ -228,11 +226,7 @@ contains
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
-         ! The name of a tie does not begin with a digit behind a full count: that count is longer than its field.
-         if (error%number == 0 .and. verify(card%card%text(card_fields(label_b)%last:card_fields(label_c)%first), &
-            '0123456789') == 0) then
-            call add_card_error(set, whole_long, i, label_b)
-         else if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
+         if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_card_error(set, vary_count, i, label_b, whole(max_variants))
          else if (card%given(3)) then
             call add_card_error(set, field_unused, i, real_3)

@@ -71,14 +71,11 @@ module input_errors
       label_long = error_code_t(37, 'IS TOO LONG: NAMES HAVE AT MOST 8 CHARACTERS', own_layout), &
       whole_long = error_code_t(38, 'IS TOO LONG: INTEGERS HAVE AT MOST 8 DIGITS', own_layout), &
       star_first = error_code_t(40, 'CONTINUES NO CARD: IT IS THE FIRST CARD OF THE SET'), &
-      star_no_reals = error_code_t(41, 'CONTINUES A CARD WITHOUT REAL NUMBERS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: ALSO ON THE CARD THAT THIS ONE CONTINUES'), &
-      star_blank = error_code_t(44, 'GIVES NO NUMBERS'), &
       toler_alone = error_code_t(45, 'MUST FOLLOW THE CARD TO WHICH THE TOLERANCES APPLY'), &
       toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'), &
-      toler_second = error_code_t(47, 'IS A SECOND TOLER CARD FOR THE SAME CARD'), &
-      toler_blank = error_code_t(48, 'GIVES NO TOLERANCES')
+      toler_second = error_code_t(47, 'IS A SECOND TOLER CARD FOR THE SAME CARD')
    ! Names.
    type(error_code_t), parameter, public :: &
       name_repeated = error_code_t(50, 'IS A NAME DEFINED TWICE; FIRST ON CARD'), &
@@ -104,9 +101,7 @@ module input_errors
       cylinder_drawing = error_code_t(65, 'A CYLINDER NEEDS A DRAWING, THAT IS JOINT CARDS; OTHERWISE USE PRISM'), &
       cylinder_points = error_code_t(69, 'BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'), &
       drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', own_layout), &
-      drive_ground = error_code_t(71, 'IS A GROUND LINK, WHICH CANNOT BE DRIVEN'), &
-      drive_ground_point = error_code_t(72, 'IS A POINT OF A GROUND LINK, WHICH CANNOT BE DRIVEN'), &
-      drive_grounds = error_code_t(73, 'IS GROUND, AS THE OTHER LINK IS: NAME A LINK THAT MOVES'), &
+      drive_ground = error_code_t(71, 'IS GROUND, WHICH CANNOT BE DRIVEN: NAME WHAT MOVES'), &
       drive_one_link = error_code_t(74, 'IS NAMED TWICE: NAME TWO LINKS'), &
       drive_revolute = error_code_t(75, 'IS A REVOLUTE PAIR, WHICH HAS NO SLIDE'), &
       add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE, ADD OR RISE CARD'), &

@@ -5,7 +5,7 @@
 module card_numbers
    use kinds, only: wp, label_length
    use planar, only: pi, degree, direction, rotated, point_of
-   use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
+   use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
       number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_words, rise_words, &
       term_parabola, driven_kinds, request_link
    use splines, only: new_spline
@@ -15,7 +15,7 @@ module card_numbers
    implicit none
    private
    public :: unit_t, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
-      put_number, angle_in_radians, minute_in, turns_a_minute
+      put_number, put_table, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
    type :: unit_t
@@ -222,6 +222,7 @@ contains
       integer :: i
 
       call put_number(m, n, value)
+      if (any(n%kind == [number_drive, number_knot])) call put_table(m%drives(n%subject), n%term)
       if (n%kind > number_pair) return
       do i = 1, size(m%pairs)
          if (any(m%pairs(i)%drawn)) call take_drawn(m, i)
@@ -233,8 +234,8 @@ contains
       if (n%kind == number_pair) call put_number(m, n, value)
    end subroutine set_number
 
-   !> Gives number `n` of `m` the `value`, and leaves all others as they are; the spline of a table is solved again. A
-   !> place of a JOINT card moves both of its points.
+   !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
+   !> points. Of a table, `put_table` has to follow once all its numbers are put.
    subroutine put_number(m, n, value)
       type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: n
@@ -246,11 +247,6 @@ contains
       if (n%kind /= number_joint) then
          x => number_in(m, n)
          x = value
-         if (n%kind /= number_drive .and. n%kind /= number_knot) return
-         if (n%term == 0) return
-         associate (term => m%drives(n%subject)%terms(n%term))
-            if (term%kind == term_table) term%table = new_spline(term%table%x, term%table%y)
-         end associate
          return
       end if
       way = 0.0_wp
@@ -259,6 +255,17 @@ contains
          m%points(i)%offset = m%points(i)%offset + rotated(way, direction(-m%links(m%points(i)%link)%position(3)))
       end do
    end subroutine put_number
+
+   !> Solves the spline of term `term` of `drive` for its rows, if it is a table.
+   subroutine put_table(drive, term)
+      type(drive_t), intent(inout) :: drive
+      integer, intent(in) :: term
+
+      if (term == 0) return
+      associate (one => drive%terms(term))
+         if (one%kind == term_table) one%table = new_spline(one%table%x, one%table%y)
+      end associate
+   end subroutine put_table
 
    !> The unit of angles of `m`'s cards in radians.
    pure real(wp) function angle_in_radians(m)

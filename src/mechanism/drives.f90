@@ -262,41 +262,36 @@ contains
       end if
    end function monomial
 
-   !> Widens `b` by r1 t^r2 at the time `t`.
+   !> Widens `b` by r1 t^r2 at the time `t`; without a bound where a derivative is not defined, or leaves the range of
+   !> reals.
    pure subroutine widen_by_power(b, r, t)
       type(bounds_t), intent(inout) :: b
       real(wp), intent(in) :: r(3), t
-      real(wp) :: low(0:2), high(0:2), c
+      real(wp) :: low(0:2), high(0:2), c, p
+      logical :: is_finite
       integer :: k
 
       c = r(1)
       low = -huge(1.0_wp)
       high = huge(1.0_wp)
       do k = 0, 2
-         if (is_finite(c, r(2) - k, t)) then
-            low(k) = monomial(c, r(2) - k, t)
-            high(k) = low(k)
+         p = r(2) - k
+         if (abs(c) <= 0.0_wp) then
+            is_finite = .true.
+         else if (abs(t) <= 0.0_wp) then
+            is_finite = p >= 0.0_wp
+         else if (t < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
+            is_finite = .false.
+         else
+            is_finite = p*log(abs(t)) + max(0.0_wp, log(abs(c))) < log(huge(1.0_wp)) - 1.0_wp
          end if
-         c = c*(r(2) - k)
+         if (is_finite) low(k) = monomial(c, p, t)
+         if (is_finite) high(k) = low(k)
+         c = c*p
       end do
       call widen(b, low, abs(low))
       call widen(b, high, abs(high))
    end subroutine widen_by_power
-
-   !> Whether c t^p is defined and within the range of reals.
-   pure logical function is_finite(c, p, t)
-      real(wp), intent(in) :: c, p, t
-
-      is_finite = .true.
-      if (abs(c) <= 0.0_wp) return
-      if (abs(t) <= 0.0_wp) then
-         is_finite = p >= 0.0_wp
-      else if (t < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
-         is_finite = .false.
-      else
-         is_finite = p*log(abs(t)) + max(0.0_wp, log(abs(c))) < log(huge(1.0_wp)) - 1.0_wp
-      end if
-   end function is_finite
 
    !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
    !> zero.

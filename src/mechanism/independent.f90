@@ -6,7 +6,7 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, pair_links, drive_links, request_links, drive_relangle, &
       driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, number_link, number_knot
-   use scales, only: characteristic_length, characteristic_rate, relative_tolerance
+   use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
    public :: set_t, member_t, divide, part_of_links, &
@@ -50,9 +50,15 @@ contains
       type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:)
       integer :: link_part(size(m%links)), ground, i, c, k
+      real(wp) :: length, rate
 
       s%settings_t = m%settings_t
-      if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
+      if (allocated(m%tolerances)) then
+         length = characteristic_length(m)
+         rate = characteristic_rate(m, length)
+         s%largest_tolerance = min(1.0_wp, max(epsilon(1.0_wp), maxval(m%tolerances%size_of*m%tolerances%unit &
+            *rate**m%tolerances%powers(2)/length**m%tolerances%powers(1))))
+      end if
       link_part = part_of_links(m)
       s%count = max(1, maxval([0, link_part]))
       if (s%count == 1) link_part = 1

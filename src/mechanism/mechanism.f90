@@ -62,10 +62,7 @@ module mechanism
       enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
-      enumerator :: remark_drawn_value          !< the value of a drive at t = 0 is the one of the drawing
-      enumerator :: remark_drawn_offset         !< the h of a guide is the one of the drawing: P and Q are not along it
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
-      enumerator :: remark_off_drawing          !< at the first instant a drive is off the drawing
       enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 

@@ -8,7 +8,7 @@ module scales
       used_points
    implicit none
    private
-   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance, &
+   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, &
       latest_time, shortest_step
 
 contains
@@ -112,23 +112,6 @@ contains
       if (m%steps > 0) steps = [steps, abs(m%t1 - m%t0)/real(m%steps, wp)]
       step = minval(steps, mask=steps > 0.0_wp)
    end function shortest_step
-
-   !> The largest tolerance of `m`, as a part of the characteristic length and rate; `m` has one.
-   pure real(wp) function relative_tolerance(m) result(part)
-      type(mechanism_t), intent(in) :: m
-      real(wp) :: length, rate
-      integer :: i
-
-      length = characteristic_length(m)
-      rate = characteristic_rate(m, length)
-      part = 0.0_wp
-      do i = 1, size(m%tolerances)
-         associate (one => m%tolerances(i))
-            part = max(part, one%size_of*one%unit*rate**one%powers(2)/length**one%powers(1))
-         end associate
-      end do
-      part = min(1.0_wp, max(epsilon(1.0_wp), part))
-   end function relative_tolerance
 
    !> The largest power of two that is not above `x` > 0: division by it is exact.
    pure real(wp) function power_of_two(x) result(p)

@@ -17,8 +17,7 @@ module rounded_numbers
    use planar, only: pi
    use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
-   use card_numbers, only: number_value, put_number
-   use splines, only: new_spline
+   use card_numbers, only: number_value, put_number, put_table
    use links_tree, only: tree_t, axes_t
    implicit none
    private
@@ -99,17 +98,13 @@ contains
          type(card_number_t), intent(in) :: number
          real(wp), intent(in) :: size_of
 
-         if (size_of > 0.0_wp) call put_number(off, number, number_value(m, number) + change_of(number, size_of))
-      end subroutine put
+         real(wp) :: by
 
-      !> By how much the number that is rounded by `size_of` is off.
-      real(wp) function change_of(number, size_of) result(by)
-         type(card_number_t), intent(in) :: number
-         real(wp), intent(in) :: size_of
-
+         if (.not. size_of > 0.0_wp) return
          by = 0.0_wp
          if (k > 0) by = roundings*epsilon(1.0_wp)*size_of*deviate(number, k)
-      end function change_of
+         call put_number(off, number, number_value(m, number) + by)
+      end subroutine put
 
       !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
       subroutine put_term(term, drive, j)
@@ -119,15 +114,15 @@ contains
          integer :: i
 
          if (term%kind == term_table) then
-            associate (x => term%table%x, y => term%table%y, table => off%drives(drive)%terms(j)%table)
+            associate (x => term%table%x, y => term%table%y)
                do i = 1, size(y)
                   slope = 0.0_wp
                   if (i > 1) slope = abs((y(i) - y(i - 1))/(x(i) - x(i - 1)))
                   if (i < size(y)) slope = max(slope, abs((y(i + 1) - y(i))/(x(i + 1) - x(i))))
-                  table%y(i) = y(i) + change_of(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
+                  call put(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
                end do
-               table = new_spline(x, table%y)
             end associate
+            call put_table(off%drives(drive), j)
          else
             do i = 1, merge(1, 3, term%kind == term_power)
                call put(card_number_t(number_drive, drive, j, i), abs(term%r(i)))

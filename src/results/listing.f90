@@ -44,7 +44,7 @@ module listing
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_title_long:remark_more) = &
       [say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, say_more]
+      say_radians, say_jumps, say_open, say_more]
 
 contains
 
@@ -85,7 +85,6 @@ contains
             head = whole(i)
             head(:6) = adjustr(head(:6))
             if (f%groups(i)%driven) head(9:) = phrase(say_driven, pl)
-            if (.not. f%groups(i)%needed) head(9:) = phrase(say_not_needed, pl)
             associate (links => f%groups(i)%links)
                do k = 1, size(links)
                   if (mod(k, links_a_line) == 1) call add(o, ' '//head)

@@ -47,7 +47,6 @@ module phrases
       say_groups = phrase_t('DRIVING LINKS AND ASSUR GROUPS, IN ORDER OF SOLUTION', &
          'OGNIWA NAPEDZANE I GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
       say_driven = phrase_t('DRIVEN', 'NAPEDZANA'), &
-      say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
       say_closure_error_of = phrase_t('CLOSURE ERROR', 'BLAD ZAMKNIECIA'), &
       say_beyond = phrase_t('NO POSITION: BEYOND THE LIMIT OF MOTION AT T =', &
          'BRAK POLOZENIA: POZA KRESEM RUCHU W CHWILI T ='), &
@@ -229,12 +228,8 @@ module phrases
          'PUNKTU NIE UZYWA ZADNA PARA, NAPED ANI KARTA PRINT'), &
       say_radians = phrase_t('IS READ IN RADIANS: DID YOU MEAN DEGREES (UNITS DEG)?', &
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
-      say_drawn_value = phrase_t('VALUE AT T = 0, AS DRAWN:', 'WARTOSC W T = 0 WEDLUG RYSUNKU:'), &
-      say_drawn_offset = phrase_t('PQ IS NOT DRAWN ALONG ALPHA; FOR A CYLINDER TAKE CARD CYLINDER; H =', &
-         'PQ NIE LEZY WZDLUZ ALPHA; DO SILOWNIKA SLUZY KARTA CYLINDER; H ='), &
       say_open = phrase_t('ITS NUMBERS CONTRADICT THE DRAWING; CLOSURE ERROR THERE:', &
          'LICZBY SPRZECZNE Z RYSUNKIEM; BLAD ZAMKNIECIA NA RYSUNKU:'), &
-      say_off_drawing = phrase_t('THE MOTION BEGINS OFF THE DRAWING BY', 'RUCH ZACZYNA SIE POZA RYSUNKIEM O'), &
       say_jumps = phrase_t('HAS JUMPS OF ACCELERATION: VALUES AFTER THE JUMP ARE PRINTED', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')

@@ -13,8 +13,7 @@
 module assur_groups
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, &
-      wanted_links
+   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use matching, only: incidence_t, match, overdetermined, find_blocks
    implicit none
    private
@@ -33,7 +32,6 @@ module assur_groups
    type :: group_t
       integer, allocatable :: links(:)    !< numbers of its links
       logical :: driven = .false.         !< a drive is part of it
-      logical :: needed = .true.          !< a table names one of its links, or one that builds on it
    end type group_t
 
 contains
@@ -152,15 +150,14 @@ contains
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: c
       type(group_t), allocatable :: groups(:)
-      logical :: over(c%incidence%equations), wanted(size(m%links))
+      logical :: over(c%incidence%equations)
       type(incidence_t) :: waits
       type(sorted_t) :: by_group
-      integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:), below(:)
+      integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:)
       integer :: i, e
 
       call match(c%incidence, unknown_of, equation_of)
       over = overdetermined(c%incidence, unknown_of, equation_of)
-      wanted = wanted_links(m)
       waits = waiting(m, c, equation_of, over)
       call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
       of_link = member
@@ -172,22 +169,11 @@ contains
       by_group = sorted(order(of_link), size(groups))
       do i = 1, size(groups)
          groups(i)%links = members(by_group, i)
-         groups(i)%needed = any(wanted(groups(i)%links))
       end do
       do e = 1, size(unknown_of)
          if (c%drive(e) == 0 .or. c%incidence%first(e) == c%incidence%first(e + 1)) cycle
          i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
          groups(order(of_link(i)))%driven = .true.
-      end do
-      ! What a needed group builds on is needed.
-      do e = size(groups), 1, -1
-         if (.not. groups(e)%needed) cycle
-         do i = 1, size(groups(e)%links)
-            associate (link => groups(e)%links(i))
-               below = order(of_link(waits%unknown(waits%first(link):waits%first(link + 1) - 1)))
-               groups(pack(below, below > 0))%needed = .true.
-            end associate
-         end do
       end do
 
    contains

@@ -13,7 +13,7 @@ module block_numbers
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes
-   use loop_equations, only: put_equation_numbers, fit_equations
+   use loop_equations, only: put_equation_numbers, find_unknowns
    use blocks, only: blocks_t, block_t, block_loop_t, numbers_t, loop_numbers_t, loop_angles, loop_components, &
       loop_projection
    implicit none
@@ -32,12 +32,16 @@ contains
       type(blocks_t), intent(in) :: b
       type(numbers_t), intent(inout) :: x
       logical, intent(out) :: fits
+      logical, allocatable :: has_vector(:), counts(:, :)
 
       x%span = solver_length(m)
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
       if (.not. fits) return
-      fits = fit_equations(b%equations, x%equations)
+      has_vector = b%equations%has_vector
+      counts = b%equations%counts
+      call find_unknowns(b%equations, x%equations, has_vector, counts)
+      fits = all(has_vector .eqv. b%equations%has_vector) .and. all(counts .eqv. b%equations%counts)
       call fill_numbers(b, x)
       call find_units(b, x)
    end subroutine put_numbers

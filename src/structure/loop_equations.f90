@@ -11,13 +11,13 @@ module loop_equations
    use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
-   use vector_loops, only: search_t, find_path, find_path_down, vector_loops_t, &
+   use vector_loops, only: search_t, find_path, vector_loops_t, &
       add_vector_loop, loop_sums_t, put_sums, vanishes
    use matching, only: incidence_t
    implicit none
    private
    public :: equation_t, equations_t, new_equations, equation_numbers_t, new_equation_numbers, put_equation_numbers, &
-      incidence, fit_equations
+      incidence, find_unknowns
    public :: equation_x, equation_y, equation_projection, equation_angle, equation_slide
 
    integer, parameter :: equation_x = 1           !< x of a vector loop
@@ -112,6 +112,8 @@ contains
       !> The equation of drive `k`.
       subroutine add_drive(k)
          integer, intent(in) :: k
+         integer :: link
+
          associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
             select case (m%drives(k)%kind)
             case (drive_angle)
@@ -119,7 +121,14 @@ contains
             case (drive_relangle)
                call add(equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i)))
             case (drive_x, drive_y)
-               call find_path_down(t, m%points(i)%link, s)
+               ! Down the tree to a ground link or a root.
+               s%length = 0
+               link = m%points(i)%link
+               do while (t%parent(link) > 0)
+                  s%length = s%length + 1
+                  s%pairs(s%length) = t%parent_joint(link)
+                  link = t%parent(link)
+               end do
                call add_vector_loop(m, t, i, 0, s, e%vector_loops)
                call add(equation_t(merge(equation_x, equation_y, m%drives(k)%kind == drive_x), vector_loop=n, drive=k))
             case (drive_slide)
@@ -207,17 +216,6 @@ contains
       end do
    end subroutine put_equation_numbers
 
-   !> Whether each of the equations `e` has the unknowns, and each loop the body vectors, with the numbers `x` that it
-   !> has with those of which `e` was made.
-   pure logical function fit_equations(e, x) result(fits)
-      type(equations_t), intent(in) :: e
-      type(equation_numbers_t), intent(in) :: x
-      logical :: has_vector(size(e%has_vector)), counts(2, size(e%counts, 2))
-
-      call find_unknowns(e, x, has_vector, counts)
-      fits = all(has_vector .eqv. e%has_vector) .and. all(counts .eqv. e%counts)
-   end function fit_equations
-
    !> Which body vectors and slides of `e` are in its equations with the numbers `x`: `has_vector` and `counts` of
    !> `equations_t`. A slide is not if it is at right angles to what is asked for, in whatever position.
    pure subroutine find_unknowns(e, x, has_vector, counts)
@@ -259,7 +257,8 @@ contains
       type(equations_t), intent(in) :: e
       integer, intent(in) :: orientations, unknowns
       type(incidence_t) :: g
-      integer :: seen(0:unknowns), n, i
+      integer :: seen(0:unknowns), constant, n, i, k
+      logical :: turns
 
       g%equations = e%count
       g%unknowns = unknowns
@@ -268,7 +267,7 @@ contains
       seen = 0
       n = 0
       do i = 1, e%count
-         associate (q => e%list(i))
+         associate (q => e%list(i), p => e%vector_loops)
             select case (q%kind)
             case (equation_angle)
                ! Two links that turn together: their angles cancel.
@@ -279,37 +278,27 @@ contains
             case (equation_slide)
                call note(orientations + q%orientation)
             case default
-               call note_vector_loop(q, e%vector_loops)
+               associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
+                  s => p%first_slide(q%vector_loop), t => p%first_slide(q%vector_loop + 1) - 1)
+                  turns = any(e%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
+                     .or. any(p%slide_orientation(s:t) /= q%orientation)
+                  ! What turns with the direction of the projection has a constant part in it.
+                  constant = merge(q%orientation, 0, q%kind == equation_projection .and. .not. turns)
+                  do k = v, w
+                     if (e%has_vector(k) .and. p%vector_orientation(k) /= constant) call note(p%vector_orientation(k))
+                  end do
+                  do k = s, t
+                     if (p%slide_orientation(k) /= constant) call note(p%slide_orientation(k))
+                     if (e%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
+                  end do
+                  if (q%kind == equation_projection .and. turns) call note(q%orientation)
+               end associate
             end select
          end associate
          g%first(i + 1) = n + 1
       end do
 
    contains
-
-      !> Notes the unknowns of the vector loop of equation `q`, one of `p`.
-      subroutine note_vector_loop(q, p)
-         type(equation_t), intent(in) :: q
-         type(vector_loops_t), intent(in) :: p
-         integer :: k, constant
-         logical :: turns
-
-         associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
-            s => p%first_slide(q%vector_loop), t => p%first_slide(q%vector_loop + 1) - 1)
-            turns = any(e%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
-               .or. any(p%slide_orientation(s:t) /= q%orientation)
-            ! What turns with the direction of the projection has a constant part in it.
-            constant = merge(q%orientation, 0, q%kind == equation_projection .and. .not. turns)
-            do k = v, w
-               if (e%has_vector(k) .and. p%vector_orientation(k) /= constant) call note(p%vector_orientation(k))
-            end do
-            do k = s, t
-               if (p%slide_orientation(k) /= constant) call note(p%slide_orientation(k))
-               if (e%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
-            end do
-            if (q%kind == equation_projection .and. turns) call note(q%orientation)
-         end associate
-      end subroutine note_vector_loop
 
       !> Notes unknown `u`, once; the ground's orientation is none.
       subroutine note(u)

@@ -12,7 +12,7 @@ module matching
    use grouping, only: sorted_t, sorted
    implicit none
    private
-   public :: incidence_t, owners, match, find_blocks, overdetermined, underdetermined
+   public :: incidence_t, match, find_blocks, overdetermined, underdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -21,16 +21,6 @@ module matching
    end type incidence_t
 
 contains
-
-   !> The equation of each entry of g%unknown.
-   pure function owners(g) result(equation)
-      type(incidence_t), intent(in) :: g
-      integer :: equation(g%first(g%equations + 1) - 1), e
-
-      do e = 1, g%equations
-         equation(g%first(e):g%first(e + 1) - 1) = e
-      end do
-   end function owners
 
    !> `unknown_of` (equations): the unknown matched with each equation, 0 for none; `equation_of` (unknowns) likewise.
    subroutine match(g, unknown_of, equation_of)
@@ -213,10 +203,12 @@ contains
       type(incidence_t), intent(in) :: g
       integer, intent(in) :: unknown_of(:), equation_of(:)
       logical :: loose(g%unknowns)
-      integer :: owner(g%first(g%equations + 1) - 1)
+      integer :: owner(g%first(g%equations + 1) - 1), e
       type(sorted_t) :: s
 
-      owner = owners(g)
+      do e = 1, g%equations
+         owner(g%first(e):g%first(e + 1) - 1) = e
+      end do
       s = sorted(g%unknown(:size(owner)), g%unknowns)
       loose = overdetermined(incidence_t(g%unknowns, g%equations, s%first, owner(s%member)), equation_of, unknown_of)
    end function underdetermined

@@ -9,22 +9,16 @@ module structure
    use failures, only: failure_t, fail, status_rejected
    use numerals, only: whole
    use names, only: drive_name, listed
-   use grouping, only: sorted_t, sorted, members, once, joined
+   use grouping, only: once
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, method_newton
-   use matching, only: incidence_t, match, owners, overdetermined, underdetermined
+   use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
    use block_structure, only: structure_t, make_structure
    implicit none
    private
-   public :: structure_t, findings_t, group_t, underdetermined_t, make_structure, find_structure, &
-      find_groups, check_structure, faults_text
-
-   !> Links that still can move, and the drives that they lack.
-   type :: underdetermined_t
-      integer, allocatable :: links(:)
-      integer :: degrees_of_freedom = 0
-   end type underdetermined_t
+   public :: structure_t, findings_t, group_t, make_structure, find_structure, find_groups, check_structure, &
+      faults_text
 
    type :: findings_t
       integer :: links = 0        !< n, ground links with them
@@ -36,7 +30,8 @@ module structure
       integer :: degrees_of_freedom = 0     !< s
       integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
-      type(underdetermined_t), allocatable :: lacking(:)   !< what still can move
+      integer :: free = 0                       !< unknowns that no equation can find, among those of
+      integer, allocatable :: loose(:)          !< links that still can move
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order, once `find_groups` has been asked for them
@@ -44,9 +39,6 @@ module structure
       type(set_t), allocatable :: set                   !< divided, where it is several
       type(structure_t), allocatable :: structures(:)   !< (parts)
    end type findings_t
-
-   !> So many parts are named; of more, the number is given.
-   integer, parameter :: max_parts = 20
 
    !> The faults of so many sets are reported.
    integer, parameter :: max_sets = 10
@@ -77,11 +69,9 @@ contains
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack(c%pair, over .and. c%pair > 0)
       f%many_drives = pack(c%drive, over .and. c%drive > 0)
-      if (any(equation_of == 0)) then
-         f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
-         return
-      end if
-      allocate (f%lacking(0))
+      f%free = count(equation_of == 0)
+      f%loose = once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of)))
+      if (f%free > 0) return
       parts = max(1, maxval([0, part_of_links(m)]))
       allocate (f%structures(parts))
       if (parts == 1) then
@@ -93,44 +83,10 @@ contains
             call make_structure(f%set%parts(k), f%structures(k))
          end do
       end if
-      f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
-      ! Two links that a prismatic pair joins have one angle: of such parts only the number is known.
-      if (.not. f%solvable) f%lacking = [underdetermined_t(pack([(k, k=1, size(m%links))], .not. m%links%ground), &
-         sum([(size(f%structures(k)%blocks%free), k=1, parts)]))]
-
-   contains
-
-      !> The parts of `m` that still can move: the links of coordinates that have too few equations (`loose`), those in
-      !> one part that such coordinates in one equation join. `equation_of` (unknowns): the matching of the closure `c`.
-      function parts_that_lack(loose) result(parts)
-         logical, intent(in) :: loose(:)
-         type(underdetermined_t), allocatable :: parts(:)
-         logical :: can_move(size(m%links))
-         integer, allocatable :: unknown(:), part(:)
-         type(sorted_t) :: by_part
-         integer :: i
-
-         can_move = .false.
-         can_move(pack(c%link_of, loose)) = .true.
-         associate (g => c%incidence)
-            unknown = g%unknown(:g%first(g%equations + 1) - 1)
-            ! Behind the links the equations.
-            part = joined([can_move, spread(.true., 1, g%equations)], c%link_of(pack(unknown, loose(unknown))), &
-               size(m%links) + pack(owners(g), loose(unknown)))
-         end associate
-         part = part(:size(m%links))
-         allocate (parts(maxval([0, part])))
-         by_part = sorted(part, size(parts))
-         do i = 1, size(parts)
-            parts(i)%links = members(by_part, i)
-         end do
-         do i = 1, size(equation_of)
-            if (equation_of(i) > 0) cycle
-            associate (degrees => parts(part(c%link_of(i)))%degrees_of_freedom)
-               degrees = degrees + 1
-            end associate
-         end do
-      end function parts_that_lack
+      f%solvable = all([(f%structures(k)%blocks%solvable, k=1, parts)])
+      ! Two links that a prismatic pair joins have one angle: which links can move, that does not say.
+      f%free = sum([(size(f%structures(k)%blocks%free), k=1, parts)])
+      if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. m%links%ground)
    end function find_structure
 
    !> Finds the groups of `m`, whose findings `f` are; none where it is not solvable. Only the listing has them, and the
@@ -172,10 +128,9 @@ contains
       type(findings_t), intent(in) :: f
       integer, intent(in) :: set
       character(:), allocatable :: text
-      integer :: i
 
       text = ''
-      if (size(f%lacking) == 0) then
+      if (f%free == 0) then
          if (f%redundant > 0 .and. m%method /= method_newton) &
             call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
          return
@@ -184,16 +139,9 @@ contains
          call add_line('E105  SET '//whole(set)//': NO LINK IS GROUND: GIVE IT A GROUND CARD')
          text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
       end if
-      do i = 1, min(size(f%lacking), max_parts)
-         associate (one => f%lacking(i))
-            call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(one%links)%name)//': ' &
-               //whole(one%degrees_of_freedom)//' ' &
-               //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
-               'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', one%degrees_of_freedom == 1)))
-         end associate
-      end do
-      if (size(f%lacking) > max_parts) call add_line('E101  SET '//whole(set)//': AND ' &
-         //whole(size(f%lacking) - max_parts)//' MORE PARTS THAT CAN MOVE')
+      call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(f%loose)%name)//': '//whole(f%free)//' ' &
+         //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
+         'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', f%free == 1)))
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
@@ -211,18 +159,6 @@ contains
 
    end function faults_text
 
-   !> The names of the drives with these numbers.
-   function drive_names(m, numbers) result(names)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: numbers(:)
-      character(3*label_length + 2) :: names(size(numbers))
-      integer :: i
-
-      do i = 1, size(numbers)
-         names(i) = drive_name(m, m%drives(numbers(i)))
-      end do
-   end function drive_names
-
    !> `word` and the `names` to which it applies: LINK A, or LINKS A, B.
    function counted(word, names) result(text)
       character(*), intent(in) :: word, names(:)
@@ -237,11 +173,13 @@ contains
       type(findings_t), intent(in) :: f
       character(:), allocatable :: text
       integer, allocatable :: pairs(:)
+      integer :: i
 
       pairs = once(f%many_pairs)
       text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG '
       if (size(pairs) > 0) text = text//counted('PAIR', m%pairs(pairs)%name)
       if (size(pairs) > 0 .and. size(f%many_drives) > 0) text = text//' AND '
-      if (size(f%many_drives) > 0) text = text//counted('DRIVE', drive_names(m, f%many_drives))
+      if (size(f%many_drives) > 0) text = text//counted('DRIVE', &
+         [(drive_name(m, m%drives(f%many_drives(i))), i=1, size(f%many_drives))])
    end function surplus
 end module structure

@@ -18,7 +18,7 @@ module vector_loops
    implicit none
    private
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
-   public :: search_t, find_path, find_path_down
+   public :: search_t, find_path
 
    !> What a search needs; links are nodes, all ground links one, node 0.
    type :: search_t
@@ -194,22 +194,6 @@ contains
 
       vanishes = all(abs(x%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*x%largest(k))
    end function vanishes
-
-   !> `s%pairs`: the pairs down the tree from `link` to a ground link or a root.
-   subroutine find_path_down(t, link, s)
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: link
-      type(search_t), intent(inout) :: s
-      integer :: i
-
-      s%length = 0
-      i = link
-      do while (t%parent(i) > 0)
-         s%length = s%length + 1
-         s%pairs(s%length) = t%parent_joint(i)
-         i = t%parent(i)
-      end do
-   end subroutine find_path_down
 
    !> `s%pairs`: the pairs on a short path from link `i` to link `j`, which are joined. Breadth first from both ends in
    !> turn; the ground ends a path and is never searched level by level, since all links may be joined to it.

@@ -213,9 +213,8 @@ contains
       logical :: is_in(size(m%links))
 
       g%driven = text(1:1) == '*'
-      g%needed = text(1:1) /= '-'
       is_in = .false.
-      from = merge(2, 1, g%driven .or. .not. g%needed)
+      from = merge(2, 1, g%driven)
       do k = 1, size(m%links)
          is_in(k) = index(' '//text(from:)//' ', ' '//trim(m%links(k)%name)//' ') > 0
       end do

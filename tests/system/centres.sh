@@ -162,6 +162,5 @@ refusal 'no second link' "$(card POLE CRANK)" E034
 refusal 'no such link' "$(card POLE BASE ROD)" E051
 refusal 'no such point' "$(card CURVE X)" E052
 refusal 'every 0th instant' "$(card POLE BASE ROCKER 0)" E036
-refusal 'twice' "$(card POLE BASE COUPLER)" E096
 refusal 'a real number' "$(card POLE BASE ROCKER '' 1.0)" E019
 conclude
