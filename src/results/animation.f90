@@ -10,9 +10,8 @@ module animation
    use names, only: drive_name
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
-   use shapes, only: element_t, shapes_of, pole_name
-   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_traces, put_ring, put_foot, &
-      line_height
+   use shapes, only: element_t, shapes_of
+   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_foot, line_height
    use picture, only: closes
    use svg, only: page_t, width, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
       attribute, fitted
@@ -26,9 +25,9 @@ module animation
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
    !> part by more than 1 % of their lengths.
    real(wp), parameter :: max_turn = 0.3_wp
-   !> Room for the bar of the time, its ends, the height of a mark on it, the radius of its dot.
+   !> Room for the bar of the time, its ends, the radius of its dot.
    integer, parameter :: bar_room = 14
-   real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], mark_height = 5.0_wp, dot_radius = 4.0_wp
+   real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], dot_radius = 4.0_wp
    !> The values of so many drives stand beside the time.
    integer, parameter :: max_drives = 3
    !> What is smaller than this part of the largest value of a drive is 0: six digits are shown.
@@ -59,7 +58,6 @@ contains
       page%height = page%height + bar_room
       call find_course()
       c%s = d%now
-      call put_traces(c)
       list = shapes_of(d, spread(.true., 1, size(c%m%links)), c%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
       where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
@@ -71,9 +69,6 @@ contains
       call put_group(c%o, 'class="film" data-frames="'//whole(frames)//'" data-keys="' &
          //whole(size(frame))//'" data-end="'//full(d%frame(d%films)%t)//'"', '')
       call put_moving_links()
-      do i = 1, size(d%poles)
-         call put_moving_centre(i)
-      end do
       call put_end(c%o, 'g')
       call put_end(c%o, 'svg')
       do i = 1, size(list)
@@ -113,6 +108,7 @@ contains
          type(canvas_t) :: axes
          real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
          logical :: known(size(frame))
+         character(:), allocatable :: name
          integer :: link, k, last
 
          axes = c
@@ -136,8 +132,12 @@ contains
                end do
             end associate
             ! Two groups: one moves, one turns.
-            call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
-               trim(c%m%links(link)%name), place, known, pale)
+            name = trim(c%m%links(link)%name)
+            call put_group(c%o, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
+               //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', name)
+            call put_moving(shift, place, smooth)
+            if (.not. all(known)) call put_moving('animate attributeName="opacity"', &
+               reshape(merge(1.0_wp, pale, known), [1, size(known)]), .false.)
             call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
             call put_moving(turn, angle, smooth)
             do k = 1, size(list)
@@ -147,30 +147,6 @@ contains
             call put_end(c%o, 'g')
          end do
       end subroutine put_moving_links
-
-      !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves
-      !> the picture.
-      subroutine put_moving_centre(i)
-         integer, intent(in) :: i
-         real(wp) :: place(2, 0:size(frame))
-         logical :: is_there(size(frame))
-         character(:), allocatable :: name
-         integer :: k
-
-         place(:, 0) = c%low
-         do k = 1, size(frame)
-            associate (s => d%frame(frame(k)))
-               place(:, k) = to_pixels(c, s%centre(:, i))
-               is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
-            end associate
-            if (.not. is_there(k)) place(:, k) = place(:, k - 1)
-         end do
-         if (.not. any(is_there)) return
-         name = pole_name(c%m, d%poles(i))
-         call begin_moving(attribute('data-pole', name)//' ', name, place(:, 1:), is_there, 0.0_wp)
-         call put_ring(c, i, [0.0_wp, 0.0_wp])
-         call put_end(c%o, 'g')
-      end subroutine put_moving_centre
 
       !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind
       !> a window of one line.
@@ -212,53 +188,21 @@ contains
          call put_end(c%o, 'svg')
       end subroutine put_clock
 
-      !> The bar on which the time passes, with red marks at flagged instants.
+      !> The bar on which the time passes.
       subroutine put_bar()
-         real(wp) :: x, y, last, first(2)
-         integer :: k
+         real(wp) :: first(2), way(2, size(frame))
 
-         y = real(c%bottom, wp)
-         first = [bar_ends(1), y]
-         call put_line(c%o, 'polyline', reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
-         last = -1.0_wp
-         do k = 1, size(d%flagged_at)
-            x = along_bar(d%flagged_at(k))
-            if (abs(x - last) < 1.0_wp) cycle
-            last = x
-            call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
-         end do
+         first = [bar_ends(1), real(c%bottom, wp)]
+         call put_line(c%o, 'polyline', reshape([first, bar_ends(2), first(2)], [2, 2]), 'class="time"')
+         way = 0.0_wp
+         associate (t0 => d%frame(1)%t, t1 => d%frame(d%films)%t)
+            if (abs(t1 - t0) > 0.0_wp) way(1, :) = (d%frame(frame)%t - t0)/(t1 - t0)*(bar_ends(2) - bar_ends(1))
+         end associate
          call put_group(c%o, 'class="now"', '')
-         call put_moving(shift, reshape([(along_bar(d%frame(frame(k))%t) - first(1), 0.0_wp, &
-            k=1, size(frame))], [2, size(frame)]), smooth)
+         call put_moving(shift, way, smooth)
          call put_circle(c%o, first, dot_radius, 'class="point"')
          call put_end(c%o, 'g')
       end subroutine put_bar
-
-      !> Where the time `t` is on the bar (pixel).
-      pure real(wp) function along_bar(t) result(x)
-         real(wp), intent(in) :: t
-         real(wp) :: part
-
-         part = 0.0_wp
-         associate (t0 => d%frame(1)%t, t1 => d%frame(d%frames)%t)
-            if (abs(t1 - t0) > 0.0_wp) part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
-         end associate
-         x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
-      end function along_bar
-
-      !> Begins a group with the `attributes` and the `title` that moves through the places `place` (2, keys). It is
-      !> seen by the opacity `elsewhere` at other keys than those where it `is_there` (keys).
-      subroutine begin_moving(attributes, title, place, is_there, elsewhere)
-         character(*), intent(in) :: attributes, title
-         real(wp), intent(in) :: place(:, :), elsewhere
-         logical, intent(in) :: is_there(:)
-
-         call put_group(c%o, attributes//'transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', &
-            title)
-         call put_moving(shift, place, smooth)
-         if (.not. all(is_there)) call put_moving('animate attributeName="opacity"', &
-            reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
-      end subroutine begin_moving
 
       !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
       subroutine put_moving(element, values, smooth)

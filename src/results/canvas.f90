@@ -5,8 +5,8 @@ module canvas
    use mechanism, only: mechanism_t
    use planar, only: direction, rotated
    use numerals, only: full, whole
-   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, moved
-   use shapes, only: element_t, shapes_of, color_of, link_color
+   use drawing, only: drawing_t, snapshot_t, moved
+   use shapes, only: element_t, shapes_of
    use svg, only: page_t, width, put_words, put_circle, put_line, put_hatch, hatch_length, put_group, &
       put_end, attribute, fitted
    use text_output, only: output_t
@@ -14,7 +14,7 @@ module canvas
    use phrases
    implicit none
    private
-   public :: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_traces, put_ring, put_name
+   public :: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_name
    public :: put_foot, add_lines, add_box, cover_of
 
    !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
@@ -37,9 +37,6 @@ module canvas
    integer, parameter, public :: line_height = 17
    !> By this part of its larger side a mechanism's picture is wider on each side, at most, for centrodes.
    real(wp), parameter :: centrode_room = 0.4_wp
-   !> The rings of an instant centre and of a joint at a flagged position.
-   real(wp), parameter, public :: centre_radius = 4.0_wp
-   real(wp), parameter :: ring_radius = 8.0_wp
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
@@ -57,8 +54,6 @@ module canvas
    real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
-   !> The weight of a path against that of a bar, for names.
-   real(wp), parameter :: path_weight = 0.4_wp
 
 contains
 
@@ -96,15 +91,6 @@ contains
          if (list(i)%is_below) cycle
          do k = 1, size(others)
             call widen(places_of(list(i), d%frame(others(k))))
-         end do
-         do k = 1, size(d%flags)
-            call widen(places_of(list(i), d%flags(k)%last))
-         end do
-      end do
-      do i = 1, size(d%curves)
-         do k = 1, d%films
-            if (d%frame(k)%known(d%m%points(d%curves(i))%link)) &
-               call widen(reshape(point_place(d%m, d%frame(k), d%curves(i)), [2, 1]))
          end do
       end do
       if (.not. all(low <= high)) then
@@ -220,11 +206,10 @@ contains
       end if
    end subroutine put_shape
 
-   !> Draws the moving links as thin lines at the position `s`; names keep clear of them if `counts`.
-   subroutine put_outlines(c, s, counts)
+   !> Draws the moving links as thin lines at the position `s`.
+   subroutine put_outlines(c, s)
       type(canvas_t), intent(inout) :: c
       type(snapshot_t), intent(in) :: s
-      logical, intent(in) :: counts
       real(wp), allocatable :: q(:, :)
       integer :: i, k, n
 
@@ -236,112 +221,30 @@ contains
             q(:, k) = to_pixels(c, q(:, k))
          end do
          call put_line(c%o, trim(merge('polygon ', 'polyline', n > 2)), q, 'class="thin"')
-         if (counts) call add_lines(c, reshape([q, q(:, 1)], [2, n + 1]), 1.0_wp)
       end do
    end subroutine put_outlines
 
-   !> Draws the paths of points, and the flagged positions: thin lines, and rings about the joints, which show where the
-   !> lines are covered.
-   subroutine put_traces(c)
-      type(canvas_t), intent(inout) :: c
-      integer :: i, k, point
-
-      do i = 1, size(c%d%curves)
-         call put_path(c, c%d%curves(i))
-      end do
-      do k = 1, size(c%d%flags)
-         associate (s => c%d%flags(k)%last)
-            call put_group(c%o, 'class="flagged"', '')
-            call put_outlines(c, s, .true.)
-            do i = 1, size(c%m%pairs)
-               point = joint_point(c%d, s%known, i)
-               if (point > 0) &
-                  call put_circle(c%o, to_pixels(c, point_place(c%m, s, point)), ring_radius, 'class="ring"')
-            end do
-            call put_end(c%o, 'g')
-         end associate
-      end do
-   end subroutine put_traces
-
-   !> Draws the path of point number `i` through the frames, in pieces where its place is not known.
-   subroutine put_path(c, i)
-      type(canvas_t), intent(inout) :: c
-      integer, intent(in) :: i
-      character(:), allocatable :: name
-      real(wp) :: p(2, c%d%films), here(2)   ! pixels
-      integer :: k, n
-
-      name = trim(c%m%points(i)%name)
-      call put_group(c%o, attribute('data-path', name), name)
-      n = 0
-      do k = 1, c%d%films
-         if (c%d%frame(k)%known(c%m%points(i)%link)) then
-            here = to_pixels(c, point_place(c%m, c%d%frame(k), i))
-            ! A point that stands still, to a hundredth of a pixel, has one place.
-            if (n > 0) then
-               if (all(nint(100.0_wp*here) == nint(100.0_wp*p(:, n)))) cycle
-            end if
-            n = n + 1
-            p(:, n) = here
-         else
-            call put_piece()
-         end if
-      end do
-      call put_piece()
-      call put_end(c%o, 'g')
-
-   contains
-
-      !> Draws the places gathered, if they are a line, and begins again.
-      subroutine put_piece()
-         if (n > 1) then
-            call put_line(c%o, 'polyline', p(:, :n), 'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
-            call add_lines(c, p(:, :n), path_weight)
-         end if
-         n = 0
-      end subroutine put_piece
-   end subroutine put_path
-
-   !> Draws the ring of the instant centre of pole number `i` at the pixel `p` (2).
-   subroutine put_ring(c, i, p)
-      type(canvas_t), intent(in) :: c
-      integer, intent(in) :: i
-      real(wp), intent(in) :: p(2)
-
-      call put_circle(c%o, p, centre_radius, 'class="centre" style="stroke:' &
-         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"')
-      call put_circle(c%o, p, 1.0_wp, 'class="point"')
-   end subroutine put_ring
-
-   !> The lines of words about flagged instants: one for each that is drawn, and one where there are more.
+   !> The lines of words about flagged instants: one, if there are any.
    pure integer function flag_lines(d)
       type(drawing_t), intent(in) :: d
 
-      flag_lines = size(d%flags)
-      if (d%flagged > size(d%flags)) flag_lines = flag_lines + 1
+      flag_lines = min(1, d%flagged)
    end function flag_lines
 
-   !> Ends the picture: below it when and why instants are flagged, and what is drawn of them; and at the foot on the
-   !> right the scale bar, 1, 2 or 5 times a power of ten units of length.
+   !> Ends the picture: below it when and why the first flagged instant is flagged, and how many are; and at the foot on
+   !> the right the scale bar, 1, 2 or 5 times a power of ten units of length.
    subroutine put_foot(c)
       type(canvas_t), intent(in) :: c
       character(:), allocatable :: words
       real(wp) :: length, from, x, y
-      integer :: i
 
-      do i = 1, flag_lines(c%d)
-         if (i > size(c%d%flags)) then
-            words = phrase(say_flagged_in_all, c%m%polish)//' '//whole(c%d%flagged)
-         else
-            associate (flag => c%d%flags(i))
-               words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, c%m%polish)
-               if (flag%earlier .and. any(flag%last%known)) &
-                  words = words//'; '//phrase(say_last_position, c%m%polish)//' '//fitted(flag%last%t)
-            end associate
-         end if
-         call put_words(c%o, real([14, c%bottom - 16 - line_height*(flag_lines(c%d) - i)], wp), 'start', &
-            'class="flag"', words)
-      end do
+      if (c%d%flagged > 0) then
+         associate (s => c%d%flag)
+            words = 'T = '//fitted(s%t)//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
+         end associate
+         if (c%d%flagged > 1) words = words//'; '//phrase(say_flagged_in_all, c%m%polish)//' '//whole(c%d%flagged)
+         call put_words(c%o, real([14, c%bottom - 16], wp), 'start', 'class="flag"', words)
+      end if
 
       length = 10.0_wp**floor(log10(max_bar/c%scale))
       if (5.0_wp*length*c%scale <= max_bar) then
@@ -359,22 +262,24 @@ contains
       call put_end(c%o, 'g')
    end subroutine put_foot
 
-   !> Notes a line from `p` to `q` (2), in pixels, that names should not cross, the less the more it weighs.
-   pure subroutine add_line(c, p, q, weight)
+   !> Notes the lines through the pixels `q` (2, :), which names should not cross, the less the more they weigh.
+   pure subroutine add_lines(c, q, weight)
       type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(2), q(2), weight
+      real(wp), intent(in) :: q(:, :), weight
       real(wp) :: length, at(2)
-      integer :: pieces, i, k(2)
+      integer :: pieces, i, j, k(2)
 
-      length = norm2(q - p)
-      pieces = ceiling(min(length/cell, real(max_pieces, wp)))
-      do i = 1, pieces
-         at = p + (real(i, wp) - 0.5_wp)/real(pieces, wp)*(q - p)
-         if (any(at < c%low) .or. any(at > c%high)) cycle
-         k = cell_of(c, at)
-         c%ink(k(1), k(2)) = c%ink(k(1), k(2)) + weight*length/real(pieces, wp)
+      do j = 2, size(q, 2)
+         length = norm2(q(:, j) - q(:, j - 1))
+         pieces = ceiling(min(length/cell, real(max_pieces, wp)))
+         do i = 1, pieces
+            at = q(:, j - 1) + (real(i, wp) - 0.5_wp)/real(pieces, wp)*(q(:, j) - q(:, j - 1))
+            if (any(at < c%low) .or. any(at > c%high)) cycle
+            k = cell_of(c, at)
+            c%ink(k(1), k(2)) = c%ink(k(1), k(2)) + weight*length/real(pieces, wp)
+         end do
       end do
-   end subroutine add_line
+   end subroutine add_lines
 
    !> Notes a box from its upper left corner `p` to its lower right one `q` (2), in pixels, that names should not cover.
    pure subroutine add_box(c, p, q)
@@ -395,17 +300,6 @@ contains
 
       k = 1 + int((min(max(p, c%low), c%high) - c%low + tie)/cell)
    end function cell_of
-
-   !> Notes the lines through the pixels `q` (2, :).
-   pure subroutine add_lines(c, q, weight)
-      type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: q(:, :), weight
-      integer :: k
-
-      do k = 2, size(q, 2)
-         call add_line(c, q(:, k - 1), q(:, k), weight)
-      end do
-   end subroutine add_lines
 
    !> Writes the `name` of what is at one of the pixels `p` (2, :), where it covers the least of what is drawn, or is
    !> nearer to it than `clear` (pixels): of places to eight sides at several distances. It is noted as drawn.

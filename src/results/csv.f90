@@ -4,7 +4,7 @@
 !>
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
-!> all digits; what tolerances do to them; then curves and poles, which have no place where it is at infinity.
+!> all digits; then curves and poles, which have no place where it is at infinity.
 !>
 !> Each row has all columns: NaN stands for a value that does not exist or has no known digit. pandas, R and gnuplot
 !> read NaN as a missing value. Commas alone separate the cells, and gnuplot is given its separator. The units are those
@@ -59,7 +59,6 @@ module csv
       integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
-      integer :: spread = 0                         !< by tolerances: 1 worst case, 2 root of squares; 0: none
       character(2*label_length + 12) :: name = ''   !< ROCKER.phi, TIP.vx, SLOT.v, POLE.BASE.COUPLER.x
    end type table_column_t
 
@@ -75,7 +74,6 @@ module csv
       'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
    character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
    character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
-   character(6), parameter :: spread_words(0:2) = [character(6) :: '', '.worst', '.rss']
    !> What the columns of a pole add to the names of both links, those of a curve to that of the point, in the order of
    !> `centre_numbers`.
    character(7), parameter :: centre_words(6, request_pole:request_curve) = reshape([character(7) :: &
@@ -268,7 +266,7 @@ contains
       end if
    end subroutine add_name
 
-   !> The table of the set `s`; `chosen`: of these rows alone, whether they are printed or not, without tolerances.
+   !> The table of the set `s`; `chosen`: of these rows alone, whether they are printed or not.
    function new_table(s, chosen) result(t)
       class(set_t), intent(in) :: s
       integer, intent(in), optional :: chosen(:)
@@ -276,23 +274,18 @@ contains
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: rows(:)
-      integer :: i, k, n, c, kind, spread, last
+      integer :: i, k, n, c, kind
       logical :: turns
       character(5) :: word
 
       t%drives = drive_columns(s)
-      last = merge(2, 0, s%largest_tolerance > 0.0_wp)
       requests = [(request_of(s, i), i=1, size(s%rows))]
       if (present(chosen)) then
-         last = 0
          rows = chosen
       else
          rows = pack([(i, i=1, size(s%rows))], requests%every > 0)
       end if
-      associate (kinds => requests(rows)%kind)
-         n = sum(coordinates_of(kinds)) + last*sum(coordinates_of(kinds), mask=kinds < request_pole)
-         allocate (t%columns(3*n))
-      end associate
+      allocate (t%columns(3*sum(coordinates_of(requests(rows)%kind))))
       do i = 1, size(rows)
          if (requests(rows(i))%kind /= request_link) cycle
          associate (own => s%parts(s%rows(rows(i))%part))
@@ -300,23 +293,20 @@ contains
          end associate
       end do
       n = 0
-      do spread = 0, last
-         do k = 0, 2
-            do i = 1, size(rows)
-               associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
-                  if (request%kind >= request_pole) cycle
-                  turns = .false.
-                  if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
-                  do c = 1, coordinates_of(request%kind)
-                     word = link_words(c, k)
-                     if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
-                     call add_column(i, k, c, c == 3 .or. turns, trim(word)//spread_words(spread))
-                  end do
-               end associate
-            end do
+      do k = 0, 2
+         do i = 1, size(rows)
+            associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
+               if (request%kind >= request_pole) cycle
+               turns = .false.
+               if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
+               do c = 1, coordinates_of(request%kind)
+                  word = link_words(c, k)
+                  if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
+                  call add_column(i, k, c, c == 3 .or. turns, trim(word))
+               end do
+            end associate
          end do
       end do
-      spread = 0
       do kind = request_curve, request_pole, -1
          do i = 1, size(rows)
             if (requests(rows(i))%kind /= kind) cycle
@@ -352,7 +342,7 @@ contains
             end select
          end associate
          n = n + 1
-         t%columns(n) = table_column_t(rows(i), order, coordinate, angular, spread, name//'.'//word)
+         t%columns(n) = table_column_t(rows(i), order, coordinate, angular, name//'.'//word)
       end subroutine add_column
    end function new_table
 
@@ -407,10 +397,8 @@ contains
       type(output_t), intent(inout) :: o
       type(table_t), intent(in) :: t
       type(set_motion_t), intent(in) :: s
-      type(row_t), allocatable :: rows(:, :)
+      type(row_t) :: rows(size(s%rows))
       logical :: known(3, 0:2, size(s%rows))
-      type(request_t) :: request
-      type(spread_t) :: x
       real(wp) :: f(3)
       integer :: i
 
@@ -421,20 +409,12 @@ contains
             call add_cell(',', f(1), .not. is_length(drive))
          end associate
       end do
-      allocate (rows(0:2, size(s%rows)))
       do i = 1, size(s%rows)
-         request = request_of(s, i)
-         call find_row_in_set(s, i, rows(0, i))
-         known(:, :, i) = known_numbers(rows(0, i), s, i)
-         rows(1:, i) = rows(0, i)
-         if (request%every == 0 .or. .not. has_tolerances(s%parts(s%rows(i)%part), request)) cycle
-         x = spread_in_set(s, i)
-         rows(1:, i)%known = x%known
-         rows(1, i)%value = worst_case(x%tolerances, x%of)
-         rows(2, i)%value = root_of_squares(x%tolerances, x%of)
+         call find_row_in_set(s, i, rows(i))
+         known(:, :, i) = known_numbers(rows(i), s, i)
       end do
       do i = 1, size(t%columns)
-         associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
+         associate (c => t%columns(i), row => rows(t%columns(i)%request))
             if (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order)) then
                call add_cell(',', row%value(c%coordinate, c%order), c%angular)
             else

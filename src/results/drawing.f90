@@ -1,12 +1,14 @@
 !> What is drawn of a set, taken from its motion instant by instant: frames, from which picture and animation take
-!> positions, paths of points and centrodes; how far each slide goes; and the flagged instants. Places are counted from
-!> the set's first ground link, in the deck's unit of length.
+!> positions, paths of points and centrodes; how far each slide goes; and the first flagged instant. Places are counted
+!> from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t, request_point, request_pole, pair_revolute, pair_prismatic, instant_count, &
       plane_origin, is_listed_alone
-   use planar, only: cross, direction, quarter_turn, point_of
+   use planar, only: pi, cross, direction, quarter_turn, point_of
+   use drives, only: drive_rate
+   use scales, only: is_length, latest_time
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
@@ -15,19 +17,20 @@ module drawing
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
    public :: point_place, joint_point, outline_t, outlines_of, hull, moved
 
-   !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
-   !> ten degrees a step a path would have corners, and an animation leaps.
+   !> Between the instants of a deck others are computed, so that the whole has at most this many intervals, or so many
+   !> for each turn of a drive. Reason: at ten degrees a step a path would have corners, and an animation leaps.
    integer, parameter, public :: max_intervals = 360
+   real(wp), parameter :: intervals_a_turn = 90.0_wp
    !> All sets of a page have this many intervals, or those of the deck. Reason: the text of a page is held until its
    !> last set is drawn.
    integer, parameter :: max_in_all = 18000
    !> There are at most this many frames, which hold at most this many positions of links, but two at least. Reason: a
    !> picture of 800 pixels shows no more, and memory does not grow with the run.
-   integer, parameter :: max_frames = 1001, max_held = 200000
+   integer, parameter :: max_frames = 3601, max_held = 200000
    !> An animation shows at most this many positions of links. Reason: it takes about 25 bytes for each.
    integer, parameter, public :: max_positions = 45000
-   !> Paths and flagged positions that a picture shows, and instants of flags, at most.
-   integer, parameter :: max_curves = 60, max_flags = 3, max_flagged = 1000
+   !> Paths that a picture shows, at most.
+   integer, parameter :: max_curves = 60
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
@@ -64,15 +67,6 @@ module drawing
       real(wp) :: low = huge(1.0_wp), high = -huge(1.0_wp)   !< range of the block along the line, from the foot
    end type guide_t
 
-   !> A flagged instant, and the last known position of the links that it concerns.
-   type :: flag_t
-      real(wp) :: t = 0.0_wp
-      integer :: mark = mark_none            !< why
-      integer :: singularity = singular_unclear   !< what the position is, of mark_singular
-      logical :: earlier = .false.           !< the position is that of an earlier instant
-      type(snapshot_t) :: last               !< `known`: of the links concerned
-   end type flag_t
-
    !> What is recorded of the film `m` of a set.
    type :: drawing_t
       type(mechanism_t) :: m
@@ -89,9 +83,7 @@ module drawing
       logical :: assemblies = .false.        !< these are assemblies at one instant, the one chosen first
       type(snapshot_t) :: now                !< the last known position of each link
       integer :: flagged = 0                 !< instants
-      real(wp), allocatable :: flagged_at(:) !< the first of them
-      type(flag_t), allocatable :: flags(:)
-      integer, allocatable :: mark(:)        !< (parts) of the instant before
+      type(snapshot_t) :: flag               !< the first of them
    end type drawing_t
 
 contains
@@ -104,14 +96,23 @@ contains
       integer, intent(in) :: sets
       type(mechanism_t), intent(out) :: film
       integer, intent(out) :: every
-      integer :: intervals
+      integer :: intervals, i
+      real(wp) :: turns
 
       film = m
       every = 1
-      intervals = max(1, min(max_intervals, max_in_all/sets))
       if (m%steps < 0) then
          film%t0 = minval(m%at)
          film%t1 = maxval(m%at)
+      end if
+      turns = 0.0_wp
+      do i = 1, size(m%drives)
+         if (.not. is_length(m%drives(i))) &
+            turns = max(turns, drive_rate(m%drives(i), latest_time(m))*abs(film%t1 - film%t0)/(2.0_wp*pi))
+      end do
+      intervals = max(max_intervals, int(min(intervals_a_turn*turns, real(max_frames - 1, wp))))
+      intervals = max(1, min(intervals, max_in_all/sets))
+      if (m%steps < 0) then
          film%steps = merge(intervals, 0, film%t1 > film%t0)
          every = 0
       else if (m%steps > 0) then
@@ -133,7 +134,7 @@ contains
       d%every = every
       d%origin = plane_origin(m)
       d%outlines = outlines_of(m)
-      allocate (d%own(0), d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0))
+      allocate (d%own(0), d%curves(0))
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
             cycle
@@ -204,7 +205,7 @@ contains
       type(drawing_t), intent(inout) :: d
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
-      type(snapshot_t) :: before, now        ! the last known positions before the instant, and the position there
+      type(snapshot_t) :: now
       logical :: is_own
       real(wp) :: along
       integer :: i
@@ -213,7 +214,6 @@ contains
       if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
       ! The instants of a deck without TIME are a motion of their own.
       if (d%every == 0 .and. k == d%m%steps + 1) d%now = snapshot_of_ground(d)
-      before = d%now
       call find_snapshot()
       d%now%t = now%t
       d%now%centre = now%centre
@@ -233,7 +233,10 @@ contains
          end associate
       end do
 
-      if (is_own) call record_flags()
+      if (is_own .and. is_flagged(s)) then
+         if (d%flagged == 0) d%flag = now
+         d%flagged = d%flagged + 1
+      end if
       if (.not. is_frame(d, k)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
@@ -269,32 +272,6 @@ contains
             if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
          end do
       end subroutine find_snapshot
-
-      !> Notes the first of the instants at which a part of the motion is flagged for one reason.
-      subroutine record_flags()
-         type(flag_t) :: flag
-         integer :: c
-
-         if (size(d%mark) == 0) d%mark = spread(mark_none, 1, s%count)
-         if (is_flagged(s)) d%flagged = d%flagged + 1
-         if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
-         do c = 1, s%count
-            associate (links => s%cards(c)%of, mark => s%motions(c)%mark)
-               if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
-                  flag%t = now%t
-                  flag%mark = mark
-                  flag%singularity = s%motions(c)%singularity
-                  flag%earlier = .not. all(now%known(links))
-                  flag%last = now
-                  if (flag%earlier) flag%last = before
-                  flag%last%known = .false.
-                  flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
-                  d%flags = [d%flags, flag]
-               end if
-               d%mark(c) = mark
-            end associate
-         end do
-      end subroutine record_flags
    end subroutine record_instant
 
    !> Place (2) of point number `i` at the position `s`.

@@ -194,7 +194,6 @@ module phrases
       say_elsewhere = phrase_t('THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'), &
       say_faint = phrase_t('FAINT: T =', 'BLADO: T ='), &
       say_faint_assemblies = phrase_t('FAINT: THE OTHER ASSEMBLIES', 'BLADO: POZOSTALE MONTAZE'), &
-      say_last_position = phrase_t('IN RED THE LAST POSITION, T =', 'NA CZERWONO OSTATNIE POLOZENIE, T ='), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &

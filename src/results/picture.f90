@@ -1,6 +1,6 @@
 !> The picture of a set as SVG: the mechanism at one instant, faint at some others, the paths of the points that PRINT
-!> asks for, the centrodes that POLE asks for, flagged positions, names, and a scale. Which frames it shows: the one in
-!> which the mechanism is read best, and a few others.
+!> asks for, the centrodes that POLE asks for, the first flagged instant in words, names, and a scale. Which frames it
+!> shows: the one in which the mechanism is read best, and a few others.
 module picture
    use kinds, only: wp, label_length
    use mechanism, only: pair_revolute, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
@@ -10,9 +10,9 @@ module picture
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
-   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_traces, put_ring, &
-      put_name, put_foot, add_lines, add_box, cover_of, tie, line_height, centre_radius
-   use svg, only: page_t, put_end, put_group, put_window, put_line, put_words, fitted
+   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_name, put_foot, &
+      add_lines, add_box, cover_of, tie, line_height
+   use svg, only: page_t, put_end, put_group, put_window, put_circle, put_line, put_words, fitted
    use phrases
    implicit none
    private
@@ -73,10 +73,9 @@ contains
 
       call put_group(c%o, 'class="faint"', '')
       do k = 1, size(faint)
-         call put_outlines(c, d%frame(faint(k)), .false.)
+         call put_outlines(c, d%frame(faint(k)))
       end do
       call put_end(c%o, 'g')
-      call put_traces(c)
       list = shapes_of(d, s%known, c%scale)
       call put_window(c%o, c%low, c%high)
       do k = 1, size(list)
@@ -229,15 +228,19 @@ contains
    subroutine put_centre(c, i)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i
+      real(wp), parameter :: radius = 4.0_wp
+      character(:), allocatable :: color
       real(wp) :: p(2)
 
       if (.not. c%s%has_centre(i)) return
       p = to_pixels(c, c%s%centre(:, i))
       if (any(p < c%low) .or. any(p > c%high)) return
-      call put_ring(c, i, p)
-      call add_box(c, p - centre_radius, p + centre_radius)
-      call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:' &
-         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"', pole_name(c%m, c%d%poles(i)))
+      color = link_color(c%m, c%m%requests(c%d%poles(i))%subject)
+      call put_circle(c%o, p, radius, 'class="centre" style="stroke:'//color//'"')
+      call put_circle(c%o, p, 1.0_wp, 'class="point"')
+      call add_box(c, p - radius, p + radius)
+      call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:'//color//'"', &
+         pole_name(c%m, c%d%poles(i)))
    end subroutine put_centre
 
    !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the

@@ -1,5 +1,5 @@
-!> The shapes of a set: supports, guides, centrodes, links, blocks, joints and other points, each in the axes of the
-!> link with which it moves. Picture and animation draw this one list. The symbols' sizes are in pixels.
+!> The shapes of a set: paths, supports, guides, centrodes, links, blocks, joints and other points, each in the axes of
+!> the link with which it moves. Picture and animation draw this one list. The symbols' sizes are in pixels.
 module shapes
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
@@ -34,12 +34,12 @@ module shapes
    real(wp), parameter :: support(2, 3) = reshape([0.0_wp, 0.0_wp, -10.0_wp, -16.0_wp, 10.0_wp, -16.0_wp], [2, 3]), &
       base(2, 2) = reshape([-14.0_wp, -16.0_wp, 14.0_wp, -16.0_wp], [2, 2])
    !> Names keep clear of boxes; lines weigh so much for them.
-   real(wp), parameter :: box = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, centrode_weight = 0.4_wp
+   real(wp), parameter :: box = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, curve_weight = 0.4_wp
    !> A centrode that comes so near to its first place, in parts of its first step, has come back.
    real(wp), parameter :: come_back = 0.5_wp
-   !> A centrode of fewer pixels is one place for the eye. A place so many characteristic lengths away is no number for
-   !> a viewer.
-   real(wp), parameter :: one_place = 0.01_wp, far = 1.0e3_wp
+   !> A line within so many characteristic lengths is one place for the eye. A place so many of them away is no number
+   !> for a viewer.
+   real(wp), parameter :: one_place = 1.0e-5_wp, far = 1.0e3_wp
 
 contains
 
@@ -56,7 +56,10 @@ contains
       integer :: ends(2), used, i, k
 
       used = 0
-      allocate (list(4*size(d%m%pairs) + 2*size(d%m%links) + size(d%m%points) + d%films*size(d%poles)))
+      allocate (list(4*size(d%m%pairs) + 2*size(d%m%links) + size(d%m%points)))
+      do i = 1, size(d%curves)
+         call add_path(d%curves(i))
+      end do
       ! A support under each joint of the ground.
       do i = 1, size(d%m%pairs)
          if (d%m%pairs(i)%kind /= pair_revolute) cycle
@@ -129,19 +132,51 @@ contains
          character(*), intent(in), optional :: title
 
          used = used + 1
-         associate (one => list(used))
-            one%link = link
-            one%element = element
-            one%attributes = attributes
-            one%title = ''
-            if (present(title)) one%title = title
-            one%p = p
-            one%add = 0.0_wp*p
-            if (present(pixels)) one%add = pixels
-            if (present(weight)) one%weight = weight
-            if (present(radius)) one%radius = radius
-         end associate
+         if (used > size(list)) list = [list, list]
+         list(used) = element_t(element=element, attributes=attributes, title='', link=link, p=p, add=0.0_wp*p)
+         if (present(title)) list(used)%title = title
+         if (present(pixels)) list(used)%add = pixels
+         if (present(weight)) list(used)%weight = weight
+         if (present(radius)) list(used)%radius = radius
       end subroutine add
+
+      !> Adds the pieces of a line through the places `p` (2, :), which go from each place that `goes_on` to the next;
+      !> none where they stay at one place, as does the pole of two links that a joint holds together.
+      subroutine add_pieces(link, element, attributes, p, goes_on, title)
+         integer, intent(in) :: link
+         character(*), intent(in) :: element, attributes, title
+         real(wp), intent(in) :: p(:, :)
+         logical, intent(in) :: goes_on(:)
+         integer :: first, last
+
+         if (.not. any(goes_on)) return
+         associate (on => spread(goes_on .or. eoshift(goes_on, -1), 1, 2))
+            if (all(maxval(p, 2, on) - minval(p, 2, on) < one_place*characteristic_length(d%m))) return
+         end associate
+         first = 1
+         do last = 1, size(goes_on)
+            if (goes_on(last)) cycle
+            if (last > first) call add(link, element, attributes, p(:, first:last), weight=curve_weight, title=title)
+            first = last + 1
+         end do
+      end subroutine add_pieces
+
+      !> Adds the path of point number `i` through the frames, in pieces where its place is not known.
+      subroutine add_path(i)
+         integer, intent(in) :: i
+         real(wp) :: p(2, d%films)
+         logical :: known(d%films)
+         integer :: k
+
+         do k = 1, d%films
+            known(k) = d%frame(k)%known(d%m%points(i)%link)
+            p(:, k) = point_place(d%m, d%frame(k), i)
+         end do
+         associate (name => d%m%points(i)%name)
+            call add_pieces(0, 'polyline', 'class="curve" '//attribute('data-path', trim(name))//' style="stroke:' &
+               //color_of(d%m%points(i)%link)//'"', p, known .and. eoshift(known, 1), trim(name))
+         end associate
+      end subroutine add_path
 
       !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
       !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
@@ -181,9 +216,8 @@ contains
          character(:), allocatable :: attributes
          real(wp) :: p(2, d%films), u(2), v(2)
          real(wp) :: turn(d%films)                        ! the rate of the second link from the first
-         ! The next place is on the same piece; it is on one with another place.
-         logical :: goes_on(d%films), on_piece(d%films)
-         integer :: links(2), k, first, last
+         logical :: goes_on(d%films)                      ! the next place is on the same piece
+         integer :: links(2), k, last
 
          associate (pole => d%m%requests(d%poles(i)))
             links = [pole%second, pole%subject]
@@ -197,12 +231,6 @@ contains
          end do
          goes_on = goes_on .and. all(abs(p) < far*characteristic_length(d%m), dim=1)
          goes_on = goes_on .and. eoshift(goes_on, 1) .and. ((turn > 0.0_wp) .eqv. (eoshift(turn, 1) > 0.0_wp))
-         if (.not. any(goes_on)) return
-         ! The pole of two links that a joint holds together stays in both: rounding errors would decide all below.
-         on_piece = goes_on .or. eoshift(goes_on, -1)
-         associate (on => spread(on_piece, 1, 2))
-            if (all(scale*(maxval(p, 2, on) - minval(p, 2, on)) < one_place)) return
-         end associate
          ! It ends where it comes back to its first place and goes on as it began: drawn twice, dashes would fill the
          ! gaps.
          do last = 3, d%films - 1
@@ -216,13 +244,7 @@ contains
          attributes = 'class="centrode" '//attribute('data-centrode', pole_name(d%m, d%poles(i)))//' '// &
             attribute('data-link', trim(d%m%links(links(side))%name))//' style="stroke:' &
             //link_color(d%m, links(side))//'"'
-         first = 1
-         do last = 1, d%films
-            if (goes_on(last)) cycle
-            if (last > first) call add(links(side), 'centrode', attributes, p(:, first:last), weight=centrode_weight, &
-               title=pole_name(d%m, d%poles(i)))
-            first = last + 1
-         end do
+         call add_pieces(links(side), 'centrode', attributes, p, goes_on, pole_name(d%m, d%poles(i)))
       end subroutine add_centrode
    end function shapes_of
 

@@ -48,9 +48,6 @@ module svg
       '.point{fill:#222}', &
       '.drive{stroke:#0a7a3c;stroke-width:2}', &
       '.tip{stroke:none;fill:#0a7a3c}', &
-      '.flagged *{stroke:#d00000;stroke-width:3;stroke-opacity:0.6}', &
-      '.ring{fill:none}', &
-      '.mark{stroke:#d00000;stroke-width:1.5}', &
       '.scale{stroke-width:1.5}']
 
    !> More than rounding errors of a pixel's coordinate.

@@ -30,8 +30,7 @@ cells() { awk -F, -v set="$3" '
       for (i = 1; i <= n; i++) { centre[words[i]] = names[i]; kind_of[words[i]] = kinds[i] }
       for (i = 2; i <= columns; i++) {
          if (head[i] ~ /^(ANGLE|X|Y|RELANGLE|SLIDE)[.].*[A-Z0-9]$/) { drives++; if (i != drives + 1) print "a drive in " i; continue }
-         full = head[i]; spread = ""
-         if (full ~ /[.](worst|rss)$/) { spread = full ~ /t$/ ? " WORST" : " RSS"; sub(/[.][a-z]*$/, "", full) }
+         full = head[i]
          word = full
          sub(/.*[.]/, "", word)
          name = substr(full, 1, length(full) - length(word) - 1)
@@ -45,7 +44,6 @@ cells() { awk -F, -v set="$3" '
             sub(/^[A-Z]*[.]/, "", name)
             sub(/[.]/, " ", name)
          }
-         kind = kind spread
          for (r = 1; r <= rows; r++) {
             if (!((r, kind, name) in has)) continue
             wanted = csv[r, kind, name, word]
