@@ -37,7 +37,7 @@ module command_line
       logical :: no_listing = .false.        !< no listing, not even on standard output
       logical :: quiet = .false.             !< no remarks on standard error
       logical :: check = .false.             !< read and analyse only
-      logical :: errors = .false.            !< CSV and log have an error estimate of every number
+      logical :: errors = .false.            !< the CSV has an error estimate of every number
       logical :: study = .false.             !< speed against error, instead of the listing
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
@@ -69,7 +69,7 @@ module command_line
       '  --svg FILE           draw the mechanism and the paths of its points', &
       '  --animate FILE       draw the mechanism in motion', &
       '  --circuits FILE      draw the circuits that CIRCUITS cards ask for', &
-      '  --errors             add error estimates to the CSV and the log', &
+      '  --errors             add error estimates to the CSV', &
       '  --check              check the deck and its structure, compute no motion', &
       '  --sets K/N           run only part K of N of the job', &
       '  --jobs N             run N processes (default: one for each processor)', &

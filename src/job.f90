@@ -43,7 +43,6 @@ module job
    use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
       set_closing_diagnostics
    use analysis, only: redundancy_error
-   use error_estimate, only: largest_errors
    implicit none
    private
    public :: run_job
@@ -258,7 +257,7 @@ contains
             call break_off(o, m, say_broken_set, m%set_number - 1)
             return
          end if
-         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m, o%options%errors)
+         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m)
          if (o%asked(out_table)) then
             o%table = new_table(a%now)
             call table_head(o%files(out_table), o%table)
@@ -383,7 +382,7 @@ contains
          if (row%rejected == '') then
             call new_set_motion(variant, a%now, findings)
             if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
-            if (o%asked(out_log)) call log_head(o%files(out_log), variant, o%options%errors)
+            if (o%asked(out_log)) call log_head(o%files(out_log), variant)
             call run_motion(a, findings, full, o, row, asked)
             call fill_row(summary, a%now, asked, row)
          else
@@ -421,7 +420,6 @@ contains
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(listing_state_t) :: state
-      real(wp), allocatable :: errors(:)     ! for the log; not allocated where they are not asked for
       integer, allocatable :: every(:)       ! rows are printed at each so many instants
       logical :: lists, due
       integer :: k, n
@@ -440,19 +438,15 @@ contains
          end if
          call note_flag(row, a)
 
-         ! Only what is shown, and estimates that are asked for, need samples.
-         associate (shown => due .and. (lists .or. any(o%asked([out_csv, out_table]))))
-            if (shown .or. o%options%errors) call sample_set(a, o%options%errors, shown)
-         end associate
+         ! Only what is shown needs samples.
+         if (due .and. (lists .or. any(o%asked([out_csv, out_table])))) call sample_set(a, o%options%errors)
          if (lists .and. (due .or. has_words(a%now))) &
             call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
          if (o%asked(out_table) .and. due) call table_instant(o%files(out_table), o%table, a%now)
          if (o%asked(out_log)) then
             do n = 1, size(a%list)
-               if (o%options%errors) errors = largest_errors(a%now%parts(n), a%now%errors(n), a%now%motions(n), &
-                  a%estimators(n)%sizes%length, a%estimators(n)%sizes%rate)
-               call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch, errors)
+               call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch)
             end do
          end if
 

@@ -263,7 +263,7 @@ contains
 
       do i = 1, size(watched)
          before = signal(watched(i), c_funloc(note_signal))
-         if (address(before) == ignored) before = signal(watched(i), before)
+         if (transfer(before, 0_c_intptr_t) == ignored) before = signal(watched(i), before)
       end do
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
    end subroutine watch_signals
@@ -301,11 +301,4 @@ contains
       before = signal(int(number, c_int), c_null_funptr)
       status = raise(int(number, c_int))
    end subroutine end_by_signal
-
-   !> The address of a handler as a number.
-   pure integer(c_intptr_t) function address(handler)
-      type(c_funptr), intent(in) :: handler
-
-      address = transfer(handler, 0_c_intptr_t)
-   end function address
 end module system_calls

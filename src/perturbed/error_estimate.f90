@@ -13,7 +13,7 @@ module error_estimate
    use rounded_numbers, only: directions, caution, put_off, part_off
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
 
    !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
    !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
@@ -208,28 +208,4 @@ contains
       where (error < nothing_known) error = max(error, least) + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
-
-   !> The largest error (0:2) of a position, velocity and acceleration in any row of a link, point or pair;
-   !> `nothing_known`, where it is so. In parts of the characteristic `length` and `rate`.
-   pure function largest_errors(m, s, q, length, rate) result(largest)
-      type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
-      type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: length, rate
-      real(wp) :: largest(0:2), error(3, 0:2), unit(3)
-      type(row_t) :: row
-      integer :: i, k
-
-      largest = 0.0_wp
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind >= request_pole) cycle
-         error = row_error(m, s, q, i)
-         row = row_of(m, q, m%requests(i))
-         unit = [merge(1.0_wp, length, row%angular), length, 1.0_wp]
-         do k = 0, 2
-            largest(k) = max(largest(k), maxval(merge(nothing_known, error(:, k)/(unit*rate**k), &
-               error(:, k) >= nothing_known)))
-         end do
-      end do
-   end function largest_errors
 end module error_estimate

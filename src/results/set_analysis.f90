@@ -170,17 +170,17 @@ contains
       end subroutine take
    end subroutine rows_at
 
-   !> How far the motion found last is known. `always`: also where no digit of a table is in doubt. `senses`: its
-   !> sensitivities too to the numbers with tolerances, where there are any.
-   subroutine sample_set(s, always, senses)
+   !> How far the motion found last is known, and its sensitivities to the numbers with tolerances, where there are any.
+   !> `always`: also where no digit of a table is in doubt.
+   subroutine sample_set(s, always)
       type(set_analysis_t), intent(inout) :: s
-      logical, intent(in) :: always, senses
+      logical, intent(in) :: always
       integer :: c
 
       do c = 1, size(s%list)
          associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
             call estimate_errors(s%estimators(c), own, a%engine, q, always, s%now%errors(c))
-            if (senses .and. allocated(own%tolerances)) &
+            if (allocated(own%tolerances)) &
                call find_sensitivities(s%estimators(c), own, a%engine, q, s%now%errors(c), s%now%sensitivities(c))
          end associate
       end do

@@ -270,7 +270,7 @@ contains
          integer :: i, kind
 
          if (.not. truth%due(1 + k)) return
-         if (.not. truth%is_reference) call sample_set(a, .true., .false.)
+         if (.not. truth%is_reference) call sample_set(a, .true.)
          do i = 1, size(rows)
             call find_row_in_set(a%now, i, rows(i))
             if (.not. truth%is_reference .and. rows(i)%kind <= request_pair) error(:, :, i) = error_in_set(a%now, i)

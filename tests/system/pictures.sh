@@ -206,7 +206,7 @@ equal 'the printed name' 'A-ROD' "$(sed -n 's/.*class="name">\(A-[CR][A-Z]*\)<.*
 sed -e 's/^TIME.*/TIME    90                      0.0             90.0/' input/parallelogram_at.deck > "$w/many.deck"
 "$kinmat" "$w/many.deck" --svg "$w/many.svg" > "$w/out" 2> "$w/err"
 equal 'the first flagged instant' 1 "$(grep -c 'class="flag">T = [0-9]*: CHANGE POINT' "$w/many.svg")"
-equal 'flagged instants in all' "$(grep -c ' \*\*\* ' "$w/out")" "$(sed -n 's/.*>FLAGGED INSTANTS IN ALL: \([0-9]*\)<.*/\1/p' "$w/many.svg")"
+equal 'flagged instants in all' "$(grep -c ' \*\*\* ' "$w/out")" "$(sed -n 's/.*; FLAGGED INSTANTS IN ALL: \([0-9]*\)<.*/\1/p' "$w/many.svg")"
 
 # The animation: a joint out of place is found; five instants in red.
 sed 's/class="joint"/& r="0"/; s/cx="0"/cx="9"/' "$w/jansen.moving.svg" > "$w/wrong.svg"
