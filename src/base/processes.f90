@@ -7,8 +7,8 @@ module processes
    public :: processor_count, fork_process, interrupt_child, end_process, poll, poll_t, waitpid
    public :: memfd_create, lseek, from_here
 
-   !> SIGTERM; PR_SET_PDEATHSIG of prctl; of lseek: positions are counted from the present one.
-   integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1, from_here = 1
+   !> SIGTERM; of lseek: positions are counted from the present one.
+   integer(c_int), parameter :: signal_terminate = 15, from_here = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
 
@@ -41,11 +41,6 @@ module processes
          integer(c_int), value :: child, options
          integer(c_int), intent(out) :: status
       end function waitpid
-      !> prctl(2): what this process does on an occasion.
-      integer(c_int) function prctl(occasion, number) bind(c)
-         import :: c_int
-         integer(c_int), value :: occasion, number
-      end function prctl
       !> kill(2): sends a signal to a process.
       integer(c_int) function kill(process, number) bind(c)
          import :: c_int
@@ -89,12 +84,12 @@ contains
          processor_count = max(1, sum(popcnt(mask)))
    end function processor_count
 
-   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. A pipe
-   !> leads from it to this process: `descriptor` is the end that the child writes to, here the end that is read. The
-   !> result is 0 in the child, its number in the parent, negative for an error.
+   !> Makes a child, a copy of this process, which ends by itself after the first signal, or when it writes and this
+   !> process is gone. A pipe leads from it to this process: `descriptor` is the end that the child writes to, here the
+   !> end that is read. The result is 0 in the child, its number in the parent, negative for an error.
    integer function fork_process(descriptor)
       integer(c_int), intent(out) :: descriptor
-      integer(c_int) :: ends(2), ignored
+      integer(c_int) :: ends(2)
       logical :: closed
 
       fork_process = -1
@@ -102,9 +97,7 @@ contains
       fork_process = fork()
       descriptor = ends(merge(2, 1, fork_process == 0))
       closed = close_descriptor(ends(merge(1, 2, fork_process == 0)))
-      if (fork_process /= 0) return
-      ignored = prctl(when_parent_ends, signal_terminate)
-      call note_all_signals
+      if (fork_process == 0) call note_all_signals
    end function fork_process
 
    !> Asks the process `child` to end.

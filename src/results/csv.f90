@@ -4,7 +4,7 @@
 !>
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
-!> all digits; then curves and poles, which have no place where it is at infinity.
+!> all digits.
 !>
 !> Each row has all columns: NaN stands for a value that does not exist or has no known digit. pandas, R and gnuplot
 !> read NaN as a missing value. Commas alone separate the cells, and gnuplot is given its separator. The units are those
@@ -17,7 +17,7 @@ module csv
    use scales, only: is_length
    use drives, only: drive_motion
    use motion, only: motion_t, new_motion
-   use points, only: row_t, row_of, has_number, is_due, centre_numbers, coordinates_of
+   use points, only: row_t, row_of, has_number, is_due, coordinates_of
    use assemblies, only: assemblies_t
    use independent, only: set_t, request_of
    use instant_centres, only: centre_finite, centre_resting
@@ -56,10 +56,10 @@ module csv
    !> A column after those of time and drives.
    type :: table_column_t
       integer :: request = 0                        !< its number among those of the set
-      integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
+      integer :: order = 0                          !< of the derivative: 0, 1 or 2
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
-      character(2*label_length + 12) :: name = ''   !< ROCKER.phi, TIP.vx, SLOT.v, POLE.BASE.COUPLER.x
+      character(2*label_length + 6) :: name = ''    !< ROCKER.phi, TIP.vx, SLOT.v
    end type table_column_t
 
    !> The columns of a set.
@@ -74,10 +74,6 @@ module csv
       'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
    character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
    character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
-   !> What the columns of a pole add to the names of both links, those of a curve to that of the point, in the order of
-   !> `centre_numbers`.
-   character(7), parameter :: centre_words(6, request_pole:request_curve) = reshape([character(7) :: &
-      'x', 'y', 'xi_i', 'eta_i', 'xi_j', 'eta_j', 'x', 'y', 'tangent', 'radius', 'xc', 'yc'], [6, 2])
 
 contains
 
@@ -274,7 +270,8 @@ contains
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: rows(:)
-      integer :: i, k, n, c, kind
+      character(:), allocatable :: name
+      integer :: i, k, n, c
       logical :: turns
       character(5) :: word
 
@@ -283,7 +280,7 @@ contains
       if (present(chosen)) then
          rows = chosen
       else
-         rows = pack([(i, i=1, size(s%rows))], requests%every > 0)
+         rows = pack([(i, i=1, size(s%rows))], requests%every > 0 .and. requests%kind < request_pole)
       end if
       allocate (t%columns(3*sum(coordinates_of(requests(rows)%kind))))
       do i = 1, size(rows)
@@ -296,54 +293,21 @@ contains
       do k = 0, 2
          do i = 1, size(rows)
             associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
-               if (request%kind >= request_pole) cycle
+               name = trim(subject_name(own, request%kind, request%subject))
+               ! A point that has the name of a link in the table has that of its own link before it.
+               if (request%kind == request_point .and. find_name(links, name) > 0) &
+                  name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
                turns = .false.
                if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
                do c = 1, coordinates_of(request%kind)
                   word = link_words(c, k)
                   if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
-                  call add_column(i, k, c, c == 3 .or. turns, trim(word))
+                  n = n + 1
+                  t%columns(n) = table_column_t(rows(i), k, c, c == 3 .or. turns, name//'.'//word)
                end do
             end associate
          end do
       end do
-      do kind = request_curve, request_pole, -1
-         do i = 1, size(rows)
-            if (requests(rows(i))%kind /= kind) cycle
-            do c = 1, size(centre_numbers, 2)
-               associate (number => centre_numbers(:, c, kind))
-                  call add_column(i, number(2), number(1), number(1) == 3, centre_words(c, kind))
-               end associate
-            end do
-         end do
-      end do
-
-   contains
-
-      !> Adds a column of row number `i` of the table, whose name ends with `word`; what it is: as in its type. A point
-      !> that has the name of one of the `links` in the table has that of its own link before it.
-      subroutine add_column(i, order, coordinate, angular, word)
-         integer, intent(in) :: i, order, coordinate
-         logical, intent(in) :: angular
-         character(*), intent(in) :: word
-         character(:), allocatable :: name
-
-         associate (m => s%parts(s%rows(rows(i))%part), request => requests(rows(i)))
-            select case (request%kind)
-            case (request_pole)
-               name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(request%subject)%name)
-            case (request_curve)
-               name = 'CURVE.'//trim(m%points(request%subject)%name)
-               if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
-            case default
-               name = trim(subject_name(m, request%kind, request%subject))
-               if (request%kind == request_point .and. find_name(links, name) > 0) &
-                  name = trim(m%links(m%points(request%subject)%link)%name)//'.'//name
-            end select
-         end associate
-         n = n + 1
-         t%columns(n) = table_column_t(rows(i), order, coordinate, angular, name//'.'//word)
-      end subroutine add_column
    end function new_table
 
    !> The names of the columns of all drives of `s`. Of drives of one thing, the second has .2 after it, and so on:
