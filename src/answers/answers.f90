@@ -65,7 +65,7 @@ contains
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
       if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, s%now, k)
-      if (a%extremes_asked) call note_instant(a%extremes, s, k, .false.)
+      if (a%extremes_asked) call note_instant(a%extremes, s, k)
    end subroutine take_instant
 
    !> Writes the answers after the last instant.

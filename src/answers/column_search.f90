@@ -9,13 +9,16 @@
 !> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
 module column_search
    use kinds, only: wp
-   use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, sample_t, look, move_node, is_known, beside_joint
+   use digits_in_doubt, only: safe_growth
+   use known_digits, only: nothing_known
+   use points, only: find_row
+   use set_analysis, only: set_analysis_t, rows_at
+   use nodes, only: node_t, sample_t, sample_of, rows_asked_t, beside_joint
    use zero_search, only: column_t, find_zero, find_turn, look_at_column, differ_in_sign, noise_part
    use extremes, only: extremes_t, coordinate_t, offer_sample, note_velocity, note_interval, alike
    implicit none
    private
-   public :: find_node, add_node, search_waiting, jerk_at_first, misses_by, overlooked
+   public :: find_node, add_node, search_passed, search_waiting, jerk_at_first, misses_by, overlooked
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
@@ -44,103 +47,161 @@ module column_search
 
 contains
 
-   !> Finds the `node` of mechanism `c` at the last instant of `s` or a time `t` between the instants. `always`: see
-   !> `look`.
-   subroutine find_node(x, s, c, t, always, node)
-      type(extremes_t), intent(in) :: x
+   !> Finds the `node` of the coordinates in the `list`, those of the rows that are `asked` for, at the last instant of
+   !> `s` or a time `t` between the instants. `always`: their errors too where no digit of a table is in doubt. Without
+   !> it that of the motion which `s` has now, whose digits are safe: the engine need not have found it.
+   subroutine find_node(s, asked, list, t, node, always)
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+      type(rows_asked_t), intent(inout) :: asked
+      type(coordinate_t), intent(in) :: list(:)
       real(wp), intent(in) :: t
-      logical, intent(in) :: always
-      type(node_t), intent(out) :: node
+      type(node_t), intent(inout) :: node
+      logical, intent(in), optional :: always
+      logical :: has_errors
+      integer :: i
 
-      associate (track => x%tracks(c))
-         node%t = t
-         allocate (node%at(size(track%coordinates)))
-         call look(s, track%requests, track%coordinates%row, track%coordinates%column, t, node%at, always)
+      if (.not. allocated(node%f)) then
+         allocate (node%known(size(list)), node%f(0:2, size(list)))
+         allocate (node%error(0:2, size(list)), source=0.0_wp)
+      end if
+      node%t = t
+      has_errors = .false.
+      associate (rows => asked%rows, error => asked%error, c => s%now%rows(asked%requests(1))%part)
+         if (present(always)) then
+            call rows_at(s, c, asked%requests, t, rows, always, error, node%growth)
+            has_errors = always .or. node%growth >= safe_growth
+         else
+            do i = 1, size(rows)
+               associate (own => s%now%parts(c), number => s%now%rows(asked%requests(i))%number)
+                  call find_row(own, s%now%motions(c), own%requests(number), rows(i))
+               end associate
+            end do
+         end if
+         do i = 1, size(list)
+            node%f(:, i) = rows(list(i)%row)%value(list(i)%column, :)
+            node%known(i) = rows(list(i)%row)%known
+         end do
+         if (has_errors .or. node%has_errors) then
+            do i = 1, size(list)
+               node%error(:, i) = error(list(i)%column, :, list(i)%row)
+            end do
+         end if
       end associate
+      node%has_errors = has_errors
+      node%is_known = all(node%known == 2)
+      if (has_errors) node%is_known = node%is_known .and. maxval(node%error) < nothing_known
    end subroutine find_node
 
-   !> Takes `node` of mechanism `c` away, and searches between it and the last one of which all is known. Two parts of
-   !> one length, from an instant with an even number on, are searched together, if accelerations are simple there: the
-   !> node between them is the one in the middle, and no motion is looked for. The result does not depend on where
-   !> the search began: lanes begin it at any such instant.
-   subroutine add_node(x, s, c, node)
+   !> Takes the node of mechanism `c` that comes next, and searches between it and the last one of which all is known.
+   !> Two parts of one length, from an instant with an even number on, are searched together, if accelerations are
+   !> simple there: the node between them is the one in the middle, and no motion is looked for. They are passed over,
+   !> if nothing has turned there.
+   subroutine add_node(x, s, c)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      type(node_t), intent(inout) :: node
-      real(wp) :: length
-      logical :: is_searched
 
-      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
-         if (.not. is_known(node)) then
+      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes, place => x%tracks(c)%place)
+         if (.not. nodes(place(6))%is_known) then
             call search_waiting(x, s, c)
-            call take_node(x, c, node, .true.)
+            call take_node(x, c, nodes(place(6)), .true.)
             return
          end if
          track%filled = track%filled + 1
-         call move_node(node, nodes(track%filled))
-         if (track%filled == 1) call take_node(x, c, nodes(1), .true.)
-         if (track%filled == 3) then
-            length = abs(nodes(3)%t - nodes(1)%t)
-            is_searched = length <= track%longest .and. 0.5_wp*length > shortest_of(x, c, nodes(1)%t, nodes(3)%t) &
-               .and. abs(nodes(3)%t - 2.0_wp*nodes(2)%t + nodes(1)%t) <= alike_part*length
-            if (is_searched) call search_three(x, s, c, nodes, .false., is_searched)
-            if (is_searched) then
-               call take_node(x, c, nodes(3), .true.)
-               call move_node(nodes(3), nodes(1))
-               track%filled = 1
-            else
-               call search_waiting(x, s, c)
-            end if
-         end if
-         if (track%filled == 2 .and. .not. nodes(1)%begins_pair) call search_waiting(x, s, c)
+         place([track%filled, 6]) = place([6, track%filled])
+         if (track%filled == 1) call take_node(x, c, nodes(place(1)), .true.)
+         if (track%filled == 2 .and. .not. nodes(place(1))%begins_pair) call search_waiting(x, s, c)
+         if (track%filled < 3) return
+
+         track%has_passed = .not. track%has_turned
+         if (track%has_turned) call search_pair(x, s, c, nodes(place(1)), nodes(place(2)), nodes(place(3)))
+         track%has_turned = .false.
+         place(:5) = place([3, 4, 5, 1, 2])
+         track%filled = 1
       end associate
    end subroutine add_node
+
+   !> Extremes of mechanism `c` may be in its last steps, as `turned_in` says: parts that were passed over there are
+   !> searched, and the next ones will be.
+   subroutine search_passed(x, s, c)
+      type(extremes_t), intent(inout) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+
+      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes, place => x%tracks(c)%place)
+         track%has_turned = .true.
+         if (.not. track%has_passed) return
+         track%has_passed = .false.
+         if (track%turned_in > track%filled) then
+            call take_node(x, c, nodes(place(4)), .true.)
+            call search_pair(x, s, c, nodes(place(4)), nodes(place(5)), nodes(place(1)))
+         else
+            call take_node(x, c, nodes(place(1)), .true.)
+         end if
+      end associate
+   end subroutine search_passed
 
    !> Searches between the last node of mechanism `c` and the one that waits, if there is one; that is the last then.
    subroutine search_waiting(x, s, c)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      integer :: k
 
-      associate (track => x%tracks(c))
+      associate (track => x%tracks(c), place => x%tracks(c)%place)
          if (track%filled < 2) return
-         call search_part(x, s, c, track%nodes(1), track%nodes(2))
-         call take_node(x, c, track%nodes(2), .true.)
-         do k = 2, track%filled
-            call move_node(track%nodes(k), track%nodes(k - 1))
-         end do
-         track%filled = track%filled - 1
+         call search_part(x, s, c, track%nodes(place(1)), track%nodes(place(2)))
+         call take_node(x, c, track%nodes(place(2)), .true.)
+         place([1, 2]) = place([2, 1])
+         track%filled = 1
       end associate
    end subroutine search_waiting
 
-   !> Searches between the first and the last of three `nodes` of mechanism `c`, the ends and the middle of a part, if
-   !> its accelerations and their derivatives at the ends are those of simple curves, or `anyway`.
-   subroutine search_three(x, s, c, nodes, anyway, simple)
+   !> Searches the two parts from the node `a` of mechanism `c` to the `middle` and to `b`: together, if they have one
+   !> length and accelerations are simple there.
+   subroutine search_pair(x, s, c, a, middle, b)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      type(node_t), intent(in) :: nodes(3)
+      type(node_t), intent(in) :: a, middle, b
+      real(wp) :: length
+      logical :: is_searched
+
+      length = abs(b%t - a%t)
+      is_searched = length <= x%tracks(c)%longest .and. 0.5_wp*length > shortest_of(x, c, a%t, b%t) &
+         .and. abs(b%t - 2.0_wp*middle%t + a%t) <= alike_part*length
+      if (is_searched) call search_three(x, s, c, a, middle, b, .false., is_searched)
+      if (.not. is_searched) then
+         call search_part(x, s, c, a, middle)
+         call take_node(x, c, middle, .true.)
+         call search_part(x, s, c, middle, b)
+      end if
+      call take_node(x, c, b, .true.)
+   end subroutine search_pair
+
+   !> Searches between the nodes `a` and `b` of mechanism `c`, the ends of a part with the node `middle`, if its
+   !> accelerations and their derivatives at the ends are those of simple curves, or `anyway`.
+   subroutine search_three(x, s, c, a, middle, b, anyway, simple)
+      type(extremes_t), intent(inout) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: a, middle, b
       logical, intent(in) :: anyway
       logical, intent(out) :: simple
-      real(wp) :: jerk(2, size(x%tracks(c)%coordinates)), f(3, 0:2), noise(0:2), open, h
+      real(wp) :: jerk(2, size(x%tracks(c)%coordinates)), f(3, 0:2), noise(0:2), open, h, growth
       integer :: i, k
 
-      h = nodes(3)%t - nodes(1)%t
+      h = b%t - a%t
+      growth = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))
       simple = .true.
       do i = 1, size(x%tracks(c)%coordinates)
          associate (size_of => x%tracks(c)%coordinates(i)%size_of)
             ! What rounding may leave open, at most.
-            noise = 0.0_wp
-            do k = 1, 3
-               associate (at => nodes(k)%at(i))
-                  f(k, :) = at%f*[1.0_wp, h, h**2]
-                  noise = max(noise, at%error, max(noise_part, epsilon(1.0_wp)*at%growth)*size_of)
-               end associate
+            noise = max(a%error(:, i), middle%error(:, i), b%error(:, i), growth*size_of)
+            do k = 0, 2
+               f(:, k) = [a%f(k, i), middle%f(k, i), b%f(k, i)]
             end do
+            f(:, 1) = f(:, 1)*h
+            f(:, 2) = f(:, 2)*h**2
             open = max(noise(0), noise_part*maxval(abs(f(:, 0))))
             jerk(1, i) = jerk_at_first(f, open)/h**3
             ! From the last to the first the rates have the other sign, and so has their second derivative.
@@ -149,12 +210,12 @@ contains
             jerk(2, i) = -jerk_at_first(f, open)/h**3
             ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
             open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
-            simple = simple .and. is_simple([(nodes(k)%at(i)%f(2), k=1, 3)], jerk(:, i)*h, open)
+            simple = simple .and. is_simple([a%f(2, i), middle%f(2, i), b%f(2, i)], jerk(:, i)*h, open)
          end associate
       end do
       if (.not. (simple .or. anyway)) return
-      call take_node(x, c, nodes(2), .false.)
-      call search_columns(x, s, c, nodes, jerk)
+      call take_node(x, c, middle, .false.)
+      call search_columns(x, s, c, a, middle, b, jerk)
    end subroutine search_three
 
    !> A part of mechanism `c` from the time `a` to `b` that is no longer is not searched.
@@ -173,13 +234,15 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
       logical, intent(in) :: next
+      type(sample_t) :: sample
       integer :: i, k
 
-      do i = 1, size(node%at)
-         do k = 0, node%at(i)%known
-            call offer_sample(x%tracks(c)%coordinates(i), k, node%at(i), .false., x%step)
+      do i = 1, size(node%known)
+         sample = sample_of(node, i)
+         do k = 0, sample%known
+            call offer_sample(x%tracks(c)%coordinates(i), k, sample, .false., x%step)
          end do
-         if (next .and. node%at(i)%known == 2) call note_velocity(x%tracks(c)%coordinates(i), node%at(i))
+         if (next .and. sample%known == 2) call note_velocity(x%tracks(c)%coordinates(i), sample)
       end do
    end subroutine take_node
 
@@ -189,7 +252,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
-      type(node_t) :: nodes(3)
+      type(node_t) :: middle
       real(wp) :: shortest
       logical :: simple, is_last
 
@@ -200,36 +263,34 @@ contains
             if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         nodes(1) = a
-         call find_node(x, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
-         nodes(3) = b
-         if (.not. is_known(nodes(2))) then
+         call find_node(s, track%asked, track%coordinates, a%t + 0.5_wp*(b%t - a%t), middle, .false.)
+         if (.not. middle%is_known) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
-         call search_three(x, s, c, nodes, is_last, simple)
+         call search_three(x, s, c, a, middle, b, is_last, simple)
          if (simple) return
          if (is_last) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
          else
             track%halvings = track%halvings + 1
-            call search_part(x, s, c, a, nodes(2))
-            call take_node(x, c, nodes(2), .false.)
-            call search_part(x, s, c, nodes(2), b)
+            call search_part(x, s, c, a, middle)
+            call take_node(x, c, middle, .false.)
+            call search_part(x, s, c, middle, b)
          end if
       end associate
    end subroutine search_part
 
-   !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`, where
-   !> their accelerations have the derivatives `jerk` (2, coordinates) at the ends.
-   subroutine search_columns(x, s, c, nodes, jerk)
+   !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`. Their
+   !> accelerations have the derivatives `jerk` (2, coordinates) at the ends.
+   subroutine search_columns(x, s, c, a, middle, b, jerk)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      type(node_t), intent(in) :: nodes(:)
+      type(node_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: jerk(:, :)
-      type(sample_t) :: points(size(nodes))
+      type(sample_t) :: points(3)
       type(sample_t), allocatable :: path(:), found(:)
       type(column_t) :: column
       integer :: i, k
@@ -237,12 +298,12 @@ contains
 
       do i = 1, size(x%tracks(c)%coordinates)
          associate (one => x%tracks(c)%coordinates(i))
-            points = [(nodes(k)%at(i), k=1, size(nodes))]
+            points = [sample_of(a, i), sample_of(middle, i), sample_of(b, i)]
             ! A velocity, an acceleration or its derivative at both ends has different signs.
             turns = differ_in_sign(jerk(1, i), jerk(2, i)) .or. any([(differ_in_sign(minval(points%f(k)), &
                maxval(points%f(k))), k=1, 2)])
             if (turns) then
-               column = column_t(one%request, one%column, min(max_part*abs(nodes(3)%t - nodes(1)%t), &
+               column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
                   max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
                do k = 0, 2
                   column%noise(k) = max(noise_part*one%size_of(k), maxval(points%error(k)))

@@ -10,13 +10,13 @@ module extremes
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
-   use nodes, only: node_t, sample_t, extreme_t, order_along
+   use nodes, only: node_t, sample_t, extreme_t, rows_asked_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, rows_asked, &
-      new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
-      column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
+   public :: extremes_t, coordinate_t, watch_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
+      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
+      is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -53,6 +53,14 @@ module extremes
       integer :: n = 0
    end type place_list_t
 
+   !> What is known of a coordinate at the last instant: signs are -1, 0 or 1.
+   type :: watch_t
+      integer :: signs(2) = 0                          !< of velocity and acceleration
+      integer :: trend = 0                             !< of the change of the acceleration
+      real(wp) :: acceleration = 0.0_wp                !< from which the next change counts
+      real(wp) :: differences(0:3) = 0.0_wp            !< of accelerations at the last instants: the value, ...
+   end type watch_t
+
    !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
    type :: coordinate_t
       integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
@@ -61,6 +69,7 @@ module extremes
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
+      type(watch_t) :: watch                           !< whether it has turned
       type(place_list_t) :: places                     !< nodes and extremes, if it may dwell
       !> How it has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest` since that,
       !> at this `speed`, where it was before the first, and where it has reversed.
@@ -78,7 +87,7 @@ module extremes
 
    !> The way that the coordinates of one independent mechanism have come.
    type :: track_t
-      integer, allocatable :: requests(:)              !< of the set, those asked for
+      type(rows_asked_t) :: asked                      !< those asked for
       type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
@@ -87,10 +96,15 @@ module extremes
       real(wp) :: closure(3) = huge(1.0_wp)
       type(end_t) :: last                              !< the last instant
       logical :: is_lost = .false.                     !< of some row nothing is known there
-      !> The last node up to which this piece is searched, the next one, and one more while both parts are searched; so
-      !> many are `filled`.
-      type(node_t) :: nodes(3)
+      !> Nodes in their order by `place`: (1) the last one up to which this piece is searched, (2) the next, and (3) one
+      !> more while both parts are searched; so many are `filled`, and `has_turned`: an extreme may be between them.
+      !> (4:5) the two before these, if no extreme seemed to be there and the parts were not searched (`has_passed`).
+      !> (6) the one that comes next. (7) The instant at hand.
+      type(node_t) :: nodes(7)
+      integer :: place(7) = [1, 2, 3, 4, 5, 6, 7]
       integer :: filled = 0
+      logical :: has_turned = .false., has_passed = .false.
+      integer :: turned_in = 0                         !< so many of the last steps may have extremes, as `watch` says
       integer :: halvings = 0                          !< of parts of this step
    end type track_t
 
@@ -140,6 +154,7 @@ contains
    subroutine new_extremes(s, x)
       class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
+      integer, allocatable :: asked(:)
       real(wp) :: length, rate, fastest
       integer :: i, c, n, q, k
 
@@ -150,18 +165,20 @@ contains
       allocate (x%gaps(0), x%open(0), x%tracks(s%count))
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%parts(c))
-            track%requests = pack(x%asked, s%rows(x%asked)%part == c)
+            asked = pack(x%asked, s%rows(x%asked)%part == c)
+            track%asked%requests = asked
+            allocate (track%asked%rows(size(asked)), track%asked%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(track%requests(q))%number)%kind), &
-               q=1, size(track%requests))])))
+            allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(asked(q))%number)%kind), &
+               q=1, size(asked))])))
             n = 0
-            do q = 1, size(track%requests)
-               associate (request => own%requests(s%rows(track%requests(q))%number))
+            do q = 1, size(asked)
+               associate (request => own%requests(s%rows(asked(q))%number))
                   do i = 1, coordinates_of(request%kind)
                      n = n + 1
                      associate (one => track%coordinates(n))
-                        one%request = track%requests(q)
+                        one%request = asked(q)
                         one%part = c
                         one%row = q
                         one%column = i

@@ -7,12 +7,10 @@
 !> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module nodes
    use kinds, only: wp
-   use known_digits, only: nothing_known
    use points, only: row_t
-   use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: sample_t, node_t, extreme_t, look, move_node, is_known, times_between, beside_joint, order_along, &
+   public :: sample_t, sample_of, node_t, extreme_t, rows_asked_t, times_between, beside_joint, order_along, &
       limits_of, places, places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
@@ -45,12 +43,25 @@ module nodes
       integer :: order = 0              !< of the derivative that has an extreme there
    end type sample_t
 
-   !> The coordinates of one independent mechanism at one time.
+   !> The coordinates of one independent mechanism at one time. Small, since lanes have many of them.
    type :: node_t
       real(wp) :: t = 0.0_wp                   !< time
       logical :: begins_pair = .false.         !< it is an instant of TIME with an even number
-      type(sample_t), allocatable :: at(:)     !< (coordinates)
+      !> All of the motion is known, and of no number all digits are open: such a one cannot be told to be an extreme,
+      !> nor to be none.
+      logical :: is_known = .false.
+      logical :: has_errors = .false.          !< not all of `error` is 0
+      real(wp) :: growth = 0.0_wp              !< as in `sample_t`
+      integer, allocatable :: known(:)         !< (coordinates) likewise
+      real(wp), allocatable, dimension(:, :) :: f, error   !< (0:2, coordinates) likewise
    end type node_t
+
+   !> Requests of one mechanism, with room for their rows.
+   type :: rows_asked_t
+      integer, allocatable :: requests(:)              !< of the set
+      type(row_t), allocatable :: rows(:)
+      real(wp), allocatable :: error(:, :, :)          !< (3, 0:2, rows)
+   end type rows_asked_t
 
    !> The least or the greatest value of a number, or what may be that. In the deck's unit or rad.
    type :: extreme_t
@@ -63,50 +74,13 @@ module nodes
 
 contains
 
-   !> The coordinates `at` of one mechanism at the last instant of `s` or a time `t` between the instants: each is a
-   !> column (1 to 3) of a row, one of those of the `requests` of the set. `always`: their errors too where no digit of
-   !> a table is in doubt; without it no errors are estimated.
-   subroutine look(s, requests, row, column, t, at, always)
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: requests(:), row(:), column(:)
-      real(wp), intent(in) :: t
-      type(sample_t), intent(out) :: at(size(row))
-      logical, intent(in), optional :: always
-      type(row_t) :: rows(size(requests))
-      real(wp) :: error(3, 0:2, size(requests)), growth
-      integer :: i
-
-      associate (part => s%now%rows(requests(1))%part)
-         if (present(always)) then
-            call rows_at(s, part, requests, t, rows, always, error, growth)
-         else
-            call rows_at(s, part, requests, t, rows)
-            error = 0.0_wp
-            growth = 0.0_wp
-         end if
-      end associate
-      do i = 1, size(row)
-         at(i) = sample_t(t, rows(row(i))%value(column(i), :), error(column(i), :, row(i)), rows(row(i))%known, growth)
-      end do
-   end subroutine look
-
-   !> Moves the node `from`, which is of no use then, `to` another place: nothing is allocated.
-   pure subroutine move_node(from, to)
-      type(node_t), intent(inout) :: from, to
-
-      to%t = from%t
-      to%begins_pair = from%begins_pair
-      call move_alloc(from%at, to%at)
-   end subroutine move_node
-
-   !> All of the motion of `node` is known, and of no number all digits are open: such a one cannot be told to be an
-   !> extreme, nor to be none.
-   pure logical function is_known(node)
+   !> Coordinate `i` of the `node`.
+   pure type(sample_t) function sample_of(node, i) result(sample)
       type(node_t), intent(in) :: node
-      integer :: i
+      integer, intent(in) :: i
 
-      is_known = all(node%at%known == 2) .and. all([(all(node%at(i)%error < nothing_known), i=1, size(node%at))])
-   end function is_known
+      sample = sample_t(node%t, node%f(:, i), node%error(:, i), node%known(i), node%growth)
+   end function sample_of
 
    !> The times of the nodes between `t1` and `t2`, instants of a run of the time `run`, in their order: at each of the
    !> `joints` of the drives' laws, which are in this order too, and on either side of it; and between them, so that no

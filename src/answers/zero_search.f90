@@ -2,8 +2,9 @@
 !> alone, in a bracket that holds the zero from the first to the last.
 module zero_search
    use kinds, only: wp
-   use set_analysis, only: set_analysis_t
-   use nodes, only: sample_t, look
+   use points, only: row_t
+   use set_analysis, only: set_analysis_t, rows_at
+   use nodes, only: sample_t
    implicit none
    private
    public :: column_t, look_at_column, find_zero, find_turn, differ_in_sign, noise_part
@@ -45,10 +46,11 @@ contains
       real(wp), intent(in) :: t
       type(sample_t), intent(out) :: sample
       logical, intent(in), optional :: with_errors
-      type(sample_t) :: at(1)
+      type(row_t) :: row(1)
+      real(wp) :: error(3, 0:2, 1), growth
 
-      call look(s, [c%request], [1], [c%column], t, at, with_errors)
-      sample = at(1)
+      call rows_at(s, s%now%rows(c%request)%part, [c%request], t, row, with_errors, error, growth)
+      sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), row(1)%known, growth)
    end subroutine look_at_column
 
    !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has

@@ -1,6 +1,6 @@
 !> The motions of several mechanisms of one structure, each in a lane: what `block_engine` has of one, as arrays whose
 !> first index is the lane. A lane takes over from an engine that has followed three motions at equal steps, and gives
-!> back to it the motion of one of its last instants.
+!> back to it the motion of its last instant.
 #define NUMBER real(wp), dimension(width)
 #define IS(value)
 module lane_state
@@ -18,8 +18,8 @@ module lane_state
    ! What equations are made of, one number a lane.
 #include "number_types.inc"
 
-   !> Motions that a lane remembers: the last three are needed to predict, and three before to go back to.
-   integer, parameter :: depth = 6
+   !> Motions that a lane has room for: the last three, which are needed to predict, and the next.
+   integer, parameter :: depth = 4
 
    !> The motions of an unknown that are remembered, by slots.
    type :: lane_past_t
@@ -45,7 +45,7 @@ module lane_state
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
-      integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4, 5]    !< of the motions, the latest first
+      integer :: slot(0:depth - 1) = [0, 1, 2, 3]          !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
       type(lane_past_t), allocatable :: past(:)         !< (0:unknowns)
       type(lane_block_t), allocatable :: block(:)
@@ -178,15 +178,15 @@ contains
       end do
    end subroutine load_lane
 
-   !> Gives `e` the motion of `lane`, `back` instants before the latest: as the one that it follows.
-   subroutine unload_lane(l, lane, back, e)
+   !> Gives `e` the latest motion of `lane`: as the one that it follows.
+   subroutine unload_lane(l, lane, e)
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: lane, back
+      integer, intent(in) :: lane
       type(block_engine_t), intent(inout) :: e
       integer :: k, i, u
 
       do k = 0, 2
-         associate (slot => l%slot(back + k))
+         associate (slot => l%slot(k))
             e%history%t(k) = l%t(lane, slot)
             do i = 1, size(l%predicted)
                u = l%predicted(i)
@@ -197,7 +197,7 @@ contains
          end associate
       end do
       e%history%filled = 3
-      associate (slot => l%slot(back))
+      associate (slot => l%slot(0))
          do i = 1, size(l%block)
             e%followed(i)%sign_of = nint(l%block(i)%sign_of(lane))
             e%followed(i)%pivot = l%block(i)%pivot(lane, slot)

@@ -123,7 +123,8 @@ contains
 
    !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
    !> time `t` between the instants; nothing else changes. rows%known is -1 without a motion. `error` (3, 0:2, rows):
-   !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0.
+   !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0; `growth`: by how much
+   !> roundings grow. Without `always` nothing is estimated, and both are 0.
    subroutine rows_at(s, c, list, t, rows, always, error, growth)
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, list(:)
@@ -158,7 +159,7 @@ contains
             do i = 1, size(list)
                call find_row(own, q, request_of(s%now, list(i)), rows(i))
             end do
-            if (.not. present(error)) return
+            if (.not. present(always)) return
             estimate%without_own = .true.
             call estimate_errors(s%estimators(c), own, a%engine, q, always, estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
