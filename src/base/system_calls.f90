@@ -12,7 +12,7 @@ module system_calls
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
    public :: isatty
    public :: watch_signals, note_all_signals, signal_received, end_by_signal
-   public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory
+   public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor
 
    !> The identity of a file.
    type :: identity_t
@@ -24,7 +24,7 @@ module system_calls
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
-   integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21
+   integer, parameter :: no_such_file = 2, closed_descriptor = 9
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
    integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
    !> Read and write for all, less the user's mask.

@@ -270,10 +270,7 @@ contains
             parsed%names_certain = .false.
             first = first_column(parsed%card, card_fields(i - 1))
             finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
-            associate (is_whole => scan(forms(parsed%form)%labels(i - label_a:i - label_a), 'Ww') == 1)
-               call add_error(errors, merge(whole_long, label_long, is_whole), parsed%card, card_fields(i - 1), first, &
-                  text(first:finish))
-            end associate
+            call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
          else
             call add_field_error(errors, field_unused, parsed%card, card_fields(i))
          end if

@@ -1,11 +1,10 @@
 !> One card: its 80 columns, its fields by column, and the forms of cards, that is which fields each card takes. Fields
 !> and forms are declared here and nowhere else: a new card is one enumerator and one line of `forms`.
 module cards
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
    use failures, only: capitals
    implicit none
-   private :: int64, label_length, capitals, form_t, star_layout, keys
+   private :: label_length, capitals, form_t, star_layout
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80
@@ -88,8 +87,6 @@ module cards
       form_t('---', 0, .false., 'END')]
    !> The layout of the `*` card, by `wide_fields`.
    character(*), parameter :: star_layout = '*       R1 OF THE CARD ABOVE    R2                      R3'
-   !> Their names, each as one number.
-   integer(int64), parameter :: keys(form_end) = transfer(forms%layout(:label_length), [0_int64])
 
 contains
 
@@ -153,11 +150,7 @@ contains
    !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name
-      character(label_length) :: key
 
-      key = name
-      form = findloc(keys, transfer(key, keys(1)), dim=1)
-      if (form == form_unknown) form = findloc(keys, transfer(capitals(key), keys(1)), dim=1)
-      if (len_trim(name) > label_length) form = form_unknown
+      form = findloc(forms%layout(:label_length), capitals(name), dim=1)
    end function find_form
 end module cards

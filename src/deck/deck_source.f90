@@ -6,8 +6,7 @@ module deck_source
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use cards, only: card_t, card_columns
    use numerals, only: whole
-   use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
-      no_such_file, is_a_directory
+   use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of
    implicit none
    private
    public :: source_t, open_source, next_card, close_source
@@ -51,8 +50,6 @@ contains
             call read_on(source, failure)
          end do
          if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
-      else if (error == no_such_file) then
-         call fail(failure, status_system, source%name//' DOES NOT EXIST')
       else
          call fail(failure, status_system, source%name//' CANNOT BE OPENED ('//capitals(reason_of(error))//')')
       end if
@@ -120,11 +117,7 @@ contains
       source%ended = length <= 0
       source%buffer = source%buffer(source%at:)//block(:max(0, length))
       source%at = 1
-      if (length >= 0) return
-      if (error == is_a_directory) then
-         call fail(failure, status_system, source%name//' IS A DIRECTORY')
-      else
-         call fail(failure, status_system, source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
-      end if
+      if (length < 0) call fail(failure, status_system, &
+         source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
    end subroutine read_on
 end module deck_source

@@ -68,8 +68,7 @@ module input_errors
       field_blank = error_code_t(34, 'THE FIELD IS BLANK: FILL IT IN', own_layout), &
       label_blank_inside = error_code_t(35, 'IS NOT A LABEL: LABELS CANNOT CONTAIN BLANKS', own_layout), &
       number_range = error_code_t(36, 'IS OUT OF RANGE; ALLOWED:'), &
-      label_long = error_code_t(37, 'IS TOO LONG: NAMES HAVE AT MOST 8 CHARACTERS', own_layout), &
-      whole_long = error_code_t(38, 'IS TOO LONG: INTEGERS HAVE AT MOST 8 DIGITS', own_layout), &
+      label_long = error_code_t(37, 'IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS', own_layout), &
       star_first = error_code_t(40, 'CONTINUES NO CARD: IT IS THE FIRST CARD OF THE SET'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: ALSO ON THE CARD THAT THIS ONE CONTINUES'), &

@@ -20,19 +20,56 @@ module numbers
 contains
 
    !> Reads the real `value` from `text` (no blanks around it, not empty, at most 80 characters). If it is none, `error`
-   !> is a number_... error, `value` is 0 and `place` is the number of the first wrong character of `text`.
+   !> is a number_... error, `value` is 0 and `place` is the number of the first wrong character of `text`; of a number
+   !> without a point, or out of range, the first.
    pure subroutine read_real(text, value, error, place)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
       type(error_code_t), intent(out) :: error
       integer, intent(out) :: place
-      integer :: n, power, letter
+      integer :: first, n, power, point, letter, exponent
       real(dp) :: double
 
+      ! Digits with a point: `n` of them from the first that is not 0 on, times 10**power.
       value = 0.0_wp
-      call split_real(text, n, power, letter, place, error)
+      first = merge(2, 1, scan(text(1:1), '+-') == 1)
+      n = 0
+      point = 0
+      do place = first, len(text)
+         if (text(place:place) >= '0' .and. text(place:place) <= '9') then
+            if (n > 0 .or. text(place:place) > '0') n = n + 1
+         else if (text(place:place) == '.' .and. point == 0) then
+            point = place
+         else
+            exit
+         end if
+      end do
+      letter = place
+      power = 0
+      if (point > 0) power = point + 1 - place
+
+      ! The exponent.
+      if (place == first + merge(1, 0, point > 0)) then
+         error = number_other
+      else if (scan(text(letter:), 'EeDd') == 1) then
+         first = place + 1
+         if (scan(text(first:), '+-') == 1) first = first + 1
+         exponent = 0
+         do place = first, len(text)
+            if (text(place:place) < '0' .or. text(place:place) > '9') exit
+            exponent = min(10*exponent + iachar(text(place:place)) - iachar('0'), exponent_cap)
+         end do
+         if (place == first) error = number_other
+         power = power + merge(-exponent, exponent, text(first - 1:first - 1) == '-')
+      else if (point == 0 .and. place > len(text)) then
+         error = number_no_point
+         place = 1
+         return
+      end if
+      if (place <= len(text)) error = error_at(text, place)
       place = min(place, len(text))
       if (error%number > 0) return
+
       place = 1
       if (n == 0) return
       ! Beyond them a conversion may trap.
@@ -72,52 +109,6 @@ contains
          if (status /= 0) value = 0
       end if
    end subroutine read_whole
-
-   !> Splits `text` = digits x 10**power. `n`: the number of its digits from the first that is not 0 on. `letter`: the
-   !> place of the letter of the exponent, or of the character behind `text`. `place`: the character at which the
-   !> grammar stops, which is len(text) + 1 if there is no error; of a number without a point the first.
-   pure subroutine split_real(text, n, power, letter, place, error)
-      character(*), intent(in) :: text
-      integer, intent(out) :: n, power, letter, place
-      type(error_code_t), intent(out) :: error
-      integer :: first, point, exponent
-      character(1) :: c
-
-      first = merge(2, 1, scan(text(1:1), '+-') == 1)
-      n = 0
-      point = 0
-      do place = first, len(text)
-         c = text(place:place)
-         if (c >= '0' .and. c <= '9') then
-            if (n > 0 .or. c > '0') n = n + 1
-         else if (c == '.' .and. point == 0) then
-            point = place
-         else
-            exit
-         end if
-      end do
-      letter = place
-      power = 0
-      if (point > 0) power = point + 1 - place
-      if (place == first + merge(1, 0, point > 0)) then
-         error = number_other
-      else if (scan(text(letter:), 'EeDd') == 1) then
-         first = place + 1
-         if (scan(text(first:), '+-') == 1) first = first + 1
-         exponent = 0
-         do place = first, len(text)
-            if (text(place:place) < '0' .or. text(place:place) > '9') exit
-            exponent = min(10*exponent + iachar(text(place:place)) - iachar('0'), exponent_cap)
-         end do
-         if (place == first) error = number_other
-         power = power + merge(-exponent, exponent, text(first - 1:first - 1) == '-')
-      else if (point == 0 .and. place > len(text)) then
-         error = number_no_point
-         place = 1
-         return
-      end if
-      if (place <= len(text)) error = error_at(text, place)
-   end subroutine split_real
 
    !> The error at the character `text(i:i)`, at which the grammar stopped.
    pure function error_at(text, i) result(error)

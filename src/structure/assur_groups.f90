@@ -19,11 +19,10 @@ module assur_groups
    private
    public :: closure_t, new_closure, group_t, groups_of
 
-   !> Equation e belongs to pair(e) or, where that is 0, to drive(e).
+   !> The equations are two of each pair, in their order, and then one of each drive.
    type :: closure_t
       type(incidence_t) :: incidence
       integer, allocatable :: link_of(:)             !< (unknowns)
-      integer, allocatable :: pair(:), drive(:)      !< (equations)
    end type closure_t
 
    real(wp), parameter :: rounding = 8.0_wp*epsilon(1.0_wp)
@@ -50,7 +49,6 @@ contains
       c%incidence%unknowns = size(c%link_of)
       associate (equations => 2*size(m%pairs) + size(m%drives))
          allocate (c%incidence%first(equations + 1), c%incidence%unknown(6*equations))
-         allocate (c%pair(equations), c%drive(equations), source=0)
          c%incidence%equations = equations
       end associate
       c%incidence%first(1) = 1
@@ -61,16 +59,16 @@ contains
             if (m%pairs(i)%kind == pair_revolute) then
                call note_component(p, along(:, 1))
                call note_component(q, along(:, 1))
-               call close_equation(i, 0)
+               call close_equation()
                call note_component(p, along(:, 2))
                call note_component(q, along(:, 2))
             else
                call note(m%points(p)%link, 3)
                call note(m%points(q)%link, 3)
-               call close_equation(i, 0)
+               call close_equation()
                call note_projection(i, across=.true.)
             end if
-            call close_equation(i, 0)
+            call close_equation()
          end associate
       end do
       do i = 1, size(m%drives)
@@ -89,7 +87,7 @@ contains
                call note_projection(subject, across=.false.)
             end select
          end associate
-         call close_equation(0, i)
+         call close_equation()
       end do
 
    contains
@@ -133,13 +131,10 @@ contains
          end associate
       end subroutine note_projection
 
-      !> The equation at hand, of `pair` or `drive`, is complete.
-      subroutine close_equation(pair, drive)
-         integer, intent(in) :: pair, drive
+      !> The equation at hand is complete.
+      subroutine close_equation()
 
          k = k + 1
-         c%pair(k) = pair
-         c%drive(k) = drive
          c%incidence%first(k + 1) = n + 1
       end subroutine close_equation
    end function new_closure
@@ -170,8 +165,8 @@ contains
       do i = 1, size(groups)
          groups(i)%links = members(by_group, i)
       end do
-      do e = 1, size(unknown_of)
-         if (c%drive(e) == 0 .or. c%incidence%first(e) == c%incidence%first(e + 1)) cycle
+      do e = 2*size(m%pairs) + 1, size(unknown_of)
+         if (c%incidence%first(e) == c%incidence%first(e + 1)) cycle
          i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
          groups(order(of_link(i)))%driven = .true.
       end do

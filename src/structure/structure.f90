@@ -67,11 +67,13 @@ contains
       call match(c%incidence, unknown_of, equation_of)
       over = overdetermined(c%incidence, unknown_of, equation_of)
       f%redundant = count(unknown_of == 0)
-      f%many_pairs = pack(c%pair, over .and. c%pair > 0)
-      f%many_drives = pack(c%drive, over .and. c%drive > 0)
+      f%many_pairs = pack([((k + 1)/2, k=1, 2*size(m%pairs))], over(:2*size(m%pairs)))
+      f%many_drives = pack([(k, k=1, size(m%drives))], over(2*size(m%pairs) + 1:))
       f%free = count(equation_of == 0)
-      f%loose = once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of)))
-      if (f%free > 0) return
+      if (f%free > 0) then
+         f%loose = once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of)))
+         return
+      end if
       parts = max(1, maxval([0, part_of_links(m)]))
       allocate (f%structures(parts))
       if (parts == 1) then

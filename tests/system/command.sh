@@ -330,11 +330,11 @@ rejected 'empty word' 1 ' *** THE NAME OF THE DECK IS EMPTY' ''
 rejected '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
 rejected '--csv with an empty file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv ''
 rejected '--log twice' 1 ' *** OPTION --log IS GIVEN TWICE' "$w/m.deck" --log "$w/a" --log "$w/b"
-rejected 'missing file' 3 " *** FILE $w/no.deck DOES NOT EXIST" "$w/no.deck"
-rejected 'deck is a directory' 3 " *** FILE $w IS A DIRECTORY" "$w"
+rejected 'missing file' 3 " *** FILE $w/no.deck CANNOT BE OPENED (NO SUCH FILE OR DIRECTORY)" "$w/no.deck"
+rejected 'deck is a directory' 3 " *** FILE $w CANNOT BE READ (IS A DIRECTORY)" "$w"
 "$kinmat" < "$w" > "$w/out" 2> "$w/err"
 equal 'standard input is a directory: status' 3 $?
-equal 'standard input is a directory: sentence' ' *** STANDARD INPUT IS A DIRECTORY' "$(cat "$w/err")"
+equal 'standard input is a directory: sentence' ' *** STANDARD INPUT CANNOT BE READ (IS A DIRECTORY)' "$(cat "$w/err")"
 "$kinmat" < /dev/null > "$w/out" 2> "$w/err"
 equal 'empty deck: status' 1 $?
 equal 'empty deck: sentence' ' *** E001  THE DECK IS EMPTY' "$(cat "$w/err")"

@@ -802,7 +802,7 @@ explained() {
    equal "$1: words" "$3" "$(grep -vE '^( CARD| +[|])' "$w/err")"
 }
 explained 'a name of nine letters' '/^LINK    PISTON/ { print "LINK    PISTONROD"; next } { gsub(/PISTON$/, "PISTONROD") } 1' \
-   ' *** E037  CARD 6  COLUMN 9  FIELD LABEL-A: "PISTONROD" IS TOO LONG: NAMES HAVE AT MOST 8 CHARACTERS
+   ' *** E037  CARD 6  COLUMN 9  FIELD LABEL-A: "PISTONROD" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
  LAYOUT    |LINK    LINK                    X               Y               PHI'
 explained 'a name of nine letters before another' '/^REVOLUTEA1/ { $0 = "REVOLUTEA1      POINT-A21PAIR-A" } 1' \
    ' *** E052  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A2" IS NOT THE NAME OF A POINT
@@ -838,7 +838,7 @@ explained 'a number of more than 16 columns' '/^POINT   B2/ { $0 = "POINT   B2  
 explained 'a number of more than 16 columns, at the end' '/^LINK    ROD/ { $0 = substr($0, 1, 64) "-10.00000000000000001" } 1' \
    ' *** E014  CARD 5  COLUMN 81  FIELD PAST-80: "00001" IS BEYOND COLUMN 80'
 explained 'too many steps for the field' '/^TIME/ { $0 = "TIME    1000000000              0.0             1.0" } 1' \
-   ' *** E038  CARD 19  COLUMN 9  FIELD LABEL-A: "1000000000" IS TOO LONG: INTEGERS HAVE AT MOST 8 DIGITS
+   ' *** E037  CARD 19  COLUMN 9  FIELD LABEL-A: "1000000000" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
  LAYOUT    |TIME    STEPS                   T0              T1'
 explained 'a joint that is there twice' '/^POINT   O / { print "JOINT   HINGE   BASE    CRANK"; print "JOINT   HINGE   BASE    CRANK" } 1' \
    ' *** E050  CARD 8  COLUMN 9  FIELD LABEL-A: "HINGE" IS A NAME DEFINED TWICE; FIRST ON CARD 7'

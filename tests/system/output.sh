@@ -227,7 +227,7 @@ for language in pl_PL.UTF-8 de_DE.UTF-8; do
    cut -d, -f1-15 errors.csv > csv
    same "$language: csv" whole.csv csv
    LC_ALL=$language "$kinmat" nothing > out 2> err
-   told "$language: a refusal" 3 $? ' *** FILE nothing DOES NOT EXIST'
+   told "$language: a refusal" 3 $? ' *** FILE nothing CANNOT BE OPENED (NO SUCH FILE OR DIRECTORY)'
 done
 cd "$home" || exit 3
 conclude
