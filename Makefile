@@ -18,7 +18,7 @@ endif
 ifeq ($(MAKELEVEL),0)
    MAKEFLAGS += -j$(shell nproc 2> /dev/null || echo 1)
 endif
-LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
+LIBS   ?= -lklu -llapack -lblas
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment; functions that need not be asked, where another

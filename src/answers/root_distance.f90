@@ -17,7 +17,8 @@
 module root_distance
    use kinds, only: wp
    use mechanism, only: pair_revolute, pair_prismatic, drive_x, drive_y, drive_slide
-   use linear_solver, only: factors_t, solve_transposed
+   use lapack, only: getrs
+   use linear_solver, only: factors_t
    use pose, only: system_t, pose_t
    implicit none
    private
@@ -115,7 +116,7 @@ contains
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: k
       real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(2*size(s%pairs) + size(s%laws))
-      integer :: m, axis
+      integer :: m, axis, info
 
       k = 0.0_wp
       if (size(g) == 0) return
@@ -133,7 +134,7 @@ contains
             end do
          end associate
       end do
-      call solve_transposed(f, g)
+      call getrs('T', f%n, size(g, 2), f%a, f%n, f%pivots, g, f%n, info)
 
       bound = jacobian_lipschitz(s, c, p)
       do m = 1, size(c%angles)

@@ -7,11 +7,10 @@ module block_bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: length_of
-   use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t, given
    use block_equations, only: find_known_parts
-   use bilinear, only: bilinear_t, path_end_t, rounding
+   use bilinear, only: bilinear_t, path_end_t, rounding, find_null_space
    implicit none
    private
    public :: block_form_t, make_form, solves_all, real_values

@@ -13,7 +13,7 @@ module first_instant
    use block_state, only: set_values, values_of, add_turns
    use block_solver, only: solve_block
    use link_motion, only: move_links
-   use levenberg_marquardt, only: levenberg_marquardt_solve
+   use levenberg_marquardt, only: levenberg_marquardt_solve, find_closure_error
    use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, is_certain
    use block_branches, only: is_short_and_right
    use block_assemblies, only: block_positions_t, find_positions
@@ -37,9 +37,6 @@ module first_instant
    real(wp), parameter :: alike = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp))), singular_alike = sqrt(alike)
    !> Distances of which one is this part of the other or more are equal; those of which it is this part are about so.
    real(wp), parameter :: equal = 0.999_wp, about_equal = 0.8_wp
-   !> A residual of this size is near enough for Newton's method; below the other there is nothing to correct.
-   real(wp), parameter :: near = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
-   real(wp), parameter :: closed = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
    !> The largest number of blocks assembled.
    integer, parameter :: max_solves = 3000
 
@@ -172,7 +169,7 @@ contains
       type(candidates_t), intent(out) :: found
       type(convergence_t), intent(out) :: c
       type(block_positions_t) :: every
-      real(wp) :: start(e%blocks%list(i)%shape%n)
+      real(wp), dimension(e%blocks%list(i)%shape%n) :: start, least
       integer :: k
 
       allocate (found%x(size(start), 0), found%distance(0))
@@ -191,8 +188,15 @@ contains
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
       call set_values(e%blocks, i, start, e%state)
-      call come_near(e, i, c)
-      if (is_solved(c)) call note_position(values_of(e%blocks, i, e%state), c%singular)
+      call levenberg_marquardt_solve(e%blocks, i, e%state)
+      least = values_of(e%blocks, i, e%state)
+      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
+      if (is_solved(c)) then
+         call note_position(values_of(e%blocks, i, e%state), c%singular)
+      else
+         call set_values(e%blocks, i, least, e%state)
+         call find_closure_error(e%blocks, i, e%state, c)
+      end if
 
    contains
 
@@ -233,30 +237,6 @@ contains
          found%distance = [found%distance(:k - 1), distance, found%distance(k:)]
       end subroutine note_position
    end subroutine find_candidates
-
-   !> Solves block `i` from where it is nearly closed, or gives in `c` the closure error that remains.
-   subroutine come_near(e, i, c)
-      type(block_engine_t), intent(inout) :: e
-      integer, intent(in) :: i
-      type(convergence_t), intent(inout) :: c
-      type(convergence_t) :: nearest
-      real(wp), allocatable :: nearly_closed(:)
-      logical :: reached
-
-      nearest = c
-      call levenberg_marquardt_solve(e%blocks, i, near, e%state, nearest, reached)
-      nearly_closed = values_of(e%blocks, i, e%state)
-      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-      if (is_solved(c)) return
-      if (reached) then
-         ! Close to a limit, and perhaps beyond it.
-         call set_values(e%blocks, i, nearly_closed, e%state)
-         call levenberg_marquardt_solve(e%blocks, i, closed, e%state, nearest, reached)
-         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-         if (is_solved(c) .or. reached) return
-      end if
-      c%open = nearest%open
-   end subroutine come_near
 
    !> (2, links) The block that finds the angle of each link of `e`, and the block after which its place is known; 0:
    !> none.

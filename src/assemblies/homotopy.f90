@@ -10,8 +10,8 @@
 module homotopy
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use planar, only: pi
-   use complex_lu, only: factor_complex, solve_complex
-   use bilinear, only: bilinear_t, path_start_t, path_end_t, ends_t, path_count, finiteness, infinity_level
+   use lapack, only: zgesv
+   use bilinear, only: bilinear_t, path_start_t, path_end_t, ends_t, finiteness, infinity_level
    implicit none
    private
    public :: follow_paths
@@ -21,7 +21,6 @@ module homotopy
    type :: paths_t
       integer :: p = 0
       complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p)
-      real(dp) :: careful = 1.0_dp                    !< predictions are corrected by less than this part of the usual
    end type paths_t
 
    !> The correction of a prediction that is aimed at, and the largest, in parts of z: paths that are further apart are
@@ -40,12 +39,10 @@ module homotopy
    !> Tenths of t before a path that fails tells where it goes; fewer if it is so near to infinity and falls so fast.
    integer, parameter :: least_tenths = 4
    real(dp), parameter :: far = 1.0e-3_dp, sure_power = 0.5_dp
-   !> Ends that differ by less, in parts of z, are one; all paths are followed anew, with steps so much shorter.
+   !> Ends that differ by less, in parts of z, are one.
    real(dp), parameter :: alike = sqrt(epsilon(1.0_dp))
-   real(dp), parameter :: shorter = 1.0e-2_dp
    !> Singular ends that differ by less may be one: four that meet are known to the fourth root of the last t.
    real(dp), parameter :: blurred = 1.0e-2_dp
-   integer, parameter :: max_rounds = 3
 
 contains
 
@@ -58,29 +55,25 @@ contains
       type(ends_t), intent(out) :: ends
       logical, intent(out) :: moves
       type(path_start_t) :: own
-      type(ends_t) :: found
-      logical :: is_near
-      integer :: round
+      type(ends_t) :: others
+      logical :: is_done
+      integer :: k
 
-      is_near = .false.
-      if (allocated(start)) is_near = start%p == f%p
-      do round = 1, max_rounds
-         if (round == 1 .and. is_near) then
-            call follow_all(f, 1.0_dp, start, found)
-         else
-            call make_start(f%p, round, own)
-            call follow_all(f, shorter**(round - 1), own, found, start)
-         end if
-         if (round == 1 .or. found%paths - found%failed > ends%paths - ends%failed) ends = found
-         if (found%failed == 0) exit
-      end do
+      is_done = .false.
+      if (allocated(start)) is_done = start%p == f%p
+      if (is_done) call follow_all(f, start, ends)
+      if (is_done) is_done = ends%failed == 0
+      if (.not. is_done) then
+         call make_start(f%p, 1, own)
+         call follow_all(f, own, ends, start)
+      end if
       moves = .false.
       if (.not. any(ends%list%is_singular)) return
       ! Paths from another start come to the same solutions, but to other points of a curve.
-      call make_start(f%p, max_rounds + 1, own)
-      call follow_all(f, 1.0_dp, own, found)
-      do round = 1, size(ends%list)
-         if (ends%list(round)%is_singular) moves = moves .or. .not. is_among(f, ends%list(round), found%list)
+      call make_start(f%p, 2, own)
+      call follow_all(f, own, others)
+      do k = 1, size(ends%list)
+         if (ends%list(k)%is_singular) moves = moves .or. .not. is_among(f, ends%list(k), others%list)
       end do
    end subroutine follow_paths
 
@@ -101,17 +94,21 @@ contains
       end do
    end function is_among
 
-   !> The start of round number `round`: each has a chance of its own. Its solution number k is where the forms in x of
+   !> The start number `number`: each has a chance of its own. Its solution number k is where the forms in x of
    !> p equations are zero, the k-th choice of them, and those in y of the others.
-   subroutine make_start(p, round, start)
-      integer, intent(in) :: p, round
+   subroutine make_start(p, number, start)
+      integer, intent(in) :: p, number
       type(path_start_t), intent(out) :: start
       complex(dp) :: a(0:p, 2*p), b(0:p, 2*p)
-      integer :: seed, chosen(p), j, k
+      integer :: seed, chosen(p), paths, j, k
 
       start%p = p
-      allocate (start%chart(p, 2), start%c(0:p, 0:p, 2*p), start%z(2*p, path_count(p)))
-      seed = 1987*round
+      paths = 1
+      do k = 1, p
+         paths = paths*(p + k)/k
+      end do
+      allocate (start%chart(p, 2), start%c(0:p, 0:p, 2*p), start%z(2*p, paths))
+      seed = 1987*number
       do j = 1, 2*p
          do k = 0, p
             a(k, j) = on_circle(seed)
@@ -147,13 +144,11 @@ contains
    function common_zero(forms) result(z)
       complex(dp), intent(in) :: forms(0:, :)
       complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2))
-      integer :: pivots(size(forms, 2))
-      logical :: is_singular
+      integer :: pivots(size(forms, 2)), info
 
       a = transpose(forms(1:, :))
       z = -forms(0, :)
-      call factor_complex(size(z), a, pivots, is_singular)
-      call solve_complex(size(z), a, pivots, z)
+      call zgesv(size(z), 1, a, size(z), pivots, z, size(z), info)
    end function common_zero
 
    !> The next of all choices of size(chosen) numbers up to `n`, in increasing order.
@@ -171,9 +166,8 @@ contains
 
    !> Follows every path of `f` from the `start`; `near`: their points at t = near_end, if all come so far. Two paths
    !> that come to one regular end have jumped on the way: they have failed.
-   subroutine follow_all(f, careful, start, ends, near)
+   subroutine follow_all(f, start, ends, near)
       type(bilinear_t), intent(in) :: f
-      real(dp), intent(in) :: careful
       type(path_start_t), intent(in) :: start
       type(ends_t), intent(out) :: ends
       type(path_start_t), allocatable, intent(inout), optional :: near
@@ -184,7 +178,6 @@ contains
       integer :: count_of, k, j
 
       h%p = f%p
-      h%careful = careful
       allocate (h%f(0:f%p, 0:f%p, 2*f%p), h%more(0:f%p, 0:f%p, 2*f%p))
       h%f(:, :, :) = f%c
       do k = 1, f%p
@@ -307,7 +300,7 @@ contains
             s = s + step
             if (s >= 1.0_dp - epsilon(1.0_dp)) return
             ! The error of a step goes with its fifth power.
-            step = step*min(3.0_dp, max(0.5_dp, (h%careful*aim/max(correction, epsilon(1.0_dp)))**0.2_dp))
+            step = step*min(3.0_dp, max(0.5_dp, (aim/max(correction, epsilon(1.0_dp)))**0.2_dp))
          else
             step = 0.4_dp*step
          end if
@@ -326,8 +319,7 @@ contains
       real(dp), parameter :: part(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: weight(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(z), size(z)), x(size(z)), r(size(z)), tangent(size(z))
-      integer :: pivots(size(z)), k
-      logical :: is_singular
+      integer :: pivots(size(z)), info, k
 
       next = z
       tangent = 0.0_dp
@@ -336,10 +328,9 @@ contains
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
          call assemble(h, t + part(k)*step, x, a, r, tangent)
-         call factor_complex(size(z), a, pivots, is_singular)
-         is_done = .not. is_singular
+         call zgesv(size(z), 1, a, size(z), pivots, tangent, size(z), info)
+         is_done = info == 0
          if (.not. is_done) return
-         call solve_complex(size(z), a, pivots, tangent)
          next = next + weight(k)*step*tangent
       end do
       is_done = size_of(next - z) <= size_of(z)
@@ -353,17 +344,15 @@ contains
       real(dp), intent(out) :: correction
       logical, intent(out) :: is_done
       complex(dp) :: a(size(z), size(z)), r(size(z))
-      integer :: pivots(size(z)), k
-      logical :: is_singular
+      integer :: pivots(size(z)), info, k
       real(dp) :: now, before
 
       is_done = .false.
-      before = 2.0_dp*h%careful*largest
+      before = 2.0_dp*largest
       do k = 1, max_corrections
          call assemble(h, t, z, a, r)
-         call factor_complex(size(z), a, pivots, is_singular)
-         if (is_singular) return
-         call solve_complex(size(z), a, pivots, r)
+         call zgesv(size(z), 1, a, size(z), pivots, r, size(z), info)
+         if (info > 0) return
          now = size_of(r)/size_of(z)
          if (k == 1) correction = now
          if (.not. now <= 0.5_dp*before) return

@@ -9,10 +9,9 @@ module block_branches
    use kinds, only: wp
    use mechanism, only: drive_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
-   use convergence, only: convergence_t, nothing_gathered, is_solved, max_kantorovich_ratio
+   use convergence, only: convergence_t, nothing_gathered, is_solved
    use drives, only: drive_motion, halve, middle_of
-   use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
-   use block_solver, only: solve_block
+   use block_state, only: set_values, values_of, largest_drive_rate
    use block_rank, only: values_t, decomposed, curvature_of
    use block_engine, only: block_engine_t, solve_each
    use block_diagnostics, only: links_of
@@ -36,10 +35,6 @@ module block_branches
    real(wp), parameter :: furthest = 0.05_wp
    !> Redundant equations are satisfied there to more than the second order in the distance.
    real(wp), parameter :: max_closure_part = 0.01_wp
-   !> What builds on a block follows it to its other branch in so many parts that Kantorovich's ratio of each is about
-   !> this, half of what it may be.
-   real(wp), parameter :: max_part_ratio = 0.05_wp
-   integer, parameter :: max_parts = 64
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
 
@@ -179,13 +174,11 @@ contains
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
       type(values_t) :: v
-      real(wp), dimension(e%blocks%list(i)%shape%n) :: direction, x, y
+      real(wp), dimension(e%blocks%list(i)%shape%n) :: direction, x
       real(wp) :: curvature, away, correction
-      type(unknown_t) :: before(lbound(e%state%u, 1):ubound(e%state%u, 1))
       logical :: same, crossed(size(e%crossed))
 
       crossed = e%crossed
-      before = e%state%u
       x = values_of(e%blocks, i, e%state)
       v = decomposed(e%blocks, i, e%state)
       direction = v%right(v%n, :)
@@ -196,14 +189,6 @@ contains
       call set_values(e%blocks, i, x + away*direction, e%state)
       c = nothing_gathered
       call solve_each(e, e%moving, .true., c)
-      if (is_solved(c) .and. c%kantorovich_ratio > max_kantorovich_ratio) then
-         y = values_of(e%blocks, i, e%state)
-         e%state%u(:) = before
-         call go_in_parts(1 + int(min(c%kantorovich_ratio/max_part_ratio, real(max_parts, wp))), y - x, found)
-         if (.not. found) return
-         c = nothing_gathered
-         call solve_each(e, e%moving, .true., c)
-      end if
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
       crossed(i) = .not. crossed(i)
@@ -211,27 +196,5 @@ contains
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
          .and. c%open%value <= max_closure_part*abs(curvature)*away**2
       e%history%filled = 0
-
-   contains
-
-      !> The position of what builds on the block, which goes to its other branch, by `way`, in so many `parts`.
-      subroutine go_in_parts(parts, way, is_followed)
-         integer, intent(in) :: parts
-         real(wp), intent(in) :: way(:)
-         logical, intent(out) :: is_followed
-         type(convergence_t) :: one
-         integer :: p, k
-
-         is_followed = .true.
-         do p = 1, parts
-            call set_values(e%blocks, i, x + way*p/parts, e%state)
-            do k = 1, size(e%moving)
-               if (e%moving(k) <= i) cycle
-               call solve_block(e%blocks, e%moving(k), e%tolerance, e%work, e%state, one)
-               is_followed = is_followed .and. is_solved(one) .and. one%kantorovich_ratio <= max_kantorovich_ratio
-               if (.not. is_followed) return
-            end do
-         end do
-      end subroutine go_in_parts
    end subroutine take_other_branch
 end module block_branches

@@ -3,18 +3,19 @@ module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
-      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, &
+      diagnostic_mobile, diagnostic_far_estimate, diagnostic_singular, &
       diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
    use planar, only: without_turns
    use scales, only: is_length
-   use blocks, only: blocks_below
-   use block_rank, only: redundant_rows, moving_unknowns, judge_drives
-   use block_state, only: state_t, largest_drive_rate
+   use blocks, only: blocks_below, largest_known
+   use block_rank, only: redundant_rows, moving_unknowns
+   use block_state, only: largest_drive_rate
    use block_engine, only: block_engine_t, mark_singular_links
-   use singularity, only: judge_blocks
+   use singular_place, only: block_singularity
    implicit none
    private
-   public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, links_of
+   public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, &
+      links_of, judge_blocks
 
    !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
    !> was meant.
@@ -42,10 +43,22 @@ contains
       logical, intent(in) :: singular
       type(diagnostic_t), allocatable :: list(:)
       real(wp) :: off(size(found%position, 2))
-      integer :: k, link
+      type(diagnostic_t) :: r
+      integer, allocatable :: rows(:)
+      integer :: k, link, same
 
       allocate (list(0))
-      if (e%blocks%redundant > 0) list = redundancies(e)
+      if (e%blocks%redundant > 0) then
+         ! Each pair and drive with redundant equations, once, and how many it has.
+         rows = redundant_rows(e%blocks, 1, e%state)
+         do k = size(rows), 1, -1
+            r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
+               drive=e%blocks%rows(rows(k))%drive)
+            same = findloc(list%pair == r%pair .and. list%drive == r%drive, .true., dim=1)
+            if (same > 0) list(same)%equations = list(same)%equations + 1
+            if (same == 0) list = [list, r]
+         end do
+      end if
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             if (e%blocks%list(i)%direct) cycle
@@ -64,40 +77,15 @@ contains
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
 
-   !> Each pair and drive with redundant equations, once, and how many it has.
-   function redundancies(e) result(list)
-      type(block_engine_t), intent(inout) :: e
-      type(diagnostic_t), allocatable :: list(:)
-      type(diagnostic_t) :: r
-      integer, allocatable :: rows(:)
-      integer :: k, found
-
-      allocate (list(0))
-      rows = redundant_rows(e%blocks, 1, e%state)
-      do k = size(rows), 1, -1
-         r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
-            drive=e%blocks%rows(rows(k))%drive)
-         found = findloc(list%pair == r%pair .and. list%drive == r%drive, .true., dim=1)
-         if (found > 0) then
-            list(found)%equations = list(found)%equations + 1
-         else
-            list = [list, r]
-         end if
-      end do
-   end function redundancies
-
-   !> The links of block `i` that can move, and those that are moved by them; and the drives of the block, and of those
-   !> it builds on, that hold nothing, both at the position found and `aside`, where its links can move to.
+   !> The links of block `i` that can move, and those that are moved by them.
    subroutine add_mobility(e, i, list)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      type(state_t) :: aside
       logical, allocatable :: moves(:), moved(:)
-      logical, dimension(size(e%laws)) :: idle, repeated, idle_aside, repeated_aside
       integer :: k
 
-      moves = moving_unknowns(e%blocks, i, e%state, aside)
+      moves = moving_unknowns(e%blocks, i, e%state)
       if (.not. any(moves)) return
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
@@ -108,15 +96,6 @@ contains
          end associate
       end do
       list = [list, new_diagnostic(diagnostic_mobile, moved)]
-
-      ! At one position alone it may be a dead point.
-      call judge_drives(e%blocks, blocks_below(e%blocks, i), e%state, idle, repeated)
-      call judge_drives(e%blocks, blocks_below(e%blocks, i), aside, idle_aside, repeated_aside)
-      do k = 1, size(idle)
-         if (any(list%drive == k .and. (list%kind == diagnostic_idle .or. list%kind == diagnostic_repeated))) cycle
-         if (idle(k) .and. idle_aside(k)) list = [list, diagnostic_t(kind=diagnostic_idle, drive=k)]
-         if (repeated(k) .and. repeated_aside(k)) list = [list, diagnostic_t(kind=diagnostic_repeated, drive=k)]
-      end do
    end subroutine add_mobility
 
    !> (links) Those whose angle is an unknown of block `i`; of a block of slides alone those that slide.
@@ -267,6 +246,24 @@ contains
       r%in_line = is_in_line(e, i, r, e%state%u%value)
       found%singular_links = r
    end subroutine get_link_flags
+
+   !> (blocks) Judges the position that `e` has found last for each block: one of singular_...; -1 if the block is not
+   !> singular, or builds on a singular one and so has no right-hand side of its own.
+   function judge_blocks(e) result(found)
+      type(block_engine_t), intent(in) :: e
+      integer :: found(size(e%blocks%list))
+      integer :: missing(0:e%blocks%unknowns), before, k
+
+      found = -1
+      missing = 0
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k), b => e%blocks%list(e%needed(k)))
+            before = largest_known(e%blocks, i, missing)
+            if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, i, e%state)
+            missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
+         end associate
+      end do
+   end function judge_blocks
 
    !> A diagnostic for each block that has its change point at the instant `t`, at which the motion found last has no
    !> velocities: each of the two branches has its own. None if a block is singular there in another way.

@@ -171,8 +171,7 @@ contains
          if (.not. allocated(e%choice)) allocate (e%choice(n), e%starts(n))
       end associate
       e%choice = choice_t()
-      ! Pivots of another variant would leave other roundings.
-      if (.not. allocated(e%work%a) .or. size(e%blocks%patterns) > 0) e%work = new_workspace(e%blocks)
+      if (.not. allocated(e%work%a)) e%work = new_workspace(e%blocks)
    end subroutine begin_state
 
    !> The estimate that `m` gives.

@@ -1,18 +1,16 @@
 !> The rank of a block's Jacobian by its singular values (DGESVD), where equations are too many or where it has no
-!> inverse: redundant equations, unknowns that can still move, and drives that hold nothing.
-!>
-!> With y J = 0 the equations in y depend on one another. Where y holds one drive alone, the pairs already fix its
-!> value: it moves nothing, it is idle. Where y holds several, the last of them adds nothing to the others.
+!> inverse: redundant equations, and unknowns that can still move. With y J = 0 the equations in y depend on one
+!> another.
 module block_rank
    use kinds, only: wp
    use lapack, only: geqrf, getrf, gesvd, ormqr
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
-   use block_equations, only: find_known_parts, assemble_dense, right_hand_side
+   use block_equations, only: assemble_dense
    implicit none
    private
    public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, residual_of, &
-      curvature_of, gauss_newton_step, judge_drives
+      curvature_of, gauss_newton_step
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -23,8 +21,8 @@ module block_rank
    real(wp), parameter, public :: difference = sqrt(sqrt(epsilon(1.0_wp)))
    !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
-   !> The decompositions take the cube of these numbers of operations: of a block, and of blocks with all they need.
-   integer, parameter :: max_rows = 1500, max_unknowns = 600
+   !> The decompositions take the cube of this number of operations.
+   integer, parameter :: max_rows = 1500
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: values_t
@@ -39,15 +37,16 @@ module block_rank
 contains
 
    !> The rows of block `i`, counted in b%rows, that could be spared at the position of `s`: of those that depend on one
-   !> another the last ones of the deck. Pairs go before drives.
+   !> another the last ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left
+   !> null vectors, its rows taken in that order.
    function redundant_rows(b, i, s) result(list)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       integer, allocatable :: list(:)
       type(values_t) :: v
-      integer, allocatable :: order(:), pivot(:)
-      integer :: k, n
+      integer, allocatable :: order(:)
+      integer :: k, n, c, at
 
       allocate (list(0), order(0))
       if (b%list(i)%shape%rows > max_rows) return
@@ -60,37 +59,21 @@ contains
             order = [order, pack([(k, k=1, size(rows))], rows%pair == 0 .and. rows%drive == n)]
          end do
       end associate
-      associate (null => v%left(:, v%rank + 1:))
-         call find_pivots(order, null, pivot)
-      end associate
-      list = pack(b%list(i)%first_row + order - 1, pivot(order) > 0)
-   end function redundant_rows
-
-   !> Gauss's elimination of the columns of `y` (rows, any number), the rows taken in the `order`: `pivot` (rows) is the
-   !> column that has a row as its pivot, with 1 where all others have 0; 0 of rows that are no pivot.
-   subroutine find_pivots(order, y, pivot)
-      integer, intent(in) :: order(:)
-      real(wp), intent(inout) :: y(:, :)
-      integer, allocatable, intent(out) :: pivot(:)
-      integer :: c, i, k, at
-
-      allocate (pivot(size(y, 1)), source=0)
-      c = 1
-      do i = 1, size(order)
-         if (c > size(y, 2)) return
-         associate (row => order(i))
-            at = c - 1 + maxloc(abs(y(row, c:)), dim=1)
-            if (abs(y(row, at)) <= zero_level) cycle
-            pivot(row) = c
+      associate (y => v%left)
+         c = v%rank + 1
+         do k = 1, size(order)
+            if (c > v%rows) exit
+            at = c - 1 + maxloc(abs(y(order(k), c:)), dim=1)
+            if (abs(y(order(k), at)) <= zero_level) cycle
+            list = [list, b%list(i)%first_row + order(k) - 1]
             y(:, [c, at]) = y(:, [at, c])
-            y(:, c) = y(:, c)/y(row, c)
-            do k = 1, size(y, 2)
-               if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(row, k)
+            do n = c + 1, v%rows
+               y(:, n) = y(:, n) - y(:, c)*(y(order(k), n)/y(order(k), c))
             end do
-         end associate
-         c = c + 1
-      end do
-   end subroutine find_pivots
+            c = c + 1
+         end do
+      end associate
+   end function redundant_rows
 
    !> (unknowns of block `i`) Those that can move although everything the block builds on stands still. The block is
    !> moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a dead
@@ -221,7 +204,8 @@ contains
       type(state_t), intent(inout) :: s
       type(values_t) :: v
       real(wp), allocatable :: a(:)
-      integer :: k
+      real(wp) :: work(8*(b%list(i)%shape%rows + b%list(i)%shape%n) + 64)
+      integer :: k, info
 
       v%rows = b%list(i)%shape%rows
       v%n = b%list(i)%shape%n
@@ -234,107 +218,9 @@ contains
          return
       end if
       call assemble_dense(b, i, s, a, v%r)
-      ! A block of one unknown has nothing but its own body vectors to be compared with.
-      call decompose(a, b%numbers%blocks(i)%lipschitz, v)
-   end function decomposed
-
-   !> Singular values and vectors of `a` (v%rows*v%n), of which those count as zero that are small beside the largest
-   !> and beside `scale`.
-   subroutine decompose(a, scale, v)
-      real(wp), intent(inout) :: a(*)
-      real(wp), intent(in) :: scale
-      type(values_t), intent(inout) :: v
-      real(wp) :: work(8*(v%rows + v%n) + 64)
-      integer :: info
-
       allocate (v%s(min(v%rows, v%n)), v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
-      v%rank = count(v%s > zero_level*max(v%s(1), scale, tiny(1.0_wp)))
-   end subroutine decompose
-
-   !> Which drives (drives) with an equation in the blocks `list`, in solving order and with all they build on, hold
-   !> nothing at the position of `s`: `idle`, or nothing but what other drives hold already: `repeated`.
-   subroutine judge_drives(b, list, s, idle, repeated)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
-      type(state_t), intent(in) :: s
-      logical, intent(out) :: idle(:), repeated(:)
-      real(wp), allocatable :: a(:, :), y(:, :)
-      integer, allocatable :: drive_of(:), pivot(:)
-      type(values_t) :: v
-      integer :: d, k
-
-      idle = .false.
-      repeated = .false.
-      if (sum(b%list(list)%last - b%list(list)%first + 1) > max_unknowns) return
-      call fill(a, drive_of)
-      v%rows = size(a, 1)
-      v%n = size(a, 2)
-      call decompose(a, 0.0_wp, v)
-      ! The components of drives in the left null vectors, as columns (drives, vectors).
-      allocate (y(size(idle), v%rows - v%rank), source=0.0_wp)
-      do k = 1, v%rows
-         if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
-      end do
-      call find_pivots([(d, d=size(idle), 1, -1)], y, pivot)
-      do d = 1, size(idle)
-         if (pivot(d) == 0) cycle
-         repeated(d) = count(abs(y(:, pivot(d))) > zero_level) > 1
-         idle(d) = .not. repeated(d)
-      end do
-
-   contains
-
-      !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's). The
-      !> coefficients of an unknown of an earlier block are what its rate 1 alone leaves to the rates of a block.
-      subroutine fill(a, drive_of)
-         real(wp), allocatable, intent(out) :: a(:, :)
-         integer, allocatable, intent(out) :: drive_of(:)
-         type(state_t) :: unit
-         real(wp), allocatable :: own(:), r(:)
-         integer, allocatable :: unknowns(:)
-         integer :: column(0:b%unknowns), row, n, k, c
-
-         unit = s
-         unit%u%rate = 0.0_wp
-         unit%drive_value = 0.0_wp
-         allocate (unknowns(0), drive_of(0))
-         do k = 1, size(list)
-            associate (block => b%list(list(k)))
-               unknowns = [unknowns, b%unknown(block%first:block%last)]
-               drive_of = [drive_of, b%rows(block%first_row:block%last_row)%drive]
-            end associate
-         end do
-         column = 0
-         column(unknowns) = [(c, c=1, size(unknowns))]
-         allocate (a(size(drive_of), size(unknowns)), source=0.0_wp)
-         row = 0
-         n = 0
-         do k = 1, size(list)
-            associate (block => b%list(list(k)), rows => b%list(list(k))%last_row - b%list(list(k))%first_row + 1, &
-               width => b%list(list(k))%last - b%list(list(k))%first + 1)
-               if (block%direct) then
-                  a(row + 1, n + 1) = 1.0_wp
-                  c = column(b%rows(block%first_row)%other)
-                  if (c > 0) a(row + 1, c) = -1.0_wp
-               else
-                  allocate (own(rows*width), r(rows))
-                  call find_known_parts(b, list(k), unit)
-                  call assemble_dense(b, list(k), unit, own, r)
-                  a(row + 1:row + rows, n + 1:n + width) = reshape(own, [rows, width])
-                  do c = 1, n
-                     unit%u(unknowns(c))%rate = 1.0_wp
-                     call find_known_parts(b, list(k), unit)
-                     call right_hand_side(b, list(k), 1, unit, r)
-                     a(row + 1:row + rows, c) = -r
-                     unit%u(unknowns(c))%rate = 0.0_wp
-                  end do
-                  deallocate (own, r)
-               end if
-               row = row + rows
-               n = n + width
-            end associate
-         end do
-      end subroutine fill
-   end subroutine judge_drives
+      ! A block of one unknown has nothing but its own body vectors to be compared with.
+      v%rank = count(v%s > zero_level*max(v%s(1), b%numbers%blocks(i)%lipschitz, tiny(1.0_wp)))
+   end function decomposed
 end module block_rank

@@ -6,35 +6,9 @@ module block_sizes
    use block_state, only: state_t
    implicit none
    private
-   public :: largest_rates, rounded_sizes, second_order_bounds, find_driven
-
-   !> A drive whose speed takes it no further than this before it turns, in rad or lengths, is at rest.
-   real(wp), parameter :: standstill = 64.0_wp*epsilon(1.0_wp)
+   public :: rounded_sizes, second_order_bounds
 
 contains
-
-   !> The largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides, drives,
-   !> known or not.
-   pure function largest_rates(b, i, s) result(largest)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp) :: largest(2)
-      integer, allocatable :: u(:)
-      integer :: k, m
-
-      largest = 0.0_wp
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            u = [g%orientation, g%less, b%body_vectors(g%first_vector:g%last_vector)%orientation, &
-               b%slides(g%first_slide:g%last_slide)%orientation, b%slides(g%first_slide:g%last_slide)%unknown]
-         end associate
-         largest = max(largest, [maxval(abs(s%u(u)%rate)), maxval(abs(s%u(u)%acceleration))])
-      end do
-   end function largest_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
    pure function rounded_sizes(b, i, s) result(sizes)
@@ -101,58 +75,4 @@ contains
          end associate
       end do
    end function second_order_bounds
-
-   !> The largest `speed`, in lengths of its loop or rad by time, and the largest `angle` (rad) that drives and earlier
-   !> blocks give to block `i`.
-   subroutine find_driven(b, i, s, speed, angle)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp), intent(out) :: speed, angle
-      integer :: k, m
-
-      speed = 0.0_wp
-      angle = 0.0_wp
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         associate (d => b%rows(k)%drive)
-            speed = max(speed, speed_of(s%drive_value(1, d), s%drive_value(2, d)))
-            if (b%rows(k)%angular) angle = max(angle, abs(s%drive_value(0, d)))
-         end associate
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            do k = g%first_vector, g%first_own - 1
-               call take(b%body_vectors(k)%orientation, hypot(b%numbers%d(k)%x, b%numbers%d(k)%y))
-            end do
-            do k = g%first_slide, g%last_slide
-               associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown))
-                  if (slide%column == 0) speed = max(speed, speed_of(u%rate, u%acceleration))
-                  if (slide%orientation_column == 0) call take(slide%orientation, abs(u%value))
-               end associate
-            end do
-            if (g%orientation_column == 0) call take(g%orientation, 1.0_wp)
-            if (g%less_column == 0) call take(g%less, 1.0_wp)
-         end associate
-      end do
-
-   contains
-
-      !> Angle number `u` of an earlier block, which turns an arm of this length.
-      subroutine take(u, arm)
-         integer, intent(in) :: u
-         real(wp), intent(in) :: arm
-
-         speed = max(speed, arm*speed_of(s%u(u)%rate, s%u(u)%acceleration))
-         angle = max(angle, abs(s%u(u)%value))
-      end subroutine take
-   end subroutine find_driven
-
-   !> The amount of `rate`; 0 at rest, and where rounding alone tells it from the turning point of a motion with this
-   !> `acceleration`: it has rate**2/(2 acceleration) to go to that.
-   pure real(wp) function speed_of(rate, acceleration) result(speed)
-      real(wp), intent(in) :: rate, acceleration
-
-      speed = 0.0_wp
-      if (rate**2 > standstill*abs(acceleration)) speed = abs(rate)
-   end function speed_of
 end module block_sizes

@@ -12,16 +12,14 @@
 !> them could be spared changes along the motion. By how much they contradict one another is the closure error.
 module block_solver
    use kinds, only: wp
-   use klu, only: klu_t
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
-      entries_of, work_length
-   use nearby_matrix, only: nearby_t, solve_nearby, stay_near
+      entries_of, work_length, nearby_t, solve_nearby, stay_near
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
+      ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
    use blocks, only: blocks_t, block_t, block_numbers_t
-   use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_derivatives
+   use block_state, only: unknown_t, state_t, set_direction, find_direction, set_derivatives
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
-   use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
+   use block_sizes, only: rounded_sizes, second_order_bounds
    implicit none
    private
    public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations
@@ -49,13 +47,11 @@ module block_solver
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
    !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
-   !> and first values; room for the widest block. Nothing in it outlives the solution of a block but the pivots of
-   !> sparse Jacobians, which save time and decide nothing.
+   !> and first values; room for the widest block. Nothing in it outlives the solution of a block.
    type :: workspace_t
       real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
-      type(klu_t), allocatable :: sparse(:)       !< (0:patterns) the factors of sparse Jacobians
    end type workspace_t
 
 contains
@@ -64,17 +60,13 @@ contains
    pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
       type(workspace_t) :: w
-      integer :: entries, rows, length, k
+      integer :: entries, rows, length
 
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
       allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
-      allocate (w%sparse(0:size(b%patterns)))
-      do k = 1, size(b%patterns)
-         w%sparse(k)%pattern = b%patterns(k)
-      end do
    end function new_workspace
 
    !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
@@ -126,7 +118,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of, rates(2)
+      real(wp) :: before, size_of, rate, acceleration
       integer :: info, iteration, second, side, k
       logical :: is_closed, is_right
 
@@ -155,7 +147,7 @@ contains
          if (w%near%distance > 0.0_wp) then
             call solve_nearby(w%near, w%r(side))
          else
-            call solve_first(block%shape, w%a, w%pivots, w%work, w%r(side), info, w%sparse(block%shape%pattern))
+            call solve_first(block%shape, w%a, w%pivots, w%work, w%r(side), info, b%patterns)
          end if
          if (is_closed) then
             c%step = 0.0_wp
@@ -196,19 +188,23 @@ contains
 
       ! Velocities and accelerations, unless equations contradict one another or the Jacobian is near to having no
       ! inverse.
-      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
-      if (c%ended == ended_inconsistent) return
+      if (block%shape%rows > block%shape%n .and. c%open%value > inconsistent_level*c%open%level) then
+         c%ended = ended_inconsistent
+         return
+      end if
       if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
       if (c%singular) return
       call set_derivatives(1, block%first, block%last, b%unknown, w%r(second), s%u)
       call right_hand_side(b, i, 2, s, w%r)
       call solve_next_side(block%shape, w, w%r)
       call set_derivatives(2, block%first, block%last, b%unknown, w%r, s%u)
-      associate (rows => block%shape%rows, n => block%shape%n)
-         if (rows == n) return
-         rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
+      if (block%shape%rows == block%shape%n) return
+      ! Nothing but drives and its own unknowns goes into the block of equations that are too many.
+      associate (rows => block%shape%rows, n => block%shape%n, u => b%unknown(block%first:block%last))
+         rate = maxval(abs([s%u(u)%rate, s%drive_value(1, :)]))
+         acceleration = maxval(abs([s%u(u)%acceleration, s%drive_value(2, :)]))
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rate, numbers%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(acceleration, rate**2), numbers%coarse)
       end associate
    end subroutine solve_equations
 
@@ -221,7 +217,7 @@ contains
       if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
       else
-         call solve_again(shape, w%a, w%pivots, w%work, v, w%sparse(shape%pattern))
+         call solve_again(shape, w%a, w%pivots, w%work, v)
       end if
    end subroutine solve_next_side
 
@@ -255,7 +251,7 @@ contains
       real(wp), intent(in) :: step, tolerance
       real(wp), intent(out) :: size_of
       logical, intent(out) :: is_right
-      real(wp) :: own
+      real(wp) :: own, c
       integer :: k
 
       size_of = 1.0_wp
@@ -266,10 +262,12 @@ contains
             own = max(1.0_wp, abs(s%u(u)%value))
             size_of = max(size_of, own)
             is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, numbers%coarse), tolerance)
-            if (step <= small_turn) then
-               call rotate_direction(b, u, -d(k), s)
-            else
+            if (step > small_turn) then
                call set_direction(b, u, s)
+            else if (u <= b%orientations) then
+               c = s%u(u)%c
+               s%u(u)%c = c + d(k)*s%u(u)%s
+               s%u(u)%s = s%u(u)%s - d(k)*c
             end if
          end associate
       end do
@@ -304,10 +302,10 @@ contains
       logical :: suspicious
 
       n = block%shape%n
-      call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, w%sparse(block%shape%pattern))
+      call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant)
       if (block%shape%pattern > 0) then
          ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork, w%sparse(block%shape%pattern))
+         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
          least = 1.0_wp/inverse
       end if
       c%min_pivot = 1.0_wp
@@ -347,10 +345,8 @@ contains
       real(wp) :: off(n), more(n)
 
       associate (shape => b%list(i)%shape)
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off, &
-            w%sparse(shape%pattern))
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more, &
-            w%sparse(shape%pattern))
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off)
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more)
       end associate
       is = .not. all(more < largest_error*off)
    end function is_beyond_linear

@@ -6,7 +6,7 @@ module block_state
    use blocks, only: blocks_t, loop_angles
    implicit none
    private
-   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, rotate_direction, set_values, &
+   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, set_values, &
       set_derivatives, values_of, given, add_turns, largest_drive_rate
 
    !> Values alone: no factors, no scratch.
@@ -47,20 +47,6 @@ contains
       f%c = cos(f%value)
       f%s = sin(f%value)
    end subroutine find_direction
-
-   !> Cosine and sine of unknown `u` after a change `d` (rad) so small that its square is below rounding.
-   pure subroutine rotate_direction(b, u, d, s)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
-      real(wp), intent(in) :: d
-      type(state_t), intent(inout) :: s
-      real(wp) :: c
-
-      if (u > b%orientations) return
-      c = s%u(u)%c
-      s%u(u)%c = c - d*s%u(u)%s
-      s%u(u)%s = s%u(u)%s + d*c
-   end subroutine rotate_direction
 
    !> Gives the unknowns of block `i` the values `x` (n).
    pure subroutine set_values(b, i, x, s)

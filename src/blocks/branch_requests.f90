@@ -42,7 +42,8 @@ contains
    end function new_branch_requests
 
    !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
-   !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended.
+   !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended. Of the cards not used
+   !> yet that name one of the links, or none, that counts whose time was passed first on the way there.
    pure subroutine decide(c, block, links, before, t, at, other)
       type(branch_requests_t), intent(inout) :: c
       integer, intent(in) :: block
@@ -50,7 +51,7 @@ contains
       real(wp), intent(in) :: before, t, at
       logical, intent(out) :: other
       real(wp) :: way, here
-      integer :: i
+      integer :: i, best
 
       do i = 1, size(c%branch_switches)
          associate (p => c%branch_switches(i))
@@ -61,20 +62,6 @@ contains
       way = sign(1.0_wp, t - before)
       here = at
       if (allocated(c%stood_until)) here = way*max(way*at, way*c%stood_until)
-      i = card_for(c, links, way, here, abs(t - before))
-      other = i > 0
-      if (other) c%used(i) = .true.
-      c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
-   end subroutine decide
-
-   !> Finds, of the cards not used yet that name one of the `links`, or none, that whose time was passed first on
-   !> the way in the `direction` to `at`, known to `width`; or 0.
-   pure integer function card_for(c, links, direction, at, width) result(best)
-      type(branch_requests_t), intent(in) :: c
-      logical, intent(in) :: links(:)
-      real(wp), intent(in) :: direction, at, width
-      integer :: i
-
       best = 0
       do i = 1, size(c%cards)
          associate (card => c%cards(i))
@@ -82,12 +69,15 @@ contains
             if (card%link > 0) then
                if (.not. links(card%link)) cycle
             end if
-            if (direction*(card%t - at) > width + digits_of_time*max(abs(card%t), abs(at))) cycle
+            if (way*(card%t - here) > abs(t - before) + digits_of_time*max(abs(card%t), abs(here))) cycle
             if (best > 0) then
-               if (direction*(card%t - c%cards(best)%t) >= 0.0_wp) cycle
+               if (way*(card%t - c%cards(best)%t) >= 0.0_wp) cycle
             end if
             best = i
          end associate
       end do
-   end function card_for
+      other = best > 0
+      if (other) c%used(best) = .true.
+      c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
+   end subroutine decide
 end module branch_requests

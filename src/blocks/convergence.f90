@@ -7,7 +7,7 @@ module convergence
    private
    public :: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
-      note_closure_error, is_inconsistent, contradict
+      note_closure_error, contradict
 
    !> The largest change of a predicted position over the distance of the next root, by the Jacobian and its Lipschitz
    !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
@@ -16,7 +16,7 @@ module convergence
    !> Closure errors that differ by less than this part are alike.
    real(wp), parameter :: alike = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
-   real(wp), parameter :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
+   real(wp), parameter, public :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
    !> Rates may by this part of them, which a condition makes larger.
    real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
    !> Beside what is known the body vectors of a loop may be so short that rounding opens it by more: by so many
@@ -132,13 +132,6 @@ contains
          end associate
       end do
    end subroutine note_closure_error
-
-   !> The closure error of `c` is more than rounding.
-   pure logical function is_inconsistent(c)
-      type(convergence_t), intent(in) :: c
-
-      is_inconsistent = c%open%value > inconsistent_level*c%open%level
-   end function is_inconsistent
 
    !> Equations that leave `open` of their rates contradict one another; `size_of`: numbers of this size have gone into
    !> them; `coarse`: of the block.

@@ -11,18 +11,21 @@ module levenberg_marquardt
    use block_rank, only: residual_of
    implicit none
    private
-   public :: levenberg_marquardt_solve
+   public :: levenberg_marquardt_solve, find_closure_error
 
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
    !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
    real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
-   !> Shorter ones are rounding.
+   !> With a residual below the first no other start is tried; below the second there is nothing to correct. Shorter
+   !> steps than the third are rounding.
+   real(wp), parameter :: near = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   real(wp), parameter :: closed = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
    real(wp), parameter :: min_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
    integer, parameter :: max_iterations = 200
-   !> Starts: the initial estimate, then others around it, where that ends in a local minimum.
-   integer, parameter :: max_starts = 12
+   !> Starts: the values given, then others around them, where these end in a local minimum.
+   integer, parameter :: starts = 6
    !> Multiples of it, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: larger blocks are left as they are.
@@ -34,54 +37,56 @@ module levenberg_marquardt
 
 contains
 
-   !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
-   !> it is smallest, and `c` has the pair or drive that is open the most there, and its closure error as `open_alone`
-   !> finds it. `reached`: the residual is at most `near`.
-   subroutine levenberg_marquardt_solve(b, i, near, s, c, reached)
+   !> Brings block `i` from the values of `s` to where the sum of the squares of its residuals is least.
+   subroutine levenberg_marquardt_solve(b, i, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: near
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c
-      logical, intent(out) :: reached
       real(wp), dimension(b%list(i)%shape%n) :: start, best
-      real(wp) :: weights(b%list(i)%shape%rows), least, found
+      real(wp) :: least, square
       integer :: k
 
-      reached = .false.
-      if (size(start) == 0 .or. size(start) > max_unknowns) return
-      start = values_of(b, i, s)
+      if (.not. serves(b, i)) return
       call find_known_parts(b, i, s)
+      start = values_of(b, i, s)
       best = start
-      weights = 1.0_wp
       least = huge(least)
-      do k = 0, max_starts - 1
+      do k = 0, starts - 1
          call set_values(b, i, around(start, k), s)
-         call descend(b, i, near, weights, s, found)
-         if (found < least) then
-            least = found
-            best = values_of(b, i, s)
-         end if
-         if (least <= near) exit
+         call descend(b, i, spread(1.0_wp, 1, b%list(i)%shape%rows), s)
+         square = sum(residual_of(b, i, values_of(b, i, s), s)**2)
+         if (square < least) best = values_of(b, i, s)
+         least = min(least, square)
+         if (least <= near**2) exit
       end do
-      call note_closure_error(b, i, residual_of(b, i, best, s), c)
-      reached = least <= near
-      ! Redundant equations share what is lacking.
-      if (.not. reached .and. size(weights) <= size(best)) call open_alone(b, i, near, best, s, c)
+      call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> Puts into `c` by how much its pair or drive is open at least while all others of block `i` are closed; 0: no such
-   !> position is found. The values of `s` are `best` (n), before and after.
-   subroutine open_alone(b, i, near, best, s, c)
+   !> The sum of squares is sought of block `i`.
+   pure logical function serves(b, i)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: near, best(:)
+
+      serves = b%list(i)%shape%n > 0 .and. b%list(i)%shape%n <= max_unknowns
+   end function serves
+
+   !> Puts into `c` the pair or drive of block `i` that is open the most where the sum of squares is least, as in `s`,
+   !> and by how much that one is open at least while all others are closed; 0: no such position is found. Of equations
+   !> that are too many: its part of the least sum, since they share what is lacking.
+   subroutine find_closure_error(b, i, s, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       type(convergence_t) :: one
       logical :: own(0:b%list(i)%shape%rows)
-      real(wp) :: r(b%list(i)%shape%rows), found
+      real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
       integer :: k, m
+
+      if (.not. serves(b, i)) return
+      best = values_of(b, i, s)
+      call note_closure_error(b, i, residual_of(b, i, best, s), c)
+      if (size(r) > size(best)) return
 
       c%open%value = 0.0_wp
       if (size(best) > max_alone) return
@@ -92,18 +97,17 @@ contains
                own([g%row_x, g%row_y]) = .true.
          end associate
       end do
-      do k = 0, max_starts - 1, 2
+      do k = 0, starts - 1
          call set_values(b, i, around(best, k), s)
          do m = 1, size(stiff)
-            call descend(b, i, near, merge(1.0_wp, stiff(m), own(1:)), s, found)
+            call descend(b, i, merge(1.0_wp, stiff(m), own(1:)), s)
          end do
          r = residual_of(b, i, values_of(b, i, s), s)
          call note_closure_error(b, i, r, one)
          if (any(.not. own(1:) .and. .not. stiff(2)*abs(r) <= one%open%value)) cycle
          if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
       end do
-      call set_values(b, i, best, s)
-   end subroutine open_alone
+   end subroutine find_closure_error
 
    !> Start number `k` around `x`: off by nothing at first, then by more and more, up to half a turn.
    pure function around(x, k) result(y)
@@ -112,21 +116,19 @@ contains
       real(wp) :: y(size(x))
       integer :: m
 
-      y = [(2.0_wp*modulo(golden*real(k*size(x) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(x))]
-      y = x + 3.0_wp*real(k, wp)/real(max_starts, wp)*y
+      y = [(2.0_wp*modulo(golden*real(2*k*size(x) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(x))]
+      y = x + 3.0_wp*real(k, wp)/real(starts, wp)*y
    end function around
 
-   !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`;
-   !> `found`: the largest of these products at the end.
-   subroutine descend(b, i, near, weights, s, found)
+   !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`.
+   subroutine descend(b, i, weights, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: near, weights(:)
+      real(wp), intent(in) :: weights(:)
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: found
       type(shape_t) :: damped                     ! the Jacobian with a row more for each unknown
       real(wp) :: x(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(x)), d(size(r) + size(x)), &
-         a(size(d), size(x)), damping, square, step
+         a(size(d), size(x)), damping, square, step, largest
       real(wp), allocatable :: work(:)
       integer :: pivots(size(x)), iteration, k, info
 
@@ -135,8 +137,8 @@ contains
       damping = first_damping
       call assemble_dense(b, i, s, jacobian, r)
       do iteration = 1, max_iterations
-         found = maxval(weights*abs(r))
-         if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
+         largest = maxval(weights*abs(r))
+         if (largest <= closed .or. damping > max_damping .or. .not. largest <= bound) exit
          square = sum((weights*r)**2)
          x = values_of(b, i, s)
 
@@ -163,6 +165,5 @@ contains
             call assemble_dense(b, i, s, jacobian, r)
          end if
       end do
-      found = maxval(weights*abs(r))
    end subroutine descend
 end module levenberg_marquardt

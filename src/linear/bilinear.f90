@@ -6,7 +6,7 @@ module bilinear
    use kinds, only: wp
    implicit none
    private
-   public :: bilinear_t, path_start_t, kept_start_t, path_end_t, ends_t, solve_quadratic, path_count, finiteness, &
+   public :: bilinear_t, path_start_t, kept_start_t, path_end_t, ends_t, solve_quadratic, find_null_space, finiteness, &
       infinity_level, rounding
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
@@ -51,17 +51,6 @@ module bilinear
    real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*rounding)
 
 contains
-
-   !> C(2p, p).
-   pure integer function path_count(p)
-      integer, intent(in) :: p
-      integer :: k
-
-      path_count = 1
-      do k = 1, p
-         path_count = path_count*(p + k)/k
-      end do
-   end function path_count
 
    !> How far (x, y) is from infinity: 0 there, about 1 where no coordinate is large.
    pure real(dp) function finiteness(b, x, y)
@@ -119,4 +108,45 @@ contains
          end if
       end do
    end subroutine solve_quadratic
+
+   !> The null space of `a` (rows, columns): `basis` (columns, any number). Complete pivoting over the columns from 2
+   !> on, the first one last of all; what is below `level` of the largest element counts as zero.
+   pure subroutine find_null_space(a, level, basis)
+      complex(wp), intent(in) :: a(:, :)
+      real(wp), intent(in) :: level
+      complex(wp), allocatable, intent(out) :: basis(:, :)
+      complex(wp) :: w(size(a, 1), size(a, 2)), row(size(a, 2))
+      real(wp) :: left(size(a, 1), size(a, 2)), zero
+      integer :: pivot_column(size(a, 1)), at(2), rank, k, i, free
+      logical :: is_free(size(a, 2))
+
+      w = a
+      is_free = .true.
+      rank = 0
+      zero = level*maxval([0.0_wp, abs(a)])
+      do k = 1, min(size(a, 1), size(a, 2))
+         left = merge(abs(w), 0.0_wp, spread(is_free, 1, size(a, 1)))
+         left(:k - 1, :) = 0.0_wp
+         if (maxval(left(:, 2:)) > zero) left(:, 1) = 0.0_wp
+         if (maxval(left) <= zero) exit
+         at = maxloc(left)
+         rank = k
+         row = w(at(1), :)/w(at(1), at(2))
+         w(at(1), :) = w(k, :)
+         w(k, :) = row
+         pivot_column(k) = at(2)
+         is_free(at(2)) = .false.
+         do i = 1, size(a, 1)
+            if (i /= k) w(i, :) = w(i, :) - w(i, at(2))*w(k, :)
+         end do
+      end do
+      allocate (basis(size(a, 2), size(a, 2) - rank), source=(0.0_wp, 0.0_wp))
+      k = 0
+      do free = 1, size(a, 2)
+         if (.not. is_free(free)) cycle
+         k = k + 1
+         basis(free, k) = 1.0_wp
+         basis(pivot_column(:rank), k) = -w(:rank, free)
+      end do
+   end subroutine find_null_space
 end module bilinear

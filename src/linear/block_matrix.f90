@@ -5,11 +5,11 @@
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, geqrf, ormqr, trtrs, lacn2
-   use klu, only: klu_t, klu_serves, factor, solve, determinant_sign
+   use klu, only: pattern_t, klu_serves, factor, solve, determinant_sign
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
-   public :: inverse_norm_of_two, spread_by_inverse
+   public :: spread_by_inverse, nearby_t, stay_near, solve_nearby
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -21,6 +21,20 @@ module block_matrix
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
    !> Columns that DGEQRF takes together.
    integer, parameter :: panel = 32
+
+   !> The matrix of a block of two unknowns beside one that is factored: so near that its equations are solved by the
+   !> factors there are. In steps of some degrees that saves a second DGESV, a sixth of the step.
+   type :: nearby_t
+      real(wp) :: a(4) = 0.0_wp                  !< the matrix, by columns
+      real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
+      real(wp) :: inverse(4) = 0.0_wp            !< of the other, by columns
+      real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, A0 being factored; 0: `a` is not in use
+   end type nearby_t
+
+   !> A matrix that differs from the factored one by more than this part is factored itself.
+   real(wp), parameter :: max_distance = 1.0e-4_wp
+   !> A relative error below this is lost in that of a factorization.
+   real(wp), parameter :: lost = 0.125_wp*epsilon(1.0_wp)
 
 contains
 
@@ -48,21 +62,21 @@ contains
    end function work_length
 
    !> Solves `a` x = `b` (rows); the first n of `b` become x, `a` its factors where it is dense. `info` > 0: exactly
-   !> singular. `pivots` (n), `work` (work_length), and `k`, of its pattern, where it is sparse: to be kept for the
-   !> calls that follow.
-   subroutine solve_first(s, a, pivots, work, b, info, k)
+   !> singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. Of sparse matrices, each of
+   !> one of the `patterns`, only the factors of the last one are kept.
+   subroutine solve_first(s, a, pivots, work, b, info, patterns)
       type(shape_t), intent(in) :: s
       real(wp), intent(inout) :: a(*), work(*), b(*)
       integer, intent(out) :: pivots(*), info
-      type(klu_t), intent(inout), optional :: k
+      type(pattern_t), intent(in), optional :: patterns(:)
       integer :: i
 
       info = 0
       if (s%pattern == 0 .and. s%rows == s%n .and. s%n > 1) then
          call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       else if (s%pattern > 0) then
-         call factor(k, a, info)
-         if (info == 0) call solve(k, b, .false.)
+         call factor(patterns(s%pattern), a, info)
+         if (info == 0) call solve(b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
@@ -79,12 +93,11 @@ contains
    end subroutine solve_first
 
    !> Solves for another right-hand side, from the factors.
-   subroutine solve_again(s, a, pivots, work, b, k)
+   subroutine solve_again(s, a, pivots, work, b)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*), b(*)
-      type(klu_t), intent(inout), optional :: k
       integer :: info
 
       if (s%n == 2 .and. s%rows == 2) then
@@ -96,7 +109,7 @@ contains
          b(1) = b(1) - b(2)*a(3)
          if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
       else if (s%pattern > 0) then
-         call solve(k, b, .false.)
+         call solve(b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
          call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
@@ -109,13 +122,12 @@ contains
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
    !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
-   subroutine pivot_range(s, a, pivots, least, largest, sign_of, k)
+   subroutine pivot_range(s, a, pivots, least, largest, sign_of)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(out) :: least, largest
       integer, intent(out) :: sign_of
-      type(klu_t), intent(in), optional :: k
       real(wp) :: pivot
       integer :: i
 
@@ -123,7 +135,7 @@ contains
       if (s%pattern > 0) then
          least = 0.0_wp
          largest = maxval(abs(a(:s%entries)))
-         sign_of = determinant_sign(k)
+         sign_of = determinant_sign()
          return
       end if
       least = huge(least)
@@ -139,20 +151,20 @@ contains
 
    !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2); `iwork` (n).
    !> `work` keeps what the next solve_again needs.
-   real(wp) function inverse_norm(s, a, pivots, work, iwork, k) result(norm)
+   real(wp) function inverse_norm(s, a, pivots, work, iwork) result(norm)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       integer, intent(inout) :: iwork(*)
-      type(klu_t), intent(inout), optional :: k
       integer :: asks, state(3), info
 
       if (s%rows == 1) then
          norm = 1.0_wp/abs(a(1))
          return
       else if (s%rows == 2 .and. s%n == 2) then
-         norm = inverse_norm_of_two(a)
+         ! By l = a(2) and u = a(1), a(3), a(4): columns are swapped by the pivots, row sums are not.
+         norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
          return
       end if
       asks = 0
@@ -169,7 +181,7 @@ contains
                else if (s%pattern == 0) then
                   call getrs(side, s%n, 1, a, s%n, pivots, x, s%n, info)
                else
-                  call solve(k, x, transposed=asks == 1)
+                  call solve(x, transposed=asks == 1)
                end if
             end associate
          end associate
@@ -177,23 +189,14 @@ contains
       if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
-   !> Computes that norm of the inverse for two unknowns, from the factors l = `a`(2), u = a(1), a(3), a(4): columns
-   !> are swapped by the pivots, row sums are not.
-   pure real(wp) function inverse_norm_of_two(a) result(norm)
-      real(wp), intent(in) :: a(4)
-
-      norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
-   end function inverse_norm_of_two
-
    !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
-   subroutine spread_by_inverse(s, a, pivots, work, h, spread, k)
+   subroutine spread_by_inverse(s, a, pivots, work, h, spread)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       real(wp), intent(in) :: h(:)
       real(wp), intent(out) :: spread(:)
-      type(klu_t), intent(inout), optional :: k
       real(wp) :: column(s%rows)
       integer :: j
 
@@ -201,8 +204,54 @@ contains
       do j = 1, s%rows
          column = 0.0_wp
          column(j) = h(j)
-         call solve_again(s, a, pivots, work, column, k)
+         call solve_again(s, a, pivots, work, column)
          spread = spread + abs(column(:s%n))
       end do
    end subroutine spread_by_inverse
+
+   !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
+   !> unless it is better factored itself.
+   pure subroutine stay_near(s, a, pivots, change, near)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*), change
+      integer, intent(in) :: pivots(*)
+      type(nearby_t), intent(inout) :: near
+
+      if (s%n /= 2 .or. s%rows /= 2) return
+      near%factors = a(:4)
+      near%inverse = [a(4) + a(2)*a(3), -a(1)*a(2), -a(3), a(1)]/(a(1)*a(4))
+      if (pivots(1) == 2) near%inverse = near%inverse([3, 4, 1, 2])
+      associate (v => near%inverse)
+         near%distance = near%distance + change*max(abs(v(1)) + abs(v(3)), abs(v(2)) + abs(v(4)))
+      end associate
+      if (.not. near%distance <= max_distance) near%distance = 0.0_wp
+   end subroutine stay_near
+
+   !> Solves `near` x = `b` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy and
+   !> Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two, to
+   !> what a factorization of its own would leave.
+   pure subroutine solve_nearby(near, b)
+      type(nearby_t), intent(in) :: near
+      real(wp), intent(inout) :: b(2)
+      real(wp) :: x(2), error
+
+      x = times(near%inverse, b)
+      error = near%distance
+      do while (error > lost)
+         x = x + times(near%inverse, b - times(near%a, x))
+         error = error*near%distance
+      end do
+      b = x
+
+   contains
+
+      !> `a` (4, by columns) times `x`.
+      pure function times(a, x) result(y)
+         real(wp), intent(in) :: a(4), x(2)
+         real(wp) :: y(2)
+
+         y(1) = a(1)*x(1) + a(3)*x(2)
+         y(2) = a(2)*x(1) + a(4)*x(2)
+      end function times
+   end subroutine solve_nearby
 end module block_matrix

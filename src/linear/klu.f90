@@ -9,14 +9,11 @@ module klu
    use kinds, only: wp
    implicit none
    private
-   public :: pattern_t, common_t, klu_t, klu_defaults, klu_serves
+   public :: pattern_t, common_t, klu_defaults, klu_serves
    public :: order_columns, factor, solve, determinant_sign
 
    !> KLU knows double precision only.
    logical, parameter :: klu_serves = kind(1.0_wp) == c_double
-   !> Pivots of an earlier matrix serve while no multiplier is larger. Partial pivoting has 1; sparse direct solvers
-   !> usually allow 10 (threshold pivoting: Duff, Erisman and Reid, Direct Methods for Sparse Matrices, 2017, ch. 5).
-   real(c_double), parameter :: max_multiplier = 10.0_c_double
 
    !> The entries of column k are in the rows row(first(k) + 1), ..., row(first(k + 1)); rows and `first` count from 0.
    !> `order`: the columns, from 0, in the order in which they are eliminated; of rows that serve as well the first in
@@ -47,38 +44,19 @@ module klu
       integer(c_int) :: nzoff = 0, nblocks = 1, maxblock = 0, ordering = 2, do_btf = 0, structural_rank = -1
    end type symbolic_t
 
-   !> klu_numeric of klu.h.
+   !> The beginning of klu_numeric of klu.h.
    type, bind(c) :: numeric_t
-      integer(c_int) :: n = 0, nblocks = 1, lnz = 0, unz = 0, max_lnz_block = 0, max_unz_block = 0
-      type(c_ptr) :: pnum = c_null_ptr, pinv = c_null_ptr, lip = c_null_ptr, uip = c_null_ptr, llen = c_null_ptr
-      type(c_ptr) :: ulen = c_null_ptr, lubx = c_null_ptr, lusize = c_null_ptr, udiag = c_null_ptr, rs = c_null_ptr
-      integer(c_size_t) :: worksize = 0
-      type(c_ptr) :: work = c_null_ptr, xwork = c_null_ptr, iwork = c_null_ptr
-      type(c_ptr) :: offp = c_null_ptr, offi = c_null_ptr, offx = c_null_ptr
-      integer(c_int) :: nzoff = 0
+      integer(c_int) :: n, nblocks, lnz, unz, max_lnz_block, max_unz_block
+      type(c_ptr) :: pnum, pinv, lip, uip, llen, ulen, lubx, lusize, udiag
    end type numeric_t
 
-   !> A pattern and the factors of the last matrix of that pattern, none at first. It holds no memory of KLU: a copy
-   !> has factors of its own.
-   type :: klu_t
-      type(pattern_t) :: pattern
-      type(common_t) :: common
-      integer(c_int), allocatable :: pivot_row(:), place_of(:)   !< (n) the row of each pivot; the inverse of that
-      integer(c_int), allocatable :: l_at(:), l_length(:), u_at(:), u_length(:)   !< (n) columns in `lu`, and entries
-      real(c_double), allocatable :: lu(:)        !< of each column its row numbers, two in one, and then its entries
-      real(c_double), allocatable :: pivots(:)    !< (n)
-      real(c_double), allocatable :: room(:)      !< (n)
-      integer :: exchanges = 1                    !< the sign of both permutations together
-   end type klu_t
-
-   !> A klu_t as the routines of KLU take it.
-   type :: view_t
-      type(symbolic_t) :: symbolic
-      type(numeric_t) :: numeric
-      type(c_ptr) :: lu(1)
-      integer(c_int) :: ends(2)
-      real(c_double) :: unknown(1) = -1
-   end type view_t
+   !> The matrix factored last: its order of columns, and its factors, whose memory is KLU's until the next.
+   type(common_t) :: common
+   type(symbolic_t), target :: symbolic
+   type(c_ptr) :: numeric = c_null_ptr
+   integer(c_int), allocatable, target :: order(:)
+   integer(c_int), target :: ends(2)
+   real(c_double), target :: unknown(1) = -1
 
    integer(c_int), parameter :: colamd = 1, unscaled = -1
 
@@ -102,13 +80,6 @@ module klu
          type(c_ptr), value :: ax, symbolic
          type(common_t), intent(inout) :: common
       end function klu_factor
-      !> Factors with the pivots that `numeric` has.
-      integer(c_int) function klu_refactor(ap, ai, ax, symbolic, numeric, common) bind(c)
-         import :: c_int, c_ptr, common_t
-         integer(c_int), intent(in) :: ap(*), ai(*)
-         type(c_ptr), value :: ax, symbolic, numeric
-         type(common_t), intent(inout) :: common
-      end function klu_refactor
       !> Solves A x = b in place.
       integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
          import :: c_int, c_ptr, common_t
@@ -169,141 +140,56 @@ contains
       common%btf = 0
    end subroutine set_common
 
-   !> Factors the matrix `a` (entries of the pattern, column by column). `info` > 0: exactly singular, no factors.
-   !>
-   !> The pivots of the matrix before serve, in less than half the time, while all multipliers are small: rounding
-   !> errors are then as with pivots of its own. Rejected: without that limit. Factors depended on the way there, and
-   !> nets of rods were lost at change points.
-   subroutine factor(k, a, info)
-      type(klu_t), intent(inout), target :: k
+   !> Factors the matrix `a` (entries of the pattern `p`, column by column). `info` > 0: exactly singular, no factors.
+   !> Rejected: to take the pivots of the matrix before while they serve. It halves the time of large matrices, but
+   !> digits then depend on the way there.
+   subroutine factor(p, a, info)
+      type(pattern_t), intent(in) :: p
       real(wp), intent(in), target :: a(*)
       integer, intent(out) :: info
-      type(view_t), target :: v
-      type(c_ptr) :: numeric
       integer(c_int) :: done
-      integer :: i, at
-      logical :: serves
 
-      call set_view(k, v)
-      associate (p => k%pattern)
-         if (allocated(k%lu)) then
-            done = klu_refactor(p%first, p%row, c_loc(a), c_loc(v%symbolic), c_loc(v%numeric), k%common)
-            serves = done /= 0 .and. k%common%status == 0
-            do i = 1, size(k%pivots)
-               at = k%l_at(i) + (k%l_length(i) + 1)/2
-               serves = serves .and. all(abs(k%lu(at + 1:at + k%l_length(i))) <= max_multiplier)
-            end do
-            info = 0
-            if (serves) return
-         end if
-         call set_common(k%common)
-         numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(v%symbolic), k%common)
-      end associate
+      if (c_associated(numeric)) done = klu_free_numeric(numeric, common)
+      call set_common(common)
+      order = p%order
+      ! Of one block nothing is off its diagonal.
+      ends = [0_c_int, size(order, kind=c_int)]
+      symbolic%n = size(order, kind=c_int)
+      symbolic%maxblock = symbolic%n
+      symbolic%nz = size(p%row, kind=c_int)
+      symbolic%lnz_of = c_loc(unknown)
+      symbolic%p = c_loc(order)
+      symbolic%q = symbolic%p
+      symbolic%r = c_loc(ends)
+      numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(symbolic), common)
       info = merge(0, 1, c_associated(numeric))
-      if (info > 0) return
-      call take_factors(numeric, k)
-      done = klu_free_numeric(numeric, k%common)
    end subroutine factor
 
-   !> Copies the factors `numeric` that KLU has made.
-   subroutine take_factors(numeric, k)
-      type(c_ptr), intent(in) :: numeric
-      type(klu_t), intent(inout) :: k
-      type(numeric_t), pointer :: f
-      type(c_ptr), pointer :: lu_of(:)
-      integer(c_size_t), pointer :: length(:)
-      real(c_double), pointer :: x(:)
-
-      call c_f_pointer(numeric, f)
-      k%pivot_row = integers(f%pnum)
-      k%place_of = integers(f%pinv)
-      k%l_at = integers(f%lip)
-      k%l_length = integers(f%llen)
-      k%u_at = integers(f%uip)
-      k%u_length = integers(f%ulen)
-      call c_f_pointer(f%udiag, x, [f%n])
-      k%pivots = x
-      call c_f_pointer(f%lubx, lu_of, [1])
-      call c_f_pointer(f%lusize, length, [1])
-      call c_f_pointer(lu_of(1), x, [length(1)])
-      k%lu = x
-      k%exchanges = sign_of(k%pivot_row)*sign_of(k%pattern%order)
-      if (.not. allocated(k%room)) allocate (k%room(f%n))
-
-   contains
-
-      !> The integers at `at`, one for each unknown.
-      function integers(at) result(list)
-         type(c_ptr), intent(in) :: at
-         integer(c_int) :: list(f%n)
-         integer(c_int), pointer :: p(:)
-
-         call c_f_pointer(at, p, [f%n])
-         list = p
-      end function integers
-   end subroutine take_factors
-
-   !> Makes `v` point to the pattern and, where there are some, the factors of `k`. Of one block nothing is off its
-   !> diagonal.
-   subroutine set_view(k, v)
-      type(klu_t), intent(in), target :: k
-      type(view_t), intent(out), target :: v
-
-      v%ends = [0_c_int, order_of(k)]
-      associate (s => v%symbolic, f => v%numeric)
-         s%n = order_of(k)
-         s%maxblock = s%n
-         s%nz = size(k%pattern%row, kind=c_int)
-         s%lnz_of = c_loc(v%unknown)
-         s%p = c_loc(k%pattern%order)
-         s%q = s%p
-         s%r = c_loc(v%ends)
-         if (.not. allocated(k%lu)) return
-         f%n = s%n
-         f%pnum = c_loc(k%pivot_row)
-         f%pinv = c_loc(k%place_of)
-         f%lip = c_loc(k%l_at)
-         f%llen = c_loc(k%l_length)
-         f%uip = c_loc(k%u_at)
-         f%ulen = c_loc(k%u_length)
-         v%lu = c_loc(k%lu)
-         f%lubx = c_loc(v%lu)
-         f%udiag = c_loc(k%pivots)
-         f%xwork = c_loc(k%room)
-      end associate
-   end subroutine set_view
-
-   !> `b` (n): the right-hand side, then the solution; with the matrix `transposed` or not.
-   subroutine solve(k, b, transposed)
-      type(klu_t), intent(inout), target :: k
+   !> `b` (n): the right-hand side, then the solution, from the factors; with the matrix `transposed` or not.
+   subroutine solve(b, transposed)
       real(wp), intent(inout), target :: b(*)
       logical, intent(in) :: transposed
-      type(view_t), target :: v
       integer(c_int) :: done
 
-      call set_view(k, v)
-      associate (symbolic => c_loc(v%symbolic), numeric => c_loc(v%numeric))
-         if (transposed) done = klu_tsolve(symbolic, numeric, order_of(k), 1_c_int, c_loc(b), k%common)
-         if (.not. transposed) done = klu_solve(symbolic, numeric, order_of(k), 1_c_int, c_loc(b), k%common)
-      end associate
+      if (transposed) done = klu_tsolve(c_loc(symbolic), numeric, symbolic%n, 1_c_int, c_loc(b), common)
+      if (.not. transposed) done = klu_solve(c_loc(symbolic), numeric, symbolic%n, 1_c_int, c_loc(b), common)
    end subroutine solve
 
-   !> The sign of the determinant, from the factors.
-   pure integer function determinant_sign(k) result(sign_of)
-      type(klu_t), intent(in) :: k
+   !> Finds the sign of the determinant, from the factors.
+   integer function determinant_sign() result(sign_of)
+      type(numeric_t), pointer :: factors
+      integer(c_int), pointer :: pivot_row(:)
+      real(c_double), pointer :: pivots(:)
 
-      sign_of = merge(-k%exchanges, k%exchanges, mod(count(k%pivots < 0.0_c_double), 2) == 1)
+      call c_f_pointer(numeric, factors)
+      call c_f_pointer(factors%pnum, pivot_row, [symbolic%n])
+      call c_f_pointer(factors%udiag, pivots, [symbolic%n])
+      sign_of = sign_of_permutation(pivot_row)*sign_of_permutation(order)
+      if (mod(count(pivots < 0.0_c_double), 2) == 1) sign_of = -sign_of
    end function determinant_sign
 
-   !> The order of the matrix.
-   pure integer(c_int) function order_of(k)
-      type(klu_t), intent(in) :: k
-
-      order_of = size(k%pattern%first, kind=c_int) - 1_c_int
-   end function order_of
-
    !> The sign of the permutation `p` of 0 to n - 1: a cycle of length c is c - 1 exchanges.
-   pure integer function sign_of(p)
+   pure integer function sign_of_permutation(p) result(sign_of)
       integer(c_int), intent(in) :: p(:)
       logical :: is_seen(size(p))
       integer :: i, next
@@ -318,5 +204,5 @@ contains
             sign_of = -sign_of
          end do
       end do
-   end function sign_of
+   end function sign_of_permutation
 end module klu

@@ -3,12 +3,22 @@
 #define SAME(text) text
 #define NAMED(name) SAME(LETTER)SAME(name)
 module lapack_routines
+   use, intrinsic :: iso_fortran_env, only: dp => real64
 #ifdef LETTER
    use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND
+#endif
    implicit none
    public
 
    interface
+      !> Solves a square system with complex coefficients in double precision, of every kind of reals.
+      subroutine zgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: dp
+         integer, intent(in) :: n, nrhs, lda, ldb
+         complex(dp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine zgesv
+#ifdef LETTER
       !> LU factorization with partial pivoting.
       subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
          import :: wp
@@ -81,6 +91,6 @@ module lapack_routines
          real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *)
          integer, intent(out) :: info
       end subroutine NAMED(gesvd)
-   end interface
 #endif
+   end interface
 end module lapack_routines

@@ -1,12 +1,11 @@
 !> DGESV in its two halves, so that the factors of the Jacobian that ended Newton's iteration serve
-!> velocity and acceleration as well; and the tridiagonal system of a spline.
+!> velocity and acceleration as well.
 module linear_solver
    use kinds, only: wp
-   use lapack, only: getrf, getrs, ptsv
+   use lapack, only: getrf, getrs
    implicit none
    private
-   public :: factors_t, new_factors, factor, solve, solve_transposed, reciprocal_condition, determinant_sign
-   public :: solve_tridiagonal
+   public :: factors_t, new_factors, factor, solve, reciprocal_condition, determinant_sign
 
    !> A square matrix, before and after its factorization P L U.
    type :: factors_t
@@ -46,16 +45,6 @@ contains
       call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
    end subroutine solve
 
-   !> Replaces the columns of `b` (n, any number) by the solutions with the matrix transposed, from the factors.
-   subroutine solve_transposed(f, b)
-      type(factors_t), intent(in) :: f
-      real(wp), intent(inout) :: b(:, :)
-      integer :: info
-
-      if (f%n == 0 .or. size(b, 2) == 0) return
-      call getrs('T', f%n, size(b, 2), f%a, f%n, f%pivots, b, f%n, info)
-   end subroutine solve_transposed
-
    !> About how near the matrix is to having no inverse, from the factors: the least pivot over the largest.
    pure real(wp) function reciprocal_condition(f)
       type(factors_t), intent(in) :: f
@@ -79,14 +68,4 @@ contains
          if (abs(f%a(i, i)) <= 0.0_wp) sign_of = 0
       end do
    end function determinant_sign
-
-   !> Solves the symmetric positive definite tridiagonal system with diagonal `d` (n) and
-   !> off-diagonal `e` (n - 1); `b` (n) becomes the solution. `info` > 0: not positive definite.
-   subroutine solve_tridiagonal(d, e, b, info)
-      real(wp), intent(inout) :: d(:), e(:), b(:)
-      integer, intent(out) :: info
-
-      info = 0
-      if (size(d) > 0) call ptsv(size(d), 1, d, e, b, size(d), info)
-   end subroutine solve_tridiagonal
 end module linear_solver

@@ -18,8 +18,6 @@ module motion
       enumerator :: diagnostic_long             !< the step from `t` would need too many substeps
       enumerator :: diagnostic_unused           !< no change point was passed after `t`, as a BRANCH card asks
       enumerator :: diagnostic_dead_end         !< the other branch of `links` at `t` was not found
-      enumerator :: diagnostic_idle             !< the pairs already fix what `drive` drives
-      enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
       enumerator :: diagnostic_method           !< another method finds a position
       enumerator :: diagnostic_close            !< at `t` the motion is blocked, and no limit is told
       enumerator :: diagnostic_beyond           !< the instant lies beyond the limit of motion at `t`, told before

@@ -4,7 +4,7 @@
 !> (de Boor, A Practical Guide to Splines, ch. IV). Two knots give the straight line.
 module splines
    use kinds, only: wp
-   use linear_solver, only: solve_tridiagonal
+   use lapack, only: ptsv
    implicit none
    private
    public :: spline_t, new_spline, piece_at, piece_value
@@ -33,7 +33,7 @@ contains
       diagonal = 2.0_wp*(h(:n - 2) + h(2:))
       off(:n - 3) = h(2:n - 2)
       s%m(2:n - 1) = 6.0_wp*(slope(2:) - slope(:n - 2))
-      call solve_tridiagonal(diagonal, off, s%m(2:n - 1), info)
+      call ptsv(n - 2, 1, diagonal, off, s%m(2:n - 1), n - 2, info)
    end function new_spline
 
    !> Value, first and second derivative (3) at the time `t` of the cubic between the knots `i` and `i` + 1 of `s`. It

@@ -12,7 +12,9 @@ module assemblies
    use blocks, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
+   use ball_equations, only: ball_numbers_t
+   use ball_numbers, only: new_ball_numbers
+   use position_proof, only: placed_t, new_placed, prove_position
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
@@ -180,12 +182,12 @@ contains
       real(wp), intent(in) :: t
       type(assemblies_t), intent(inout) :: a
       type(block_positions_t) :: found(size(e%blocks%list))
-      type(prover_t) :: p
+      type(ball_numbers_t) :: p
       type(placed_t) :: q
       integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
-      call make_prover(p, m, e)
+      p = new_ball_numbers(m, e%blocks, e%length)
       q = new_placed(e%blocks, size(m%drives))
       chosen = 0
       seen = -1

@@ -2,20 +2,20 @@
 !> decimals leave open.
 !>
 !> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the
-!> deck's decimals are one. What the structure takes for zero (vectors that cancel but for rounding) is zero. Sines and
-!> cosines of the library are taken to be right within two units in the last place; all other operations round to
-!> nearest.
+!> deck's decimals are one. Splines of tables count as they are computed. What the structure takes for zero (vectors
+!> that cancel but for rounding) is zero. Sines and cosines of the library are taken to be right within two units in the
+!> last place; all other operations round to nearest.
 module ball_numbers
    use kinds, only: wp
    use planar, only: length_of, real_vector_t => vector_t
-   use mechanism, only: drive_t, mechanism_t, term_table, pair_prismatic, plane_origin
+   use mechanism, only: mechanism_t, pair_prismatic, plane_origin
    use links_tree, only: tree_t
    use blocks, only: blocks_t, loop_angles
    use balls, only: ball_t, rounding, room
    use ball_equations, only: vector_t, ball_numbers_t
    implicit none
    private
-   public :: new_ball_numbers, around, angle_errors, point_error, table_errors
+   public :: new_ball_numbers, around, angle_errors, point_error
 
    !> Of a number of the deck: so many roundings, those of its decimals and units.
    real(wp), parameter, public :: of_number = 4.0_wp*rounding
@@ -127,33 +127,4 @@ contains
          if (link%ground) error = error + (norm2(link%position(:2)) + norm2(plane_origin(m)))*(of_number + summed)
       end associate
    end function point_error
-
-   !> (0:2) By how much the splines of the tables of `law` and their derivatives can differ from the exact ones through
-   !> these knots, in the drive's unit. With r what the equations of the second derivatives M leave, which are
-   !> diagonally dominant, |dM| <= max |r_i|/(h_(i-1) + h_i).
-   pure function table_errors(law) result(error)
-      type(drive_t), intent(in) :: law
-      real(wp) :: error(0:2), of_m, r, h(2)
-      integer :: i, k
-
-      error = 0.0_wp
-      if (.not. allocated(law%terms)) return
-      do k = 1, size(law%terms)
-         if (law%terms(k)%kind /= term_table) cycle
-         associate (x => law%terms(k)%table%x, y => law%terms(k)%table%y, m => law%terms(k)%table%m)
-            of_m = 0.0_wp
-            do i = 2, size(x) - 1
-               h = [x(i) - x(i - 1), x(i + 1) - x(i)]
-               r = abs(h(1)*m(i - 1) + 2.0_wp*(h(1) + h(2))*m(i) + h(2)*m(i + 1) &
-                  - 6.0_wp*((y(i + 1) - y(i))/h(2) - (y(i) - y(i - 1))/h(1))) &
-                  + 16.0_wp*rounding*(1.0_wp + maxval(abs(x(i - 1:i + 1)))/minval(h)) &
-                  *(2.0_wp*sum(h)*maxval(abs(m(i - 1:i + 1))) + 24.0_wp*maxval(abs(y(i - 1:i + 1)))/minval(h))
-               of_m = max(of_m, r/sum(h))
-            end do
-            h(1) = maxval(x(2:) - x(:size(x) - 1))
-            error = error + of_m*[h(1)**2, h(1), 1.0_wp]
-         end associate
-      end do
-      error = error*room
-   end function table_errors
 end module ball_numbers

@@ -13,7 +13,9 @@ module motion_proof
    use block_engine, only: block_engine_t
    use convergence, only: convergence_t, is_solved
    use balls, only: ball_t
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, max_unknowns
+   use ball_equations, only: ball_numbers_t
+   use ball_numbers, only: new_ball_numbers
+   use position_proof, only: placed_t, new_placed, prove_position, max_unknowns
    use tube_proof, only: tube_t, new_tube, prove_tube
    use link_bounds, only: link_vectors_t, link_vectors, bound_links
    implicit none
@@ -23,8 +25,6 @@ module motion_proof
    !> So many tubes are tried of a step at most, none shorter than this part of it.
    integer, parameter :: max_tries = 1024
    real(wp), parameter :: min_part = 1.0e-6_wp
-   !> And fewer of wide blocks, whose inverses take about so many products: some seconds.
-   real(wp), parameter :: max_products = 1.0e9_wp
 
    !> What is proved of a step.
    type :: step_proof_t
@@ -34,13 +34,12 @@ module motion_proof
       real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
       integer :: block = 0                        !< that is not proved
       real(wp) :: t = 0.0_wp                      !< the middle of the part that is not
-      logical :: is_broken_off = .false.          !< blocks are too wide for more tries
    end type step_proof_t
 
    !> What the proofs of a mechanism need and keep.
    type :: motion_prover_t
       logical :: has_begun = .false.              !< a position is proved
-      type(prover_t) :: prover
+      type(ball_numbers_t) :: numbers
       type(link_vectors_t), allocatable :: links(:)
       type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
       integer :: now = 1                          !< which of them is at hand
@@ -79,7 +78,7 @@ contains
       found%has_step = .false.
       found%step = step_proof_t()
       if (.not. allocated(p%links)) then
-         call make_prover(p%prover, m, e)
+         p%numbers = new_ball_numbers(m, e%blocks, e%length)
          p%links = link_vectors(m, e)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
@@ -89,13 +88,13 @@ contains
       if (q%known < 2) return
 
       associate (here => p%at(p%now), before => p%at(3 - p%now))
-         call prove_position(p%prover, e, e%state, q%t, e%needed, merge(2, 0, bounded), here, failed)
+         call prove_position(p%numbers, e, e%state, q%t, e%needed, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
             if (bounded) call bound_links(p%links, m, e, here%ball_state_t, q, found%links, found%largest)
             found%gap = here%gap
             found%has_step = p%has_begun
-            if (found%has_step) call prove_step(p%prover, e, e%needed, before, here, found%step)
+            if (found%has_step) call prove_step(p%numbers, e, e%needed, before, here, found%step)
             failed = found%step%block
          end if
       end associate
@@ -105,8 +104,7 @@ contains
 
       block_of = [0, e%blocks%block_of]
       found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%orientation_of) == failed)
-      if (e%blocks%list(failed)%shape%n > max_unknowns .or. found%step%is_broken_off) &
-         found%too_many = e%blocks%list(failed)%shape%n
+      if (e%blocks%list(failed)%shape%n > max_unknowns) found%too_many = e%blocks%list(failed)%shape%n
    end subroutine prove_motion
 
    !> All is proved that is asked for.
@@ -116,9 +114,9 @@ contains
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.
+   !> Proves the motion of the blocks `list`, with the numbers `p`, between the proved positions `from` and `to`.
    subroutine prove_step(p, e, list, from, to, proof)
-      type(prover_t), intent(in) :: p
+      type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
@@ -148,8 +146,7 @@ contains
          end if
          proof%block = tube%block
          proof%t = 0.5_wp*(from%t + to%t)
-         proof%is_broken_off = proof%tries >= max_products/sum(real(e%blocks%list(list)%shape%n, wp)**3)
-         proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_tries .and. .not. proof%is_broken_off
+         proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_tries
          if (.not. proof%is_proved) return
          allocate (middle)
          middle = new_placed(e%blocks, size(e%laws))

@@ -6,11 +6,18 @@
 !> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations likewise. F, J and b are what the
 !> equations are in balls: of the numbers, of what earlier blocks give, and of x.
 !>
+!> The ball is found by Newton and Kantorovich's argument: x - A F(x) maps the ball of radius r about c into itself and
+!> contracts it, if
+!>
+!>    |A| |F(c)| + z1 r + z2 r^2/2 <= r,   z1 >= |1 - A J(c)|,   z1 + z2 s >= |1 - A J| in the ball of radius s <= r
+!>
+!> So F has exactly one zero in the ball, J is regular in all of it, and z1 + z2 r < 1. (Ortega and Rheinboldt, ch. 12;
+!> the form with bounds from data is that of Day, Lessard and Mischaikow's radii polynomials.)
+!>
 !> Where equations are too many, as many independent ones as there are unknowns are proved, and of the others it is
 !> bounded by how much they stay open.
 module position_proof
    use kinds, only: wp
-   use mechanism, only: mechanism_t
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
    use block_matrix, only: entries_of
@@ -19,20 +26,22 @@ module position_proof
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
       assemble_balls, ball_accelerations
-   use ball_numbers, only: new_ball_numbers, table_errors
-   use contraction, only: bound_inverse, apply, radius_of, max_rate
    implicit none
    private
-   public :: prover_t, placed_t, block_work_t, make_prover, new_placed, prove_position, contract, find_ball, &
-      subtract_product
+   public :: placed_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
 
    !> Times, too, are numbers of the deck.
    real(wp), parameter, public :: of_time = 4.0_wp*rounding
-   !> A block of more unknowns is not proved: all n^2 entries of its inverse take a tenth of a second for each part of a
-   !> step, of which there may be a thousand.
-   integer, parameter, public :: max_unknowns = 500
+   !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, of which there may
+   !> be a thousand.
+   integer, parameter, public :: max_unknowns = 100
    !> So many balls are tried at most. Each is larger by what the one before has shown of the change of the Jacobian.
    integer, parameter :: max_tries = 8
+
+   !> A map that contracts less is not used: 1 less its rate is a divisor.
+   real(wp), parameter :: max_rate = 0.999_wp
+   !> Balls are a little larger than need be.
+   real(wp), parameter :: larger = 1.01_wp
 
    !> What the proof of a block computes.
    type :: block_work_t
@@ -46,12 +55,6 @@ module position_proof
       real(wp), allocatable :: x(:)               !< (n) |A| times these
    end type block_work_t
 
-   !> What the proofs of a mechanism need.
-   type :: prover_t
-      type(ball_numbers_t) :: numbers
-      real(wp), allocatable :: table_error(:, :)  !< (0:2, drives) of the splines of their tables, in block units
-   end type prover_t
-
    !> A position that was found, and what is proved of it, in the units of the blocks: the exact unknowns and drives lie
    !> in balls about those that were found.
    type, extends(ball_state_t) :: placed_t
@@ -61,20 +64,6 @@ module position_proof
    end type placed_t
 
 contains
-
-   !> Ready for proofs about `m`, with the blocks, laws and units of its engine `e`.
-   subroutine make_prover(p, m, e)
-      type(prover_t), intent(out) :: p
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
-      integer :: i
-
-      p%numbers = new_ball_numbers(m, e%blocks, e%length)
-      allocate (p%table_error(0:2, size(m%drives)))
-      do i = 1, size(m%drives)
-         p%table_error(:, i) = table_errors(e%laws(i))*e%unit_of(i)
-      end do
-   end subroutine make_prover
 
    !> Room for a position of the blocks `b` with so many `drives`.
    pure function new_placed(b, drives) result(q)
@@ -86,11 +75,11 @@ contains
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
    end function new_placed
 
-   !> Proves the position of the blocks `list`, in solving order, at the time `t` and the values of `s`, for the laws
-   !> and units of the engine `e`; with `order` 2 instead of 0 velocities and accelerations as well. Result: `q`, and
-   !> `failed`, the number of the first block that is not proved, where the proof ends; or 0.
+   !> Proves the position of the blocks `list`, in solving order, at the time `t` and the values of `s`, for the
+   !> numbers `p` and the laws and units of the engine `e`; with `order` 2 instead of 0 velocities and accelerations as
+   !> well. Result: `q`, and `failed`, the number of the first block that is not proved, where the proof ends; or 0.
    subroutine prove_position(p, e, s, t, list, order, q, failed)
-      type(prover_t), intent(in) :: p
+      type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
       type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
@@ -109,8 +98,7 @@ contains
          law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
          associate (value => s%drive_value(:, i), unit => e%unit_of(i))
             q%drive(:, i)%mid = value
-            q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value) &
-               + p%table_error(:, i))*room
+            q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value))*room
          end associate
       end do
 
@@ -125,13 +113,14 @@ contains
    !> Proves block `i` at the values of `s`, with earlier blocks as in `q`: the values of its unknowns and, with `order`
    !> 2 instead of 0, their derivatives. Result: what `q` has of this block.
    subroutine prove_block(p, b, i, s, order, q, is_proved)
-      type(prover_t), intent(in) :: p
+      type(ball_numbers_t), intent(in) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
       type(placed_t), intent(inout) :: q
       logical, intent(out) :: is_proved
       type(block_work_t) :: w
+      type(ball_t) :: x(0:2), sign_of
       real(wp) :: radius, largest
       integer :: k
 
@@ -143,17 +132,29 @@ contains
          end do
          is_proved = block%direct
          if (block%direct) then
-            call prove_direct(own(1), block%first_row)
+            ! The unknown is another one and a drive.
+            associate (row => b%rows(block%first_row), direct => q%u(own(1)))
+               sign_of = ball_t(real(row%sign_of, wp), 0.0_wp)
+               x = sign_of*q%drive(:, row%drive)
+               x(0) = q%u(row%other)%value + (sign_of*p%rows(block%first_row)%constant + x(0))
+               x(1) = q%u(row%other)%rate + x(1)
+               x(2) = q%u(row%other)%acceleration + x(2)
+               call set_radius(b, own(1), distance(x(0), direct%value%mid), q%ball_state_t)
+               direct%rate%radius = distance(x(1), direct%rate%mid)
+               direct%acceleration%radius = distance(x(2), direct%acceleration%mid)
+               q%open(0, block%first_row) = direct%value%radius
+               q%open(1, block%first_row) = direct%rate%radius
+            end associate
             return
          end if
 
-         call contract(b, p%numbers, i, q%ball_state_t, w, is_proved)
+         call contract(b, p, i, q%ball_state_t, w, is_proved)
          if (.not. is_proved) return
          w%open(:) = top(w%r)
          call subtract_product(1, q%u, own, w)
          q%open(0, block%first_row:block%last_row) = w%open
          q%open(1, block%first_row:block%last_row) = top(w%v)
-         call find_ball(b, p%numbers, i, q%ball_state_t, w, radius)
+         call find_ball(b, p, i, q%ball_state_t, w, radius)
          is_proved = radius >= 0.0_wp
          if (.not. is_proved) return
          if (size(w%r) > size(own)) q%gap = max(q%gap, maxval(top(w%r)))
@@ -173,26 +174,6 @@ contains
             is_proved = is_proved .and. all(w%x <= huge(1.0_wp))
          end do
       end associate
-
-   contains
-
-      !> Unknown `u` of a direct block with the row `row` is another one and a drive.
-      subroutine prove_direct(u, row)
-         integer, intent(in) :: u, row
-         type(ball_t) :: x(0:2)
-
-         associate (other => q%u(b%rows(row)%other), own => q%u(u), &
-            sign_of => ball_t(real(b%rows(row)%sign_of, wp), 0.0_wp))
-            x = sign_of*q%drive(:, b%rows(row)%drive)
-            x(0) = other%value + (sign_of*p%numbers%rows(row)%constant + x(0))
-            x(1) = other%rate + x(1)
-            x(2) = other%acceleration + x(2)
-            call set_radius(b, u, distance(x(0), own%value%mid), q%ball_state_t)
-            own%rate%radius = distance(x(1), own%rate%mid)
-            own%acceleration%radius = distance(x(2), own%acceleration%mid)
-            q%open(:, row) = [own%value%radius, own%rate%radius]
-         end associate
-      end subroutine prove_direct
    end subroutine prove_block
 
    !> Equations and Jacobian of block `i`, with the numbers `x`, at the state `s`, whose own unknowns are at the centre
@@ -316,4 +297,87 @@ contains
          w%v(w%row(k)) = w%v(w%row(k)) - w%j(k)*x
       end do
    end subroutine subtract_product
+
+   !> `a` (n, rows): |A| of about the inverse A of `jacobian` (rows, n), with room for roundings; `off` (n): the row
+   !> sums of |1 - A J|. Of equations that are too many those count that have the largest pivots; the columns of the
+   !> others are 0. `exists`: there is an inverse.
+   subroutine bound_inverse(rows, n, jacobian, a, off, exists)
+      integer, intent(in) :: rows, n
+      real(wp), intent(in) :: jacobian(rows, n)
+      real(wp), intent(out) :: a(n, rows), off(n)
+      logical, intent(out) :: exists
+      real(wp) :: left(n + rows, rows)            ! Each column an equation: the Jacobian, and what has been added up.
+      real(wp) :: x(n), room
+      integer :: equation(n), k, i
+      logical :: taken(rows)
+
+      ! Gauss and Jordan's elimination.
+      exists = .true.
+      left(:n, :) = transpose(jacobian)
+      left(n + 1:, :) = 0.0_wp
+      do i = 1, rows
+         left(n + i, i) = 1.0_wp
+      end do
+      taken = .false.
+      do k = 1, n
+         equation(k) = maxloc(abs(left(k, :)), dim=1, mask=.not. taken)
+         associate (own => equation(k))
+            taken(own) = .true.
+            exists = abs(left(k, own)) > 0.0_wp
+            if (.not. exists) return
+            left(k + 1:, own) = left(k + 1:, own)/left(k, own)
+            do i = 1, rows
+               if (i == own .or. .not. abs(left(k, i)) > 0.0_wp) cycle
+               left(k + 1:, i) = left(k + 1:, i) - left(k, i)*left(k + 1:, own)
+            end do
+         end associate
+      end do
+      do k = 1, n
+         a(k, :) = left(n + 1:, equation(k))
+      end do
+
+      off = (n + 2)*rounding
+      do k = 1, n
+         x = 0.0_wp
+         x(k) = -1.0_wp
+         do i = 1, rows
+            if (abs(jacobian(i, k)) > 0.0_wp) x = x + a(:, i)*jacobian(i, k)
+         end do
+         off = off + abs(x)
+      end do
+
+      ! What rounding leaves open of all terms; room, too, for products that underflow.
+      room = 1.0_wp + (64 + 4*rows)*rounding
+      do i = 1, rows
+         a(:, i) = abs(a(:, i))*room
+         off = off + a(:, i)*((rows + 2)*rounding*sum(abs(jacobian(i, :))))
+      end do
+      off = off*room**2
+   end subroutine bound_inverse
+
+   !> `x` (n): |A| `v` (rows), rounded up.
+   pure subroutine apply(rows, n, a, v, x)
+      integer, intent(in) :: rows, n
+      real(wp), intent(in) :: a(n, rows), v(rows)
+      real(wp), intent(out) :: x(n)
+      integer :: k
+
+      x = 0.0_wp
+      do k = 1, rows
+         x = x + a(:, k)*v(k)
+      end do
+      ! For products that underflow; what is at rest is so exactly.
+      if (any(v > 0.0_wp)) x = x*(1.0_wp + (16 + rows)*rounding) + tiny(1.0_wp)
+   end subroutine apply
+
+   !> The radius of a ball about the centre, where |A| |F| <= `eta`, that is mapped into itself with these `z1` and
+   !> `z2`; -1: none.
+   pure real(wp) function radius_of(z1, z2, eta) result(r)
+      real(wp), intent(in) :: z1, z2, eta
+      real(wp) :: root
+
+      r = -1.0_wp
+      root = (1.0_wp - z1)**2 - 2.0_wp*z2*eta
+      if (root > 0.0_wp .and. z1 <= max_rate) r = 2.0_wp*eta/(1.0_wp - z1 + sqrt(root))*larger
+   end function radius_of
 end module position_proof

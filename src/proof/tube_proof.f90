@@ -19,8 +19,9 @@ module tube_proof
    use blocks, only: blocks_t
    use block_engine, only: block_engine_t
    use balls, only: ball_t, rounding, room
-   use ball_equations, only: ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, ball_accelerations
-   use position_proof, only: prover_t, placed_t, block_work_t, contract, find_ball, subtract_product, of_time
+   use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
+      ball_accelerations
+   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product, of_time
    implicit none
    private
    public :: tube_t, new_tube, prove_tube
@@ -47,9 +48,10 @@ contains
       tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of the blocks `list`, in solving order, between the positions `from` and `to`.
+   !> Proves the motion of the blocks `list`, in solving order, with the numbers `p`, between the positions `from` and
+   !> `to`.
    subroutine prove_tube(p, e, list, from, to, tube)
-      type(prover_t), intent(in) :: p
+      type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
@@ -124,7 +126,7 @@ contains
             if (unbounded(i)) cycle
             c = cubic(h, from%drive(:1, i)%mid, to%drive(:1, i)%mid)
             change = max(0.0_wp, law%high(2)*e%unit_of(i) - c(2)%mid, c(2)%mid - law%low(2)*e%unit_of(i)) + c(2)%radius
-            tube%balls%drive(1, i) = ball_t(0.0_wp, (0.125_wp*h**2*(change + p%table_error(2, i)) &
+            tube%balls%drive(1, i) = ball_t(0.0_wp, (0.125_wp*h**2*change &
                + 4.0_wp*max(from%drive(0, i)%radius, to%drive(0, i)%radius) &
                + 2.0_wp*abs(h)*max(from%drive(1, i)%radius, to%drive(1, i)%radius) &
                + 4.0_wp*late*max(abs(from%drive(1, i)%mid), abs(to%drive(1, i)%mid)))*room)
@@ -150,14 +152,14 @@ contains
          integer :: k
 
          radius = -1.0_wp
-         call contract(b, p%numbers, i, tube%curve, w, exists)
+         call contract(b, p, i, tube%curve, w, exists)
          if (.not. exists) return
          call ball_accelerations(b, i, tube%curve, w%v)
          call subtract_product(2, tube%curve%u, own, w)
          do k = 1, size(w%open)
             w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
          end do
-         call find_ball(b, p%numbers, i, tube%balls, w, radius, maxval(tube%radius))
+         call find_ball(b, p, i, tube%balls, w, radius, maxval(tube%radius))
       end subroutine prove_block
    end subroutine prove_tube
 

@@ -37,7 +37,7 @@ module listing
    integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10), error_digits = 3
    !> What concerns the results.
    integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
-      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
+      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end]
    !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
@@ -328,10 +328,6 @@ contains
          text = phrase(say_way, m%polish)//' '//time(m, r%t)//' '//phrase(say_too_long, m%polish)
       case (diagnostic_close)
          text = phrase(say_blocked, m%polish)//' '//time(m, r%t)//': '//phrase(say_close, m%polish)
-      case (diagnostic_idle)
-         text = owner()//' '//phrase(say_idle, m%polish)
-      case (diagnostic_repeated)
-         text = owner()//' '//phrase(say_repeated, m%polish)
       case (diagnostic_method)
          text = phrase(say_method, m%polish)
          if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text

@@ -60,7 +60,8 @@ module phrases
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
       say_closure_error = phrase_t('LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS, IN CHARACTERISTIC LENGTHS:', &
          'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH, W DLUGOSCIACH CHARAKT.:'), &
-      say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED'), &
+      say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM', &
+         'RUCH NIEOKRESLONY, NAPEDZAJ JEDNO Z NICH'), &
       say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
       say_drive = phrase_t('DRIVE', 'NAPED'), &
       say_below = phrase_t('BELOW', 'PONIZEJ'), &
@@ -186,8 +187,6 @@ module phrases
    type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
       say_here = phrase_t('THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM'), &
-      say_idle = phrase_t('HAS NO EFFECT', 'NICZEGO NIE PORUSZA'), &
-      say_repeated = phrase_t('DEPENDS ON THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY'), &
       say_redundant_many = phrase_t('REDUNDANT EQUATIONS', 'ROWNANIA NADLICZBOWE'), &
       say_of_pair = phrase_t('OF PAIR', 'PARY'), &
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &

@@ -10,7 +10,9 @@ program fool_proofs
    use dice, only: dice_t, new_dice, throw, chance, between
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use mechanism, only: mechanism_t
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
+   use position_proof, only: placed_t, new_placed, prove_position
+   use ball_equations, only: ball_numbers_t
+   use ball_numbers, only: new_ball_numbers
    use motion_proof, only: step_proof_t, prove_step
    use block_solver, only: solve_block
    use convergence, only: convergence_t
@@ -51,7 +53,7 @@ contains
       type(fool_t) :: f
       type(mechanism_t) :: m
       type(block_engine_t), allocatable :: e
-      type(prover_t) :: p
+      type(ball_numbers_t) :: p
       type(placed_t) :: q(2)
       type(step_proof_t) :: proof
       real(wp) :: t(2)
@@ -77,7 +79,7 @@ contains
       m = new_mechanism(f)
       allocate (e)
       call make_block_engine(e, m)
-      call make_prover(p, m, e)
+      p = new_ball_numbers(m, e%blocks, e%length)
       call find_unknowns(m, e, f)
       wrong = .false.
       do k = 1, 2

@@ -10,7 +10,7 @@ program random_blocks
    use planar, only: pi, rotated, direction
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, pair_revolute, pair_prismatic
    use structure, only: findings_t, find_structure
-   use complex_lu, only: find_null_space
+   use bilinear, only: find_null_space
    use numerals, only: whole
    use dice, only: dice_t, new_dice, throw, chance, between
    use arguments, only: argument, number

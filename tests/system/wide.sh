@@ -58,8 +58,7 @@ equal 'the change point is passed' 1 "$(grep -c 'CHANGE POINTS PASSED 1$' "$w/bo
 equal 'the wide block beside the change point' '931 rows' "$(differing lattice)"
 equal 'the change point beside the wide block' '57 rows' "$(differing parallelogram)"
 
-# Nets of 49 and of 449 rods, which pass change points: all legs turn as the first one, 1 + t, with the rate 1. Factored
-# with the pivots of earlier instants the small one is lost at its first change point.
+# Nets of 49 and of 449 rods, which pass change points: all legs turn as the first one, 1 + t, with the rate 1.
 for size in 5 15; do
    tests/make_deck lattice $size 390 > "$w/net.deck"
    "$kinmat" "$w/net.deck" -o "$w/net.lst" --csv "$w/net.csv" 2> "$w/net.err"
@@ -68,12 +67,9 @@ for size in 5 15; do
    equal "legs of $size x $size" '' "$(LC_ALL=C awk -F, 'NR > 1 && $4 ~ /^"?L[0-9]/ && $8 != "" && (($8 - 1 - $3)^2 > 1e-16 || ($11 - 1)^2 > 1e-12)' "$w/net.csv" | head -n 3)"
 done
 
-# Up to 500 unknowns are proved (lattice: 49), more are not, and it says so.
+# Up to 100 unknowns are proved (lattice: 49), more are not, and it says so.
 sed 's/^END/PROVE\nEND/' "$w/lattice.deck" > "$w/narrow.deck"
 tests/make_deck lattice 17 300 | sed 's/^TIME    300 /TIME    1   /; s/^END/PROVE\nEND/' > "$w/net.deck"
 equal 'a lattice is proved' '19 / 19' "$("$kinmat" "$w/narrow.deck" 2> "$w/net.err" | sed -n 's/^ INSTANTS PROVED \(.*\),  PARTS.*/\1/p')"
-# Of 449 unknowns, near the limit, a step that must be divided is broken off after some tries, in seconds.
-tests/make_deck lattice 15 300 | sed 's/^TIME    300 .*/TIME    1                       0.0             0.3/; s/^END/PROVE\nEND/' > "$w/divided.deck"
-equal 'a step of many unknowns is broken off' 1 "$("$kinmat" "$w/divided.deck" 2> "$w/net.err" | unfolded | grep -o 'BLOCK TOO LARGE, UNKNOWNS 449 ' | grep -c .)"
 equal 'a net is too wide for a proof' 2 "$("$kinmat" "$w/net.deck" 2> "$w/net.err" | unfolded | grep -o ': NOT PROVED: LINKS [^:]* MORE: BLOCK TOO LARGE, UNKNOWNS 577 ' | grep -c .)"
 conclude
