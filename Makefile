@@ -222,7 +222,6 @@ study-1987: $(BUILD)/timed/matrix_1987
 # Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
 hard: $(BUILD)/kinmat $(addprefix $(BUILD)/release/,hard print_expected)
 	BUILD=$(BUILD) tests/oracle/hard.sh full
-	BUILD=$(BUILD) tests/system/answers.sh long
 
 hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short

@@ -256,8 +256,6 @@ contains
 
       power = floor(log10(largest))
       decimals = digits - 1 - power
-      ! One more after the point would touch the number before it.
-      if (decimals == most_decimals + 1) decimals = most_decimals
       unit = 10.0_wp**(-decimals)
       rounded = anint(x/unit)
       if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp

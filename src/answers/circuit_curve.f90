@@ -18,12 +18,12 @@ module circuit_curve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values, drive_residual, drive_row, &
       drive_remainder
-   use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance, measure_slots
+   use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
    public :: of_value, of_slope, of_bend, of_size
-   public :: curve_point_t, start_point, step_along, step_between, lies_between, beside, offset_from, same_place
+   public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, same_place, same
 
    integer, parameter :: max_iterations = 12
    !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
@@ -35,8 +35,6 @@ module circuit_curve
    real(wp), parameter :: max_step = 0.1_wp
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
-   !> A position off the curve by less than this part of the certified step is on it, for the curve is unique there.
-   real(wp), parameter :: unique = 0.1_wp
 
    !> The numbers of a position on the curve: the drive's value, its first and second derivative, and the largest
    !> coordinate in lengths.
@@ -228,13 +226,6 @@ contains
       h = dot_product(a%tangent, offset_from(c, a%q, b%q, .false.))
    end function step_between
 
-   !> A position so far from the curve beside its point `a` is on it, in rad and lengths.
-   pure elemental real(wp) function beside(a)
-      type(curve_point_t), intent(in) :: a
-
-      beside = max(same, unique*a%reach)
-   end function beside
-
    !> Whether the position `q` (3, links) is on the curve at a distance from 0 to `h` along the tangent of `a`, or
    !> beside its end; whole turns of links do not count. `b`: the point of the curve there.
    subroutine lies_between(c, a, h, q, b, lies)
@@ -247,10 +238,10 @@ contains
 
       x = offset_from(c, a%q, q, .true.)
       along = dot_product(a%tangent, x)
-      lies = along >= -same .and. along <= h + beside(a)
-      if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + beside(a)
+      lies = along >= -same .and. along <= h + same
+      if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + same
       if (lies) call step_along(c, a, along, b, lies)
-      if (lies) lies = maxval(abs(offset_from(c, b%q, q, .true.))) <= beside(b)
+      if (lies) lies = same_place(c, b%q, q)
    end subroutine lies_between
 
    !> The coordinates of the position `b` less those of `a` (3, links), without whole turns if `turns_off`.
@@ -320,7 +311,6 @@ contains
 
       p%value(of_size) = maxval(abs(p%q(:2, :)))
 
-      call measure_slots(c%closure, c%free, c%pose)
       call kantorovich(c%closure, c%free, c%factors, c%pose, k)
       speed = distance(c%closure, c%free, 0.0_wp*along, along)
       p%reach = max_step

@@ -228,11 +228,8 @@ contains
       integer :: k
 
       sense = 0
-      do k = 1, size(points)
-         if (.not. is_sure(points(k))) cycle
-         sense = nint(sign(1.0_wp, points(k)%value(1)))
-         return
-      end do
+      k = findloc(is_sure(points), .true., dim=1)
+      if (k > 0) sense = nint(sign(1.0_wp, points(k)%value(1)))
    end function sense
 
    !> The point `p` between the neighbours `a` and `b` at which number `order` (of_value, ..., of_size) is `level`,

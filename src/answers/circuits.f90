@@ -17,7 +17,7 @@ module circuits
    use analysis, only: analysis_t, make_analysis, advance
    use assemblies, only: assemblies_t, assembly_t, find_assemblies
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      of_size, step_between, lies_between, beside, same_place
+      of_size, step_between, lies_between, same_place, same
    use circuit_trace, only: circuit_t, change_point_t, trace, least_step, end_closed
    use ranges, only: held_at, put_estimate
    implicit none
@@ -216,8 +216,8 @@ contains
          do k = 1, size(found%list(i)%points) - 1
             associate (a => found%list(i)%points(k), b => found%list(i)%points(k + 1), value => p%value(0))
                ! The drive has the value of `p`, but for whole turns, between these neighbours, or nearly there.
-               least = min(a%value(0), b%value(0)) - beside(a)
-               greatest = max(a%value(0), b%value(0)) + beside(a)
+               least = min(a%value(0), b%value(0)) - same
+               greatest = max(a%value(0), b%value(0)) + same
                passes = value >= least .and. value <= greatest
                if (found%curve%is_angle) passes = modulo(value - least, turn) <= greatest - least
                if (passes) call lies_between(found%curve, a, step_between(found%curve, a, b), p%q, again, passes)

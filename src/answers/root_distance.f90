@@ -23,7 +23,6 @@ module root_distance
    implicit none
    private
    public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, distance
-   public :: measure_slots
 
    !> What the rows are not linear in.
    type :: coordinates_t
@@ -45,20 +44,6 @@ contains
          s%pairs%kind == pair_prismatic .and. s%column(s%link_of(s%pairs%point_i)) > 0)
       allocate (c%unit(size(s%pairs)), source=1.0_wp)
    end function new_coordinates
-
-   !> Measures x_i - x_j of each prismatic pair in its length at pose `p`, where that is above 1.
-   pure subroutine measure_slots(s, c, p)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(inout) :: c
-      type(pose_t), intent(in) :: p
-      integer :: k
-
-      do k = 1, size(c%slots)
-         associate (pair => s%pairs(c%slots(k)))
-            c%unit(c%slots(k)) = max(1.0_wp, norm2(p%q(:2, s%link_of(pair%point_i)) - p%q(:2, s%link_of(pair%point_j))))
-         end associate
-      end do
-   end subroutine measure_slots
 
    !> The largest change, in rad and units of the slots, of these coordinates between the positions `a` and `b`
    !> (3, links).
@@ -108,10 +93,11 @@ contains
    end function jacobian_lipschitz
 
    !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. The first
-   !> rows of the matrix are those of the system; its others are linear.
+   !> rows of the matrix are those of the system; its others are linear. From now on `c` measures x_i - x_j of each
+   !> prismatic pair in its length at `p`, where that is above 1.
    subroutine kantorovich(s, c, f, p, k)
       type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
+      type(coordinates_t), intent(inout) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: k
@@ -126,6 +112,9 @@ contains
          g(s%column(c%angles(m)) + 2, m) = 1.0_wp
       end do
       do m = 1, size(c%slots)
+         associate (pair => s%pairs(c%slots(m)))
+            c%unit(c%slots(m)) = max(1.0_wp, norm2(p%q(:2, s%link_of(pair%point_i)) - p%q(:2, s%link_of(pair%point_j))))
+         end associate
          associate (i => s%column(s%link_of(s%pairs(c%slots(m))%point_i)), &
                     j => s%column(s%link_of(s%pairs(c%slots(m))%point_j)))
             do axis = 0, 1

@@ -105,38 +105,26 @@ contains
       integer, allocatable :: starts(:)
       integer :: n, k, i
       character(:), allocatable :: line
+      ! Two heads, the power of ten, the unit.
+      character(len(s%columns%above)) :: heads(4)
 
       call put(o, '')
       starts = line_starts(s)
       do n = 1, size(starts) - 1
-         do k = 1, 4
-            line = right(head_text(s%columns(1), k), number_length)
-            do i = starts(n), starts(n + 1) - 1
-               if (s%columns(i)%printed) line = line//right(head_text(s%columns(i), k), width(s%columns(i)))
+         do k = 1, size(heads)
+            line = ''
+            do i = 1, starts(n + 1) - 1
+               associate (c => s%columns(i))
+                  if (.not. c%printed .or. (i > 1 .and. i < starts(n))) cycle
+                  heads = [c%above, c%below, repeat(' ', len(c%above)), c%unit]
+                  if (c%power /= 0) heads(3) = power_text(c%power)
+                  line = line//right(trim(heads(k)), merge(number_length, width(c), i == 1))
+               end associate
             end do
             if (len_trim(line) > 0) call put(o, trim(line))
          end do
       end do
    end subroutine put_variant_heads
-
-   !> Line `k` over the column `c`: its two heads, its power of ten, its unit.
-   function head_text(c, k) result(text)
-      type(summary_column_t), intent(in) :: c
-      integer, intent(in) :: k
-      character(:), allocatable :: text
-
-      select case (k)
-      case (1)
-         text = trim(c%above)
-      case (2)
-         text = trim(c%below)
-      case (3)
-         text = ''
-         if (c%power /= 0) text = power_text(c%power)
-      case default
-         text = trim(c%unit)
-      end select
-   end function head_text
 
    !> The lines of the row `r`, and below them why there is not all of it.
    subroutine put_variant_row(o, l, s, set, r)

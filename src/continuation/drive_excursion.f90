@@ -13,7 +13,7 @@ module drive_excursion
    use drives, only: drive_motion, bounds_t, bounds_of
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, judge_step
+   public :: drive_excursion_t, new_drive_excursion, substep_allowed, excursion, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -81,7 +81,7 @@ contains
    end function substep_allowed
 
    !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
-   !> `away`: bounds their `likely_excursion`.
+   !> `away`: bounds their `excursion`.
    pure subroutine judge_step(p, step, away, is_plain)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: step
@@ -95,25 +95,19 @@ contains
       is_plain = away <= largest_excursion
    end subroutine judge_step
 
-   !> An upper bound of the `excursion` below, at hardly any cost.
-   pure real(wp) function likely_excursion(p, t1, t2) result(away)
+   !> How far the drives leave their chords from `t1` to `t2`, in radians or characteristic lengths; unless `closely`,
+   !> an upper bound of that at hardly any cost, where there is one.
+   pure real(wp) function excursion(p, t1, t2, closely) result(away)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t1, t2
-
-      if (is_within(p, t1, t2) .and. p%curve < huge(1.0_wp)) then
-         away = 0.125_wp*(t2 - t1)**2*p%curve
-      else
-         away = excursion(p, t1, t2)
-      end if
-   end function likely_excursion
-
-   !> How far the drives leave their chords from `t1` to `t2`, in radians or characteristic lengths.
-   pure real(wp) function excursion(p, t1, t2) result(away)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t1, t2
+      logical, intent(in) :: closely
       real(wp) :: change
 
-      call examine(p, t1, t2, change, away)
+      if (.not. closely .and. is_within(p, t1, t2) .and. p%curve < huge(1.0_wp)) then
+         away = 0.125_wp*(t2 - t1)**2*p%curve
+      else
+         call examine(p, t1, t2, change, away)
+      end if
    end function excursion
 
    !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,

@@ -6,7 +6,7 @@ module following
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
-   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion
+   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, excursion
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
@@ -140,7 +140,7 @@ contains
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
 
-      if (f%follows) f%engine%state%excursion = likely_excursion(f%drives, f%t, t)
+      if (f%follows) f%engine%state%excursion = excursion(f%drives, f%t, t, .false.)
       call solve_instant(f%engine, t, f%follows, f%convergence)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
@@ -171,7 +171,7 @@ contains
       associate (c => f%convergence, p => f%drives)
          ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
          if (ratio > max_kantorovich_ratio) then
-            away = excursion(p, f%t, t)
+            away = excursion(p, f%t, t, .true.)
             h = t - f%t
             do i = 1, size(p%laws)
                first = drive_motion(p%laws(i), f%t)

@@ -139,15 +139,11 @@ contains
 
    !> The circuits of the triple rocker. There is one; it begins where the motion from the estimate first turns back, at the
    !> greatest angle of the crank, from where it returns on the other assembly.
-   subroutine put_circuits_by_hand(o, name, m)
+   subroutine put_circuits_by_hand(o)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-      type(mechanism_t), intent(in) :: m
-      type(found_t), allocatable :: list(:)
       character(120) :: line
       integer :: k
 
-      call find_all(name, m, list)
       call put(o, '')
       call put(o, ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK')
       call put(o, ' CIRCUIT BRANCH  ASSEMBLY NO.  RANGE OF ANGLE CRANK, DEG')

@@ -148,7 +148,7 @@ contains
       tally%followed = instant_count(m) - 1
       if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
       if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
-      if (m%circuits) call put_circuits_by_hand(o, name, m)
+      if (m%circuits) call put_circuits_by_hand(o)
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call divide(m, set)
       call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
