@@ -29,7 +29,7 @@ module shares
    !> A child that is so many characters ahead waits. Characters that are read at once.
    integer, parameter :: max_ahead = 2**26, block_length = 65536
    !> Frames that hold no text of an output: a part begins, whose number is the text; it is done; the child ends, and
-   !> the text is its message.
+   !> the text is its exit status, a blank, and its message.
    integer, parameter :: part_begins = out_shared + 1, part_done = out_shared + 2, child_ends = out_shared + 3
 
    !> A child, and what was read from it: frames, of which the first begins at `first`.
@@ -90,9 +90,10 @@ contains
                is_interrupted = .true.
                call interrupt_child(children(:n)%process)
             end if
-            list%descriptor = merge(children%descriptor, -1, children%part <= turn .or. &
+            list%descriptor = merge(children%descriptor, -1, is_stopped .or. children%part <= turn .or. &
                children%last - children%first < max_ahead)
-            if (poll(list, size(list, kind=c_long), look_time) <= 0) cycle
+            ! The system refuses a longer list than the number of files that a process may open.
+            if (poll(list, int(n, c_long), look_time) <= 0) cycle
             do k = 1, n
                if (list(k)%found /= 0) call read_from(children(k))
                if (is_stopped) children(k)%last = children(k)%first - 1
@@ -100,7 +101,7 @@ contains
             do
                before = turn
                do k = 1, n
-                  call write_frames(o, children(k), turn, message)
+                  call write_frames(o, children(k), turn, status, message)
                end do
                if (turn == before) exit
             end do
@@ -118,7 +119,6 @@ contains
          do k = 1, n
             ended = 0
             ignored = waitpid(int(children(k)%process, c_int), ended, 0_c_int)
-            if (children(k)%has_ended) status = max(status, ishft(iand(ended, 65535), -8))
             if (k /= lost .or. any(has_failed(o%files))) cycle
             ! All parts before its own are written.
             status = status_system
@@ -147,13 +147,14 @@ contains
    end subroutine begin_child
 
    !> Ends this process, a child whose outputs are closed; its parent takes over the `message` and the exit `status`.
+   !> The system keeps no exit status for a parent that was started with SIGCHLD ignored.
    subroutine end_child(o, status, message)
       class(outputs_t), intent(inout) :: o
       integer, intent(in) :: status
       character(*), intent(in) :: message
 
-      call report(o%share, child_ends, message)
-      call end_process(int(status, c_int))
+      call report(o%share, child_ends, whole(status)//' '//message)
+      call end_process(0_c_int)
    end subroutine end_child
 
    !> Sends a frame to the parent: `kind`, as above, and a text.
@@ -191,13 +192,13 @@ contains
    end subroutine read_from
 
    !> Writes the text of the child `c` that may be written: of the part whose `turn` it is, which is counted when it is
-   !> done. `message`: that of a child, if it is the first.
-   subroutine write_frames(o, c, turn, message)
+   !> done. `status`: the worst of the exit statuses; `message`: that of a child, if it is the first.
+   subroutine write_frames(o, c, turn, status, message)
       class(outputs_t), intent(inout) :: o
       type(child_t), intent(inout) :: c
-      integer, intent(inout) :: turn
+      integer, intent(inout) :: turn, status
       character(:), allocatable, intent(inout) :: message
-      integer :: head(2), from, to
+      integer :: head(2), from, to, own
 
       do while (c%part <= turn .and. c%last - c%first + 1 >= frame_head)
          head = transfer(c%text(c%first:c%first + frame_head - 1), head)
@@ -213,7 +214,9 @@ contains
             call flush_output(o%files(:out_shared))
          case (child_ends)
             c%has_ended = .true.
-            if (len(message) == 0) message = c%text(from:to)
+            read (c%text(from:to), *) own
+            status = max(status, own)
+            if (len(message) == 0) message = c%text(from + index(c%text(from:to), ' '):to)
          case default
             call add(o%files(head(1)), c%text(from:to))
          end select
