@@ -14,7 +14,7 @@ program fuzz
    use failures, only: failure_t
    use mechanism, only: mechanism_t
    use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, &
-      out_table, out_plot_table, out_plot_script
+      out_table
    use deck, only: read_deck
    use job, only: run_job
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
@@ -26,12 +26,10 @@ program fuzz
    !> Seconds that one deck may take, of a clock on the wall: the slowest known take 15 on a busy machine.
    integer(c_int), parameter :: patience = 60
    integer(c_int), parameter :: signal_alarm = 14
-   !> Every so many-th deck has all outputs: these, some of which are of one set each, and in these files.
+   !> Every so many-th deck has all outputs: these, the first of which is of one set, and in these files.
    integer, parameter :: others_every = 25
-   integer, parameter :: each_set(*) = [out_table, out_plot_table, out_plot_script]
-   integer, parameter :: other_outputs(*) = [each_set, out_summary, out_svg, out_animation, out_circuits]
-   character(9), parameter :: others(*) = [character(9) :: 'table.csv', 'plot.csv', 'plot.gp', 'summary', 'svg', &
-      'film.svg', 'circuits']
+   integer, parameter :: other_outputs(*) = [out_table, out_summary, out_svg, out_animation, out_circuits]
+   character(9), parameter :: others(*) = [character(9) :: 'table.csv', 'summary', 'svg', 'film.svg', 'circuits']
 
    interface
       !> After so many seconds the process is ended by the system; 0 takes it back.
@@ -144,8 +142,7 @@ contains
          if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
          do k = 1, size(others)
             if (wrong == '' .and. allocated(options%files(other_outputs(k))%text)) &
-               call check_protocol(options%files(other_outputs(k))%text, &
-               any(other_outputs(k) == [out_table, out_plot_table]), wrong)
+               call check_protocol(options%files(other_outputs(k))%text, other_outputs(k) == out_table, wrong)
          end do
       case (1)
          if (index(message, ' *** E') == 0) wrong = 'REFUSED WITHOUT A WORD: '//message
@@ -178,7 +175,7 @@ contains
       varies = size(find_cards(d, ['VARY    '])) > 0
       do k = 1, size(others)
          if (other_outputs(k) == out_circuits .and. size(find_cards(d, ['CIRCUITS'])) == 0) cycle
-         if (any(other_outputs(k) == each_set) .and. varies) cycle
+         if (other_outputs(k) == out_table .and. varies) cycle
          options%files(other_outputs(k))%text = directory//'/'//trim(others(k))
       end do
    end subroutine ask_for_others
