@@ -226,6 +226,15 @@ done
 sh -c 'ulimit -n 5; exec "$0" "$1" --jobs 2' "$kinmat" "$w/m.deck" > "$w/out" 2> "$w/err"
 equal '--jobs: no pipes: status' 3 $?
 equal '--jobs: no pipes' ' *** CANNOT START A PROCESS FOR SETS 1 TO 1 (TOO MANY OPEN FILES)' "$(cat "$w/err")"
+cat "$w/m.deck" "$w/m.deck" "$w/m.deck" "$w/m.deck" > "$w/eight.deck"
+timeout -s KILL 20 sh -c 'ulimit -n 7; exec "$0" "$1" --jobs 8' "$kinmat" "$w/eight.deck" > "$w/out" 2> "$w/err"
+equal '--jobs: fewer files than processes: status' 3 $?
+equal '--jobs: fewer files than processes' ' *** CANNOT START A PROCESS FOR SETS 3 TO 3 (TOO MANY OPEN FILES)' "$(cat "$w/err")"
+# Instants without an assembly are flagged, also where the system keeps no exit status of processes.
+sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/nowhere.deck"
+cat "$w/nowhere.deck" "$w/nowhere.deck" > "$w/flagged.deck"
+env --ignore-signal=CHLD "$kinmat" "$w/flagged.deck" --jobs 2 > "$w/out" 2> "$w/err"
+equal '--jobs: flagged instants, SIGCHLD ignored' 2 $?
 # Two processes, whose text nobody reads yet, so that none can go on. One of them is killed: what comes before its set
 # is written, and of that set what it has sent.
 sed 's/^TIME .*/TIME    3600                    0.0             12.0/' input/four_bar.deck > "$w/long.deck"
