@@ -25,6 +25,9 @@ module ranges
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
    integer, parameter :: max_turns = 12
    real(wp), parameter :: max_lengths = 100.0_wp
+   !> How close its end is looked for where no limit is known. Reason: rounding leaves about the root of a rounding open
+   !> there, and a try that fails takes as long as a long run.
+   real(wp), parameter :: closest = max(1.0e-7_wp, 64.0_wp*sqrt(epsilon(1.0_wp)))
    !> A motion closes where positions agree to this part of a radian and of the characteristic length.
    real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
@@ -146,9 +149,9 @@ contains
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step, off(3, size(d%links))
+      real(wp) :: t, step, part, off(3, size(d%links))
       integer :: i, k, steps_a_turn, begin
-      logical :: is_angle
+      logical :: is_angle, grows
 
       is_angle = .not. is_length(d%drives(r%drive))
       step = merge(step_of_angle, step_of_length, is_angle)
@@ -168,12 +171,22 @@ contains
          if (allocated(now%diagnostics)) r%change_points = r%change_points &
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
+            ! Close to a change point rounding leaves no limit: from the time to which the motion was followed it goes on by
+            ! longer steps, then by shorter ones.
+            t = a%t
+            i = last_of(now, diagnostic_close)
+            if (i > 0) t = now%diagnostics(i)%t
+            part = closest
+            grows = .true.
+            do while (last_of(now, diagnostic_limit) == 0 .and. part >= closest .and. signal_received() == 0)
+               call advance(a, t + part, now)
+               grows = grows .and. now%known >= 0
+               if (now%known >= 0) t = t + part
+               part = merge(2.0_wp, 0.5_wp, grows)*part
+            end do
             r%has_limit(side) = .true.
-            r%limit(side)%value = value + rate*a%t
-            if (.not. allocated(now%diagnostics)) return
-            ! The limit, or to where the motion was followed: so close to a change point rounding leaves no limit.
-            i = findloc(now%diagnostics%kind == diagnostic_limit .or. now%diagnostics%kind == diagnostic_close, &
-               .true., dim=1, back=.true.)
+            r%limit(side)%value = value + rate*t
+            i = last_of(now, diagnostic_limit)
             if (i == 0) return
             associate (found => r%limit(side), told => now%diagnostics(i))
                found%links = told%links
@@ -199,4 +212,13 @@ contains
       end do
       r%limit(side)%value = value + rate*t
    end subroutine follow
+
+   !> The number of the last diagnostic of `q` of this `kind`; 0: there is none.
+   pure integer function last_of(q, kind) result(i)
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: kind
+
+      i = 0
+      if (allocated(q%diagnostics)) i = findloc(q%diagnostics%kind, kind, dim=1, back=.true.)
+   end function last_of
 end module ranges
