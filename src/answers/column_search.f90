@@ -89,7 +89,7 @@ contains
       end associate
       node%has_errors = has_errors
       node%is_known = all(node%known == 2)
-      if (has_errors) node%is_known = node%is_known .and. maxval(node%error) < nothing_known
+      if (has_errors) node%is_known = node%is_known .and. all(node%error < nothing_known)
    end subroutine find_node
 
    !> Takes the node of mechanism `c` that comes next, and searches between it and the last one of which all is known.
