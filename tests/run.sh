@@ -19,7 +19,7 @@ parts() {
    the command|480|tests/system/command.sh
    what is installed|18|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
-   what is printed arrives|270|tests/system/output.sh
+   what is printed arrives|255|tests/system/output.sh
    unit tests|500|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
@@ -31,11 +31,11 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    tolerances|49|tests/system/tolerances.sh
-   what is as drawn|109|tests/system/as_drawn.sh
+   what is as drawn|90|tests/system/as_drawn.sh
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
-   poles and curves|38|tests/system/centres.sh
+   poles and curves|36|tests/system/centres.sh
    all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250

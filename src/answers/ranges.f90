@@ -171,8 +171,8 @@ contains
          if (allocated(now%diagnostics)) r%change_points = r%change_points &
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
-            ! Close to a change point rounding leaves no limit: from the time to which the motion was followed it goes on by
-            ! longer steps, then by shorter ones.
+            ! Close to a change point rounding leaves no limit: from the time to which the motion was followed it goes
+            ! on by longer steps, then by shorter ones.
             t = a%t
             i = last_of(now, diagnostic_close)
             if (i > 0) t = now%diagnostics(i)%t
