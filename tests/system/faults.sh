@@ -601,9 +601,8 @@ done
 "$kinmat" tests/system/decks/estimate_of_twenty_links.deck --csv "$w/csv" > "$w/out"
 awk -F, '$2 == 0 { print "FOUND", $5, $8 }' "$w/csv" | cat - tests/system/decks/estimate_of_twenty_links.deck | awk '
    $1 == "FOUND" { phi[$2] = $3 }
-   link != "" { d = phi[link] - $4; d -= 360*int(d/360); if (d > 180) d -= 360; if (d < -180) d += 360
-      if (!(link in phi) || d*d > 9) print link, d; near++; link = "" }
-   $1 == "LINK" { link = $2 }
+   $1 == "LINK" { d = phi[$2] - substr($0, 65); d -= 360*int(d/360); if (d > 180) d -= 360; if (d < -180) d += 360
+      if (!($2 in phi) || d*d > 9) print $2, d; near++ }
    END { print near + 0 }' > "$w/near"
 equal 'twenty links from a good estimate' 19 "$(cat "$w/near")"
 equal 'angles of zero: an assembly' yes "$(p=$(assembled 0.0 0.0 0.0); [ "$p" = "$above" ] || [ "$p" = "$under" ] && echo yes)"
