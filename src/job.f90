@@ -13,12 +13,12 @@ module job
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
    use deck, only: read_deck, job_share_t, variants_before, build_variant
    use deck_variants, only: variation_t
-   use system_calls, only: watch_signals, signal_received
-   use text_output, only: put, flush_output
-   use processes, only: processor_count
+   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
+   use text_output, only: put, flush_output, turn_lost
+   use processes, only: processor_count, report, end_process
    use command_line
    use outputs, only: outputs_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
-   use shares, only: run_shares, next_part, end_child
+   use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use solver_log, only: log_head, log_instant
@@ -136,9 +136,21 @@ contains
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
-      ! A run that a signal has ended ends by that signal.
-      if (signal_received() > 0) status = status_signal + signal_received()
-      if (o%share%is_child) call end_child(o, status, message)
+      ! A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
+      ! without a word, unless other outputs were asked for, which end there too.
+      if (signal_received() > 0) then
+         status = status_signal + signal_received()
+      else if (broken_pipe_kills) then
+         if (any(o%files%error == broken_pipe)) then
+            status = status_signal + signal_pipe
+            if (count(o%asked) == 1) message = ''
+         end if
+      end if
+      if (.not. o%share%is_child) return
+      ! A child ends here: its parent takes over the status and the message, unless its turn has never come.
+      if (any(o%files%error == turn_lost)) call end_process(status_solved)
+      if (len(message) > 0) call report(message)
+      call end_process(status)
 
    contains
 
@@ -396,6 +408,7 @@ contains
 
          if (o%asked(out_summary)) call summary_row(o%files(out_summary), summary, m, row)
          if (o%asked(out_listing)) call put_variant_row(o%files(out_listing), layout, summary, m, row)
+         call write_in_turn(o)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
       end subroutine write_row
    end subroutine run_variants
@@ -449,6 +462,7 @@ contains
                call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch)
             end do
          end if
+         call write_in_turn(o)
 
          call take_instant(asked, a, k, due)
          if (.not. is_over(o)) cycle

@@ -18,10 +18,14 @@ module outputs
       integer :: length = huge(1)               !< so many of them are a part
       integer :: unit = 1                       !< so many variants are solved together
       logical :: is_child = .false., is_parent = .false.
-      !> The descriptor of a file whose position all processes share: how many parts are taken.
-      integer(c_int) :: counter = -1
+      !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
+      !> lock of a part is that of a byte of the first.
+      integer(c_int) :: taken = -1, done = -1
       integer :: part = 0                       !< the one at hand
-      type(output_t) :: reports                 !< of a child to its parent
+      logical :: held = .false.                 !< its text is held
+      integer :: look = 0                       !< it is looked for the turn where an output holds so much
+      integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
+      integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
    end type share_of_job_t
 
    type :: outputs_t

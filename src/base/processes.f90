@@ -1,22 +1,42 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
-   use system_calls, only: note_all_signals, close_descriptor
+   use failures, only: status_system
+   use system_calls, only: write_bytes, note_all_signals, last_error
    implicit none
    private
-   public :: processor_count, fork_process, interrupt_child, end_process, poll, poll_t, waitpid
-   public :: memfd_create, lseek, from_here
+   public :: processor_count, fork_process, interrupt_child, end_process, end_without_memory, report, end_of_message
+   public :: pipe, poll, poll_t, waitpid, memfd_create, lseek, from_here, change_lock, locked, unlocked
 
-   !> SIGTERM; of lseek: positions are counted from the present one.
-   integer(c_int), parameter :: signal_terminate = 15, from_here = 1
+   !> SIGTERM; PR_SET_PDEATHSIG of prctl.
+   integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
+   !> Ends the message that a child reports to its parent.
+   character(1), parameter :: end_of_message = achar(2)
+   character(*), parameter :: no_memory = ' *** NOT ENOUGH MEMORY FOR THE DECK'
+   !> Where this process reports an error: standard error, in a child the pipe to its parent.
+   integer(c_int), parameter :: standard_error = 2
+   integer(c_int) :: report_to = standard_error
 
    !> What poll is asked about a descriptor: whether there is input.
    type, bind(c) :: poll_t
       integer(c_int) :: descriptor = -1
       integer(c_int16_t) :: asked = 1, found = 0
    end type poll_t
+
+   !> Bytes that are locked, as fcntl takes them.
+   type, bind(c) :: lock_t
+      integer(c_int16_t) :: kind = 0, from = 0
+      integer(c_long) :: first = 0, length = 1
+      integer(c_int) :: process = 0
+   end type lock_t
+
+   !> Of fcntl: sets a lock, and waits for it. Kinds of locks. Of lseek: positions are counted from the present one.
+   integer(c_int), parameter :: set_lock = 7, from_here = 1
+   integer(c_int16_t), parameter :: locked = 1, unlocked = 2
+   !> The system's number of the error that a signal came.
+   integer, parameter :: interrupted = 4
 
    interface
       !> fork(2): 0 in the child, its number in the parent, negative for an error.
@@ -41,6 +61,11 @@ module processes
          integer(c_int), value :: child, options
          integer(c_int), intent(out) :: status
       end function waitpid
+      !> prctl(2): what this process does on an occasion.
+      integer(c_int) function prctl(occasion, number) bind(c)
+         import :: c_int
+         integer(c_int), value :: occasion, number
+      end function prctl
       !> kill(2): sends a signal to a process.
       integer(c_int) function kill(process, number) bind(c)
          import :: c_int
@@ -70,6 +95,12 @@ module processes
          integer(c_int), value :: descriptor, origin
          integer(c_long), value :: offset
       end function lseek
+      !> fcntl(2) with a lock: 0, or -1 for an error, such as a signal.
+      integer(c_int) function fcntl(descriptor, command, lock) bind(c)
+         import :: c_int, lock_t
+         integer(c_int), value :: descriptor, command
+         type(lock_t), intent(inout) :: lock
+      end function fcntl
    end interface
 
 contains
@@ -84,20 +115,17 @@ contains
          processor_count = max(1, sum(popcnt(mask)))
    end function processor_count
 
-   !> Makes a child, a copy of this process, which ends by itself after the first signal, or when it writes and this
-   !> process is gone. A pipe leads from it to this process: `descriptor` is the end that the child writes to, here the
-   !> end that is read. The result is 0 in the child, its number in the parent, negative for an error.
-   integer function fork_process(descriptor)
-      integer(c_int), intent(out) :: descriptor
-      integer(c_int) :: ends(2)
-      logical :: closed
+   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. It
+   !> reports to the pipe `writes`. The result is 0 in the child, its number in the parent, negative for an error.
+   integer function fork_process(writes)
+      integer(c_int), intent(in) :: writes
+      integer(c_int) :: ignored
 
-      fork_process = -1
-      if (pipe(ends) /= 0) return
       fork_process = fork()
-      descriptor = ends(merge(2, 1, fork_process == 0))
-      closed = close_descriptor(ends(merge(1, 2, fork_process == 0)))
-      if (fork_process == 0) call note_all_signals
+      if (fork_process /= 0) return
+      ignored = prctl(when_parent_ends, signal_terminate)
+      call note_all_signals
+      report_to = writes
    end function fork_process
 
    !> Asks the process `child` to end.
@@ -107,4 +135,35 @@ contains
 
       ignored = kill(int(child, c_int), signal_terminate)
    end subroutine interrupt_child
+
+   !> Reports the `message` of this process, a child, to its parent, in one piece.
+   subroutine report(message)
+      character(*), intent(in) :: message
+      integer(c_size_t) :: written
+
+      written = write_bytes(report_to, message//end_of_message)
+   end subroutine report
+
+   !> Ends this process because memory lacks, and uses none for it. Outputs end with the last block of lines written.
+   subroutine end_without_memory
+      integer(c_size_t) :: written
+
+      written = write_bytes(report_to, &
+         no_memory//merge(new_line('a'), end_of_message, report_to == standard_error))
+      call end_process(status_system)
+   end subroutine end_without_memory
+
+   !> Sets or opens the lock of byte `k` of the file `descriptor` when it can be had, whatever signals come meanwhile.
+   subroutine change_lock(descriptor, k, kind)
+      integer(c_int), intent(in) :: descriptor
+      integer, intent(in) :: k
+      integer(c_int16_t), intent(in) :: kind
+      type(lock_t) :: lock
+
+      lock%kind = kind
+      lock%first = k
+      do while (fcntl(descriptor, set_lock, lock) /= 0)
+         if (last_error() /= interrupted) exit
+      end do
+   end subroutine change_lock
 end module processes

@@ -1,6 +1,6 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
-!> file keeps its old contents until the first block is written. A child process writes the text of several outputs to
-!> one pipe, in frames (`shares`).
+!> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
+!> in memory until the turn has come (`shares`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -8,12 +8,12 @@ module text_output
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
-   public :: output_t, open_output, check_apart, put, add, flush_output, write_text, close_output, abandon_output
-   public :: frame_head, has_failed, replaced
+   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: held_length, write_held, release_output, has_failed, turn_lost, replaced
 
    integer, parameter :: block_length = 65536
-   !> Characters of the head of a frame: two integers, `frame` and the length of the text that follows.
-   integer, parameter :: frame_head = 8
+   !> The error of an output whose turn will never come: the process before it has ended.
+   integer, parameter :: turn_lost = -1
    integer(c_int), parameter :: standard_input = 0, standard_output = 1
 
    !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
@@ -21,9 +21,8 @@ module text_output
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
       character(:), allocatable :: buffer    !< (block_length or more); not allocated: not open
-      integer :: used = 0                    !< characters in the buffer
-      logical :: held = .false.              !< nothing is written: all text stays in the buffer
-      integer :: frame = 0                   !< its number where it writes frames; 0: it writes text alone
+      integer :: written = 0, used = 0       !< what is not written yet stands in the buffer between these places
+      logical :: held = .false.              !< its turn to be written has not come: all text stays in the buffer
       logical :: made = .false.              !< the file did not exist before
       logical :: emptied = .false.           !< the old contents of the file are gone
       integer :: error = 0                   !< the system's number of the first write error; 0: none
@@ -100,12 +99,16 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
       character(:), allocatable :: other
-      integer :: last
+      integer :: held, last
 
       if (len(text) > len(o%buffer) - o%used .and. o%held) then
-         allocate (character(2*(o%used + len(text))) :: other)
-         other(:o%used) = o%buffer(:o%used)
+         ! Room for text that is held, as much again up to 2**26, and for none that is written.
+         held = held_length(o)
+         allocate (character(max(len(o%buffer), held + len(text) + min(held + len(text), 2**26))) :: other)
+         other(:held) = o%buffer(o%written + 1:o%used)
          call move_alloc(other, o%buffer)
+         o%used = held
+         o%written = 0
       end if
       if (len(text) > len(o%buffer) - o%used) then
          ! Whole lines are written, so that a killed process leaves no partial line.
@@ -114,7 +117,7 @@ contains
          o%buffer(:o%used - last) = o%buffer(last + 1:o%used)
          o%used = o%used - last
       end if
-      if (len(text) > len(o%buffer) - o%used) call flush_output(o)
+      if (len(text) > len(o%buffer) - o%used) call write_held(o, held_length(o))
       if (len(text) > len(o%buffer)) then
          call write_text(o, text)
          return
@@ -123,13 +126,42 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Writes the buffer of an open output at once: a reader that waits has its lines, and a write error shows.
+   !> How many characters are held, or wait for a block to be full.
+   elemental integer function held_length(o)
+      type(output_t), intent(in) :: o
+
+      held_length = o%used - o%written
+   end function held_length
+
+   !> Writes the first `length` characters that are held.
+   subroutine write_held(o, length)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: length
+
+      call write_text(o, o%buffer(o%written + 1:o%written + length))
+      o%written = o%written + length
+      if (o%written < o%used) return
+      o%written = 0
+      o%used = 0
+   end subroutine write_held
+
+   !> Writes all that is held, and text is held no longer. Its buffer is then short, and stays in the processor's cache.
+   subroutine release_output(o)
+      type(output_t), intent(inout) :: o
+
+      call write_held(o, held_length(o))
+      o%held = .false.
+      if (len(o%buffer) == block_length) return
+      deallocate (o%buffer)
+      allocate (character(block_length) :: o%buffer)
+   end subroutine release_output
+
+   !> Writes the buffer of an open output at once, unless it is held: a reader that waits has its lines, and a write
+   !> error shows.
    impure elemental subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
-      if (.not. allocated(o%buffer)) return
-      call write_text(o, o%buffer(:o%used))
-      o%used = 0
+      if (allocated(o%buffer) .and. .not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
    !> Whether a write has failed: further results would be lost.
@@ -144,7 +176,7 @@ contains
       type(output_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
 
-      call flush_output(o)
+      call write_held(o, held_length(o))
       deallocate (o%buffer)
       if (len(o%path) > 0) then
          if (.not. close_descriptor(o%descriptor) .and. .not. has_failed(o)) o%error = last_error()
@@ -167,13 +199,12 @@ contains
       if (o%made) call remove_file(o%path)
    end subroutine abandon_output
 
-   !> Writes all of `text` at once: the system may take it in several pieces.
+   !> Writes all of `text`: the system may take it in several pieces.
    subroutine write_text(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
       type(identity_t) :: id
       integer(c_size_t) :: written, done
-      character(frame_head) :: head
 
       ! The old contents of the file go; devices and pipes have none.
       if (.not. (o%emptied .or. has_failed(o))) then
@@ -182,11 +213,6 @@ contains
          if (id%regular) then
             if (ftruncate(o%descriptor, 0_c_long) /= 0) o%error = last_error()
          end if
-      end if
-      if (o%frame > 0) then
-         ! A pipe takes so few characters in one piece.
-         head = transfer([o%frame, len(text)], head)
-         if (write_bytes(o%descriptor, head) < frame_head) o%error = last_error()
       end if
       done = 0
       do while (done < len(text) .and. .not. has_failed(o))
