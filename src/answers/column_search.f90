@@ -105,6 +105,8 @@ contains
          if (.not. nodes(place(6))%is_known) then
             call search_waiting(x, s, c)
             call take_node(x, c, nodes(place(6)), .true.)
+            ! Nothing is searched across it.
+            track%filled = 0
             return
          end if
          track%filled = track%filled + 1
