@@ -180,7 +180,7 @@ contains
             grows = .true.
             do while (last_of(now, diagnostic_limit) == 0 .and. part >= closest .and. signal_received() == 0)
                call advance(a, t + part, now)
-               grows = grows .and. now%known >= 0
+               grows = grows .and. now%known >= 0 .and. part < step
                if (now%known >= 0) t = t + part
                part = merge(2.0_wp, 0.5_wp, grows)*part
             end do
