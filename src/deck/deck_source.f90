@@ -56,7 +56,8 @@ contains
    end subroutine open_source
 
    !> Reads the next `card`; `found` is false at the end. A line ends in LF or CR-LF. Errors: status_system;
-   !> status_rejected for a line of more than `max_columns`.
+   !> status_rejected for a line of more than `max_columns`, and for one with a carriage return inside: a comment in a
+   !> file whose lines end in CR would hide the cards after it.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
@@ -88,6 +89,12 @@ contains
          if (source%buffer(next - 2:next - 2) == carriage_return) length = length - 1
       end if
       associate (line => source%buffer(source%at:source%at + length - 1))
+         found = index(line, carriage_return) == 0
+         if (.not. found) then
+            call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines) &
+               //' HAS A CARRIAGE RETURN INSIDE; END LINES WITH LF OR CR-LF')
+            return
+         end if
          card%text = line(:min(length, card_columns))
          i = 0
          if (length > card_columns) i = verify(line(card_columns + 1:), ' ')

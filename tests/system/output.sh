@@ -207,6 +207,10 @@ told 'a line of too many columns' 1 $? " *** FILE long_line$long_line"
 { head -c 9999900 /dev/zero | tr '\0' ' '; echo; cat two; } > blank_line
 "$kinmat" blank_line > out 2> err
 told 'a line of many blanks' 0 $? ''
+printf '$ A COMMENT\rTITLE   LOST\r\n' | cat - two > returns
+"$kinmat" returns > out 2> err
+told 'a carriage return that would hide a card' 1 $? \
+   ' *** FILE returns IS NOT A DECK: LINE 1 HAS A CARRIAGE RETURN INSIDE; END LINES WITH LF OR CR-LF'
 
 # Decks that cannot be read.
 "$kinmat" /proc/self/mem > out 2> err
