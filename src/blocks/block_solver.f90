@@ -199,10 +199,12 @@ contains
       call solve_next_side(block%shape, w, w%r)
       call set_derivatives(2, block%first, block%last, b%unknown, w%r, s%u)
       if (block%shape%rows == block%shape%n) return
-      ! Nothing but drives and its own unknowns goes into the block of equations that are too many.
-      associate (rows => block%shape%rows, n => block%shape%n, u => b%unknown(block%first:block%last))
-         rate = maxval(abs([s%u(u)%rate, s%drive_value(1, :)]))
-         acceleration = maxval(abs([s%u(u)%acceleration, s%drive_value(2, :)]))
+      ! Nothing but its own drives and unknowns goes into the block of equations that are too many. A fast drive of
+      ! another block hides no contradiction.
+      associate (rows => block%shape%rows, n => block%shape%n, u => b%unknown(block%first:block%last), &
+         d => b%rows(block%first_row:block%last_row)%drive)
+         rate = maxval(abs([s%u(u)%rate, s%drive_value(1, d)]))
+         acceleration = maxval(abs([s%u(u)%acceleration, s%drive_value(2, d)]))
          c%rates_open = contradict(w%r(rows + n + 1:2*rows), rate, numbers%coarse) &
             .or. contradict(w%r(n + 1:rows), max(acceleration, rate**2), numbers%coarse)
       end associate
