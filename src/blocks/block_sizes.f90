@@ -6,9 +6,32 @@ module block_sizes
    use block_state, only: state_t
    implicit none
    private
-   public :: rounded_sizes, second_order_bounds
+   public :: largest_rates, rounded_sizes, second_order_bounds
 
 contains
+
+   !> Finds the largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides, drives,
+   !> known or not.
+   pure function largest_rates(b, i, s) result(largest)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      real(wp) :: largest(2)
+      integer, allocatable :: u(:)
+      integer :: k, m
+
+      largest = 0.0_wp
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
+      end do
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            u = [g%orientation, g%less, b%body_vectors(g%first_vector:g%last_vector)%orientation, &
+               b%slides(g%first_slide:g%last_slide)%orientation, b%slides(g%first_slide:g%last_slide)%unknown]
+         end associate
+         largest = max(largest, [maxval(abs(s%u(u)%rate)), maxval(abs(s%u(u)%acceleration))])
+      end do
+   end function largest_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
    pure function rounded_sizes(b, i, s) result(sizes)

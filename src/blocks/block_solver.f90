@@ -19,7 +19,7 @@ module block_solver
    use blocks, only: blocks_t, block_t, block_numbers_t
    use block_state, only: unknown_t, state_t, set_direction, find_direction, set_derivatives
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
-   use block_sizes, only: rounded_sizes, second_order_bounds
+   use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
    public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations
@@ -106,7 +106,7 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> The same of `block`, number `i`, with its `numbers`, which is not direct: Newton's method. Where it ends with a
+   !> Solves `block`, number `i`, with its `numbers`, which is not direct, by Newton's method. Where it ends with a
    !> position, `w` holds the velocities, in the second half of `r`, and the factors of the Jacobian there or of one
    !> beside it. Where that Jacobian has no inverse, c%singular says so.
    subroutine solve_equations(b, i, block, numbers, tolerance, w, s, c)
@@ -118,7 +118,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of, rate, acceleration
+      real(wp) :: before, size_of, rates(2)
       integer :: info, iteration, second, side, k
       logical :: is_closed, is_right
 
@@ -199,14 +199,10 @@ contains
       call solve_next_side(block%shape, w, w%r)
       call set_derivatives(2, block%first, block%last, b%unknown, w%r, s%u)
       if (block%shape%rows == block%shape%n) return
-      ! Nothing but its own drives and unknowns goes into the block of equations that are too many. A fast drive of
-      ! another block hides no contradiction.
-      associate (rows => block%shape%rows, n => block%shape%n, u => b%unknown(block%first:block%last), &
-         d => b%rows(block%first_row:block%last_row)%drive)
-         rate = maxval(abs([s%u(u)%rate, s%drive_value(1, d)]))
-         acceleration = maxval(abs([s%u(u)%acceleration, s%drive_value(2, d)]))
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rate, numbers%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(acceleration, rate**2), numbers%coarse)
+      associate (rows => block%shape%rows, n => block%shape%n)
+         rates = largest_rates(b, i, s)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
       end associate
    end subroutine solve_equations
 

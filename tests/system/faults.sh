@@ -225,6 +225,13 @@ told 'three cranks without a drive' 2 "0:$(singular LINKS CRANK-1, CRANK-2, CRAN
 0: *** LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM
 1:$(singular LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER)"
 
+# Two drives of one link whose accelerations differ; a fast drive of another block hides that not.
+{ head_of FAST; card LINK A; card LINK F '' '' 9.0; card POINT O BASE; card POINT A1 A; card POINT Q BASE '' 9.0; card POINT F1 F
+   joint O A1 R1; joint Q F1 R2; drive ANGLE A '' 0.0 1.0 0.001; drive ANGLE A '' 0.0 1.0
+   drive RELANGLE A F 0.0 60000.0; card AT '' '' '' 0.0; card END; } > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out" 2>&1
+equal 'two accelerations of one link, and a fast drive' 1 "$(grep -c "^$(echo "$open" | sed 's/[*]/[*]/g')" "$w/out")"
+
 # Redundant and consistent: of those that depend on one another, the last of the deck.
 { head_of TWICE; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0
    drive ANGLE CRANK '' 14.0 9.0; until_time 2 1.0; } > "$w/deck"
@@ -680,8 +687,8 @@ equal 'a line of a million characters: few of them told' yes "$([ "$(wc -c < "$w
 refused 'a million blanks in a line' ' *** E014  CARD 1  COLUMN 1000010  FIELD PAST-80: "B" IS BEYOND COLUMN 80'
 head -c 1000000 /dev/zero > "$w/deck"
 refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" CONTAINS A CONTROL CHARACTER'
-cp "$kinmat" "$w/deck"
-refused 'the program as its own deck' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" CONTAINS A CONTROL CHARACTER'
+tr -d '\r' < "$kinmat" > "$w/deck"
+refused 'the program as its own deck, without carriage returns' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" CONTAINS A CONTROL CHARACTER'
 rm -f "$w/deck"
 
 # What is harmless is remarked and computed: the listing is that of the deck without it, but for its remarks and its echo.
