@@ -10,8 +10,8 @@ module block_sizes
 
 contains
 
-   !> Finds the largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides, drives,
-   !> known or not.
+   !> Finds the largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides,
+   !> drives, known or not.
    pure function largest_rates(b, i, s) result(largest)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

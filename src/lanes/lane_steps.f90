@@ -211,9 +211,9 @@ contains
       end do
    end subroutine turn
 
-   !> Refuses lanes that have too small a pivot, compared with the largest, or a determinant of another sign than before,
-   !> as `judge` of `block_solver` and the continuation refuse an instant. `change`: of the values of `block`, from the
-   !> motion in the slot `before` to that in the slot `next`.
+   !> Refuses lanes that have too small a pivot, compared with the largest, or a determinant of another sign than
+   !> before, as `judge` of `block_solver` and the continuation refuse an instant. `change`: of the values of `block`,
+   !> from the motion in the slot `before` to that in the slot `next`.
    pure subroutine judge(n, a, exchanged, change, before, next, block, j)
       integer, intent(in) :: n, before, next
       real(wp), intent(in) :: a(width, max_order**2), exchanged(width), change(width)
