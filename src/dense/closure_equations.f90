@@ -171,7 +171,7 @@ contains
             call place(s, a, row, subject, -coefficients)
          case (drive_slide)
             call place_both(s, a, row, subject, projection_row(s, p, subject, along(s, p, subject), &
-               normal_angle(s, p, subject) + pi/2.0_wp, p%slide_zeros(:, k)))
+               normal_angle(s, p, subject) + pi/2.0_wp, p%guide_zeros([2, 1], subject) + pi/2.0_wp))
          end select
       end associate
    end subroutine drive_row

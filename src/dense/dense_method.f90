@@ -7,9 +7,10 @@
 !> a step. Where the Jacobian has no inverse, links that drives alone move have the rates of these.
 module dense_method
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, method_newton, method_matrix, own_predictor
+   use mechanism, only: mechanism_t, method_newton, method_matrix, own_predictor, with_all_links
    use motion, only: motion_t, new_motion
-   use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign, solve_factored => solve
+   use linear_solver, only: factors_t, new_factors, solve_factored => solve
+   use block_matrix, only: shape_t, pivot_range
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: order_weights
    use block_state, only: state_t
@@ -59,17 +60,14 @@ contains
       allocate (d%drive_values(3, size(m%drives)))
    end subroutine make_dense
 
-   !> Makes of `m` what the blocks solve beside it: all its links and no other row, to the limit of
-   !> rounding.
+   !> Makes of `m` what the blocks solve beside it: all its links, to the limit of rounding.
    pure function for_blocks(m) result(own)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t) :: own
-      integer :: i
 
-      own = m
+      own = with_all_links(m)
       own%method = method_newton
       own%tolerance = 0.0_wp
-      own%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
    end function for_blocks
 
    !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks of `e` have found
@@ -84,7 +82,7 @@ contains
       real(wp), dimension(3, size(found%position, 2)) :: there, start
       type(motion_t) :: before
       type(state_t) :: s
-      real(wp) :: w(3), b(d%system%n)
+      real(wp) :: w(3), b(d%system%n), least, largest
       logical :: finite
       integer :: k, iterations
 
@@ -109,8 +107,9 @@ contains
          call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%pose, &
             d%factors, c)
          if (is_solved(c) .and. .not. c%singular) then
-            c%reciprocal_condition = reciprocal_condition(d%factors)
-            c%determinant = determinant_sign(d%factors)
+            call pivot_range(shape_t(d%system%n, d%system%n), d%factors%a, d%factors%pivots, least, largest, &
+               c%determinant)
+            c%reciprocal_condition = least/max(largest, least)
          end if
          iterations = iterations + c%iterations
          if (is_solved(c)) then

@@ -11,7 +11,7 @@
 module pose
    use kinds, only: wp
    use planar, only: rotated, quarter_turn, pi
-   use mechanism, only: drive_t, mechanism_t, pair_t, drive_slide, plane_origin
+   use mechanism, only: drive_t, mechanism_t, pair_t, plane_origin
    use scales, only: solver_length, power_of_two
    implicit none
    private
@@ -39,8 +39,7 @@ module pose
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of that by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
-      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
-      real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows
+      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows; SLIDE rows are a quarter turn on
    end type pose_t
 
 contains
@@ -80,7 +79,7 @@ contains
 
       allocate (p%q(3, size(m%links)), p%direction(2, size(m%links)))
       allocate (p%body_vector(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
-      allocate (p%guide_zeros(2, size(m%pairs)), p%slide_zeros(2, size(m%drives)))
+      allocate (p%guide_zeros(2, size(m%pairs)))
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
@@ -117,10 +116,6 @@ contains
       end do
       do i = 1, size(s%pairs)
          p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
-      end do
-      do i = 1, size(s%laws)
-         if (s%laws(i)%kind == drive_slide) &
-            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%subject) + pi/2.0_wp)
       end do
       call set_pose(s, p)
    end subroutine choose_references

@@ -5,7 +5,7 @@ module linear_solver
    use lapack, only: getrf, getrs
    implicit none
    private
-   public :: factors_t, new_factors, factor, solve, reciprocal_condition, determinant_sign
+   public :: factors_t, new_factors, factor, solve
 
    !> A square matrix, before and after its factorization P L U.
    type :: factors_t
@@ -44,28 +44,4 @@ contains
       if (f%n == 0) return
       call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
    end subroutine solve
-
-   !> About how near the matrix is to having no inverse, from the factors: the least pivot over the largest.
-   pure real(wp) function reciprocal_condition(f)
-      type(factors_t), intent(in) :: f
-      real(wp) :: pivots(f%n)
-      integer :: i
-
-      pivots = [(abs(f%a(i, i)), i=1, f%n)]
-      reciprocal_condition = 1.0_wp
-      if (f%n > 0) reciprocal_condition = minval(pivots)/maxval(pivots)
-   end function reciprocal_condition
-
-   !> Sign of the determinant, +1, -1 or 0, from the factors.
-   pure integer function determinant_sign(f) result(sign_of)
-      type(factors_t), intent(in) :: f
-      integer :: i
-
-      sign_of = 1
-      do i = 1, f%n
-         if (f%pivots(i) /= i) sign_of = -sign_of
-         if (f%a(i, i) < 0.0_wp) sign_of = -sign_of
-         if (abs(f%a(i, i)) <= 0.0_wp) sign_of = 0
-      end do
-   end function determinant_sign
 end module linear_solver

@@ -27,8 +27,8 @@ module drives
 
    !> An interval for each derivative of a law.
    type :: bounds_t
-      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge, huge: no
-      !> bound; huge, -huge: no value.
+      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. All -huge, huge: no
+      !> bounds; huge, -huge: no value.
       real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
    end type bounds_t
 
@@ -67,8 +67,7 @@ contains
                f = f + r(1)*[sin(u), r(2)*cos(u), -r(2)**2*sin(u)]
             case (term_power)
                ! The deck reader has rejected powers that do not exist.
-               f = f + [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
-                  monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
+               f = f + power_motion(r, t)
             case (term_table)
                f = f + piece_value(term%table, piece_at(term%table, t), t)
             case (term_cycloid:term_parabola)
@@ -80,14 +79,14 @@ contains
    end function drive_motion
 
    !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
-   !> last pieces; a power that is not defined somewhere in the interval has no bounds. `one_instant`: the interval is
+   !> last pieces; with a power that does not exist somewhere in the interval there are no bounds. `one_instant`: it is
    !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
    pure function bounds_of(law, t1, t2, one_instant) result(b)
       type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2
       logical, intent(in), optional :: one_instant
       type(bounds_t) :: b, of_term
-      real(wp) :: from, to, times(3)
+      real(wp) :: from, to, times(3), f(3)
       integer :: i, k, first, last
 
       from = min(t1, t2)
@@ -114,7 +113,14 @@ contains
                of_term = bounds_t()
                times = [from, to, within(0.0_wp, from, to)]
                do k = 1, 3
-                  call widen_by_power(of_term, term%r, times(k))
+                  if (exists(term%r(2), times(k))) then
+                     f = power_motion(term%r, times(k))
+                     call widen(of_term, f, abs(f))
+                  else
+                     b%low = -huge(1.0_wp)
+                     b%high = huge(1.0_wp)
+                     return
+                  end if
                end do
             case (term_table)
                ! Each piece in the interval is a cubic.
@@ -131,8 +137,8 @@ contains
                of_term = rise_bounds(term, from, to, one_instant)
             end select
          end associate
-         b%low = plus(b%low, of_term%low)
-         b%high = -plus(-b%high, -of_term%high)
+         b%low = b%low + of_term%low
+         b%high = b%high + of_term%high
       end do
    end function bounds_of
 
@@ -142,8 +148,8 @@ contains
       type(bounds_t), intent(inout) :: b
       real(wp), intent(in) :: f(0:2), magnitudes(0:2)
 
-      b%low = min(b%low, below(f, margin*magnitudes))
-      b%high = max(b%high, -below(-f, margin*magnitudes))
+      b%low = min(b%low, f - margin*magnitudes)
+      b%high = max(b%high, f + margin*magnitudes)
    end subroutine widen
 
    !> Finds the nearest to `t` of the times from `from` to `to`.
@@ -152,22 +158,6 @@ contains
 
       within = min(max(t, from), to)
    end function within
-
-   !> x - d, but not below -huge.
-   elemental real(wp) function below(x, d)
-      real(wp), intent(in) :: x, d
-
-      below = -huge(1.0_wp)
-      if (x > d - huge(1.0_wp)) below = x - d
-   end function below
-
-   !> The sum of two lower bounds, but not below -huge.
-   elemental real(wp) function plus(x, y)
-      real(wp), intent(in) :: x, y
-
-      plus = -huge(1.0_wp)
-      if (min(x, y) > -huge(1.0_wp)) plus = x + y
-   end function plus
 
    !> An estimate of the largest |rate| of `drive` for |time| <= `t`, in the drive's unit (length or rad) and the deck's
    !> unit of time; `bounds_of` has true bounds.
@@ -262,36 +252,22 @@ contains
       end if
    end function monomial
 
-   !> Widens `b` by r1 t^r2 at the time `t`; without a bound where a derivative is not defined, or leaves the range of
-   !> reals.
-   pure subroutine widen_by_power(b, r, t)
-      type(bounds_t), intent(inout) :: b
+   !> r1 t**r2 and its first two derivatives (3) at the time `t`.
+   pure function power_motion(r, t) result(f)
       real(wp), intent(in) :: r(3), t
-      real(wp) :: low(0:2), high(0:2), c, p
-      logical :: is_finite
-      integer :: k
+      real(wp) :: f(3)
 
-      c = r(1)
-      low = -huge(1.0_wp)
-      high = huge(1.0_wp)
-      do k = 0, 2
-         p = r(2) - k
-         if (abs(c) <= 0.0_wp) then
-            is_finite = .true.
-         else if (abs(t) <= 0.0_wp) then
-            is_finite = p >= 0.0_wp
-         else if (t < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
-            is_finite = .false.
-         else
-            is_finite = p*log(abs(t)) + max(0.0_wp, log(abs(c))) < log(huge(1.0_wp)) - 1.0_wp
-         end if
-         if (is_finite) low(k) = monomial(c, p, t)
-         if (is_finite) high(k) = low(k)
-         c = c*p
-      end do
-      call widen(b, low, abs(low))
-      call widen(b, high, abs(high))
-   end subroutine widen_by_power
+      f = [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
+         monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
+   end function power_motion
+
+   !> Whether t**p and its first two derivatives exist at the time `t`.
+   pure logical function exists(p, t)
+      real(wp), intent(in) :: p, t
+
+      exists = t > 0.0_wp .or. abs(p - anint(p)) <= 0.0_wp
+      if (abs(t) <= 0.0_wp) exists = p >= 2.0_wp .or. abs(p*(p - 1.0_wp)) <= 0.0_wp
+   end function exists
 
    !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
    !> zero.

@@ -228,14 +228,11 @@ contains
    pure function plane_origin(m) result(origin)
       type(mechanism_t), intent(in) :: m
       real(wp) :: origin(2)
-      integer :: i
+      integer :: first
 
       origin = 0.0_wp
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) cycle
-         origin = m%links(i)%position(:2)
-         return
-      end do
+      first = findloc(m%links%ground, .true., dim=1)
+      if (first > 0) origin = m%links(first)%position(:2)
    end function plane_origin
 
    !> The links i and j of `pair`.

@@ -39,7 +39,8 @@ contains
    function new_closure(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(closure_t) :: c
-      integer :: moving(size(m%links)), n, i, k          ! (links) number among the moving links, 0 for ground links
+      logical, parameter :: angle(3) = [.false., .false., .true.]
+      integer :: moving(size(m%links)), n, i, k, axis    ! (links) number among the moving links, 0 for ground links
       integer, allocatable :: links(:)
 
       links = pack([(i, i=1, size(m%links))], .not. m%links%ground)
@@ -57,28 +58,28 @@ contains
       do i = 1, size(m%pairs)
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (m%pairs(i)%kind == pair_revolute) then
-               call note_component(p, along(:, 1))
-               call note_component(q, along(:, 1))
-               call close_equation()
-               call note_component(p, along(:, 2))
-               call note_component(q, along(:, 2))
+               do axis = 1, 2
+                  call note_component(p, along(:, axis))
+                  call note_component(q, along(:, axis))
+                  call close_equation()
+               end do
             else
-               call note(m%points(p)%link, 3)
-               call note(m%points(q)%link, 3)
+               call note(m%points(p)%link, angle)
+               call note(m%points(q)%link, angle)
                call close_equation()
                call note_projection(i, across=.true.)
+               call close_equation()
             end if
-            call close_equation()
          end associate
       end do
       do i = 1, size(m%drives)
          associate (subject => m%drives(i)%subject)
             select case (m%drives(i)%kind)
             case (drive_angle)
-               call note(subject, 3)
+               call note(subject, angle)
             case (drive_relangle)
-               call note(subject, 3)
-               call note(m%drives(i)%second, 3)
+               call note(subject, angle)
+               call note(m%drives(i)%second, angle)
             case (drive_x)
                call note_component(subject, along(:, 1))
             case (drive_y)
@@ -92,13 +93,16 @@ contains
 
    contains
 
-      !> Coordinate 1, 2 or 3 of `link` stands in the equation at hand; those of the ground are no unknowns.
-      subroutine note(link, coordinate)
-         integer, intent(in) :: link, coordinate
+      !> Those of the coordinates x, y, phi of `link` that are `in` the equation at hand; those of the ground are no
+      !> unknowns.
+      subroutine note(link, in)
+         integer, intent(in) :: link
+         logical, intent(in) :: in(3)
+         integer :: k
 
          if (moving(link) == 0) return
-         n = n + 1
-         c%incidence%unknown(n) = 3*moving(link) - 3 + coordinate
+         c%incidence%unknown(n + 1:n + count(in)) = pack([(3*moving(link) - 3 + k, k=1, 3)], in)
+         n = n + count(in)
       end subroutine note
 
       !> The component of point `p` along the fixed direction `e`.
@@ -106,9 +110,7 @@ contains
          integer, intent(in) :: p
          real(wp), intent(in) :: e(2)
 
-         if (abs(e(1)) > rounding) call note(m%points(p)%link, 1)
-         if (abs(e(2)) > rounding) call note(m%points(p)%link, 2)
-         if (any(abs(m%points(p)%offset) > 0.0_wp)) call note(m%points(p)%link, 3)
+         call note(m%points(p)%link, [abs(e) > rounding, any(abs(m%points(p)%offset) > 0.0_wp)])
       end subroutine note_component
 
       !> The projection of prismatic pair `i` across its guide or along it.
@@ -123,9 +125,7 @@ contains
                if (across) call note_component(q, [-sin(angle), cos(angle)])
                if (.not. across) call note_component(q, [cos(angle), sin(angle)])
             else
-               call note(m%points(p)%link, 1)
-               call note(m%points(p)%link, 2)
-               call note(m%points(p)%link, 3)
+               call note(m%points(p)%link, spread(.true., 1, 3))
                call note_component(q, [1.0_wp, 1.0_wp])
             end if
          end associate
