@@ -300,7 +300,7 @@ contains
       integer :: n, k
 
       n = first
-      full = any([(any(m%parts(k)%requests%every > 0), k=lbound(m%parts, 1), m%count)])
+      full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
@@ -440,14 +440,14 @@ contains
       call begin_analysis(a, findings)
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
-      every = [(a%now%parts(n)%requests%every, n=lbound(a%now%parts, 1), a%now%count)]
+      every = [(a%now%parts(n)%requests%every, n=1, a%now%count)]
       every = pack(every, every > 0)
       do k = 0, instant_count(a%now) - 1
          call advance_set(a, instant(a%now, k))
          due = any(mod(k, every) == 0) .or. (k == instant_count(a%now) - 1 .and. size(every) > 0)
          if (a%now%proves) then
             call prove_set(a, due)
-            if (.not. all(holds(a%now%proofs(1:)))) row%unproved = row%unproved + 1
+            if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
          call note_flag(row, a)
 

@@ -42,7 +42,7 @@ contains
       type(answers_t), intent(out) :: a
       integer :: c
 
-      a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=lbound(s%now%parts, 1), s%now%count)])
+      a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=1, s%now%count)])
       a%ranges_asked = s%now%ranges
       a%proofs_asked = s%now%proves
       a%shares_asked = lists .and. s%now%largest_tolerance > 0.0_wp

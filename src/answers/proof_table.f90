@@ -86,7 +86,7 @@ contains
                p%reasons = [p%reasons, reason]
             end associate
          end do
-         if (all(holds(s%now%proofs(1:)))) p%proved = p%proved + 1
+         if (all(holds(s%now%proofs))) p%proved = p%proved + 1
          if (.not. due) return
          line%step = k
          line%bounds = set_bounds(s)

@@ -73,7 +73,6 @@ contains
                   end associate
                end do
             end do
-            if (c == 0) cycle
             n = size(s%sensitivities(c)%jams)
             a%jams(:n, c) = a%jams(:n, c) .or. s%sensitivities(c)%jams
          end associate
@@ -91,7 +90,7 @@ contains
 
       call put(o, '')
       call put(o, ' '//phrase(say_shares, s%polish))
-      if (any([(any(s%parts(c)%requests%kind >= request_pole), c=lbound(s%parts, 1), s%count)])) &
+      if (any([(any(s%parts(c)%requests%kind >= request_pole), c=1, s%count)])) &
          call put(o, ' --- '//phrase(say_no_shares, s%polish))
       do c = 1, s%count
          do d = 1, size(s%parts(c)%tolerances)

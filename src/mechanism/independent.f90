@@ -30,10 +30,11 @@ module independent
    integer, parameter :: of_numbers(number_link:number_knot) = &
       [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
-   !> A set, divided. Of several mechanisms the ground is a part too, number 0, with the rows that are about it alone.
+   !> A set, divided. A row of a ground point belongs to a part whose pairs use the point; other rows of the ground
+   !> alone belong to the first part.
    type, extends(settings_t) :: set_t
       integer :: count = 1                          !< of independent mechanisms
-      type(mechanism_t), allocatable :: parts(:)    !< (1), or (0:count)
+      type(mechanism_t), allocatable :: parts(:)    !< (count)
       type(member_t), allocatable :: rows(:), drives(:)   !< in the order of the cards
       type(numbering_t), allocatable :: cards(:)    !< (parts) of their links, for pictures
       real(wp) :: largest_tolerance = 0.0_wp        !< as a part of the whole's sizes; 0: no number has a tolerance
@@ -49,7 +50,7 @@ contains
       type(sorted_t) :: links, points, pairs, drives, rows
       type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:)
-      integer :: link_part(size(m%links)), ground, i, c, k
+      integer :: link_part(size(m%links)), point_part(size(m%points)), i, k
       real(wp) :: length, rate
 
       s%settings_t = m%settings_t
@@ -60,44 +61,46 @@ contains
             *rate**m%tolerances%powers(2)/length**m%tolerances%powers(1))))
       end if
       link_part = part_of_links(m)
-      s%count = max(1, maxval([0, link_part]))
+      s%count = maxval([1, link_part])
       if (s%count == 1) link_part = 1
-      ground = s%count + 1
       pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
       drive_part = [(part_of(drive_links(m, m%drives(i))), i=1, size(m%drives))]
       row_part = [(part_of(request_links(m, m%requests(i))), i=1, size(m%requests))]
-      pairs = sorted(pair_part, ground)
-      drives = sorted(drive_part, ground)
-      rows = sorted(row_part, ground)
+      point_part = 0
+      do i = 1, size(m%pairs)
+         point_part([m%pairs(i)%point_i, m%pairs(i)%point_j]) = pair_part(i)
+      end do
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind == request_point) row_part(i) = max(row_part(i), point_part(m%requests(i)%subject))
+      end do
+      pairs = sorted(pair_part, s%count)
+      drives = sorted(drive_part, s%count)
+      rows = sorted(row_part, s%count)
       ! Each point, and each link, with the part that it belongs to or that uses it.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
                                    m%requests%kind == request_point .or. m%requests%kind == request_curve))
          used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, m%requests(of_points)%subject]
          user = [link_part(m%points%link), pair_part, pair_part, row_part(of_points)]
       end associate
-      points = sorted_numbers(used, user, ground)
+      points = sorted_numbers(used, user, s%count)
       used = [(i, i=1, size(m%links)), m%points(used)%link, (drive_links(m, m%drives(i)), i=1, size(m%drives)), &
          (request_links(m, m%requests(i)), i=1, size(m%requests))]
       user = [link_part, user, (spread(drive_part(i), 1, 3), i=1, size(m%drives)), &
          (spread(row_part(i), 1, 3), i=1, size(m%requests))]
-      links = sorted_numbers(used, user, ground)
+      links = sorted_numbers(used, user, s%count)
 
-      associate (first => merge(1, 0, s%count == 1))
-         allocate (s%parts(first:s%count), s%cards(first:s%count))
-      end associate
-      allocate (s%rows(size(m%requests)), s%drives(size(m%drives)))
+      allocate (s%parts(s%count), s%cards(s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
       place = [numbering_t(spread(0, 1, size(m%links))), numbering_t(spread(0, 1, size(m%points))), &
          numbering_t(spread(0, 1, size(m%pairs))), numbering_t(spread(0, 1, size(m%drives)))]
-      do c = 1, size(s%parts)
-         k = modulo(c, ground)
-         part(request_link)%of = once(members(links, c))
-         part(request_point)%of = once(members(points, c))
-         part(request_pair)%of = members(pairs, c)
-         part(of_drives)%of = members(drives, c)
-         own_rows = members(rows, c)
+      do k = 1, s%count
+         part(request_link)%of = once(members(links, k))
+         part(request_point)%of = once(members(points, k))
+         part(request_pair)%of = members(pairs, k)
+         part(of_drives)%of = members(drives, k)
+         own_rows = members(rows, k)
          branches = [integer ::]
          if (allocated(m%branch_requests)) branches = pack([(i, i=1, size(m%branch_requests))], &
-            [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == c, &
+            [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == k, &
             i=1, size(m%branch_requests))])
          s%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
          s%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
@@ -111,8 +114,7 @@ contains
       pure integer function part_of(links)
          integer, intent(in) :: links(:)
 
-         part_of = maxval(link_part(links))
-         if (part_of == 0) part_of = ground
+         part_of = maxval([1, link_part(links)])
       end function part_of
    end subroutine divide
 

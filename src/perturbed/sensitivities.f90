@@ -8,16 +8,16 @@ module sensitivities
    use drives, only: joint_distance
    use card_numbers, only: number_value, set_number
    use known_digits, only: nothing_known
-   use motion, only: motion_t, new_motion
+   use motion, only: motion_t
    use points, only: row_t, row_of
    use block_engine, only: block_engine_t
-   use digits_in_doubt, only: sizes_t, sizes_of
+   use digits_in_doubt, only: sizes_t
    use rounded_numbers, only: caution
    use error_estimate, only: error_estimate_t, estimator_t
    use changed_rows, only: find_place, make_ready, put_changes, rows_with
    implicit none
    private
-   public :: sensitivities_t, find_sensitivities, has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   public :: sensitivities_t, find_sensitivities, has_tolerances, worst_case, root_of_squares
 
    !> At one instant, in the units of the rows (lengths, radians) and of the numbers on their cards.
    type :: sensitivities_t
@@ -44,8 +44,6 @@ module sensitivities
    !> the distance d from a dead point a change by h has r = h/(2 d), and the difference of accelerations, which are as
    !> d**-2.5, has the relative error 0.6 r**8.
    real(wp), parameter :: largest_change = 4.0_wp*usual_step, largest_ratio = 6.0e-2_wp
-   !> Places on the ground are turned by an angle at most: without Richardson's step the third root is best.
-   real(wp), parameter :: ground_step = epsilon(1.0_wp)**(1.0_wp/3.0_wp)
    !> A change that is too far, as a part of what it may be, is made shorter; one that is too near was made too short,
    !> and leaves a larger rounding. Beyond the limit of a motion, where there is no root, it counts as so far at least.
    real(wp), parameter :: too_near = 0.25_wp, no_root = 4.0_wp
@@ -203,35 +201,6 @@ contains
          side = merge(1, -1, ahead > joint_distance(term))
       end associate
    end subroutine look_at_joint
-
-   !> The sensitivities (3, 0:2, numbers) of the row of the ground that `request` asks for.
-   function ground_sensitivities(m, request) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      real(wp), allocatable :: s(:, :, :)
-      type(mechanism_t) :: off
-      type(row_t) :: row
-      type(motion_t) :: rest
-      type(sizes_t) :: sizes
-      real(wp) :: step
-      integer :: d, k
-
-      allocate (s(3, 0:2, size(m%tolerances)), source=0.0_wp)
-      sizes = sizes_of(m)
-      rest = new_motion(size(m%links))
-      do d = 1, size(m%tolerances)
-         associate (one => m%tolerances(d))
-            do k = -1, 1, 2
-               step = k*ground_step*natural_unit(one, sizes)
-               off = m
-               call set_number(off, one%card_number_t, number_value(m, one%card_number_t) + step)
-               row = row_of(off, rest, request)
-               s(:, :, d) = s(:, :, d) + k*row%value
-            end do
-            s(:, :, d) = s(:, :, d)*(one%unit/(2.0_wp*step))
-         end associate
-      end do
-   end function ground_sensitivities
 
    !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the `tolerances` (numbers)
    !> allow.

@@ -158,7 +158,7 @@ contains
                call add_other('BOUND')
             end if
             ! The row in each assembly at the first instant.
-            if (.not. present(assemblies) .or. step > 0 .or. c == 0) cycle
+            if (.not. present(assemblies) .or. step > 0) cycle
             q = new_motion(size(s%parts(c)%links))
             q%known = 0
             q%origin = s%motions(c)%origin

@@ -60,7 +60,7 @@ module listing_layout
 
    !> The digits of the set, and of each of its independent mechanisms.
    type, extends(digits_t) :: layout_t
-      type(digits_t), allocatable :: own(:)   !< (0:parts) 0: of the ground
+      type(digits_t), allocatable :: own(:)   !< (parts)
       integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
@@ -110,7 +110,7 @@ contains
       end do
       do k = links_turning, request_curve
          call choose_columns(k)
-         do i = 0, s%count
+         do i = 1, s%count
             call take_heads(l%own(i), k)
          end do
       end do
@@ -145,7 +145,7 @@ contains
          integer :: c, k
          logical :: mixed
 
-         allocate (l%own(0:s%count))
+         allocate (l%own(s%count))
          do c = 1, s%count
             length = characteristic_length(s%parts(c))
             rate = characteristic_rate(s%parts(c), length)
@@ -165,8 +165,7 @@ contains
             l%decimals = min(l%decimals, l%own(c)%decimals)
             largest%decimals = max(largest%decimals, l%own(c)%decimals)
          end do
-         l%own(0) = l%digits_t
-         if (.not. mixed .and. all(largest%decimals - l%decimals <= 1)) l%own = l%own(0)
+         if (.not. mixed .and. all(largest%decimals - l%decimals <= 1)) l%own = l%digits_t
       end subroutine choose_own_digits
 
       !> The columns of rows of one `kind`: slides and angles of pairs only if such pairs are asked for.

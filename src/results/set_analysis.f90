@@ -112,7 +112,7 @@ contains
       ! An instant counts as its worst motion does.
       associate (counts => s%certificate_counts, kinds => s%list%branch%kind)
          counts%passed = sum(s%list%certificate_counts%passed)
-         if (any(s%now%motions(1:)%known < 0)) return
+         if (any(s%now%motions%known < 0)) return
          if (any(kinds == branch_none)) then
             counts%uncertain = counts%uncertain + 1
          else if (all(kinds /= branch_first)) then

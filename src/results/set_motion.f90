@@ -2,13 +2,13 @@
 !> parts), how far it is known, and the rows that the set asks for, in the order of the cards.
 module set_motion
    use kinds, only: wp
-   use mechanism, only: mechanism_t, tolerance_t, request_pole, plane_origin
+   use mechanism, only: mechanism_t, tolerance_t, request_pole
    use motion, only: motion_t, new_motion, mark_none
    use independent, only: set_t, divide, request_of
    use structure, only: findings_t
    use points, only: row_t, find_row
    use error_estimate, only: error_estimate_t, estimate_of, row_error
-   use sensitivities, only: sensitivities_t, ground_sensitivities
+   use sensitivities, only: sensitivities_t
    use motion_proof, only: motion_proof_t
    implicit none
    private
@@ -37,7 +37,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: s
       type(findings_t), intent(inout), optional :: findings
-      integer :: c, i
+      integer :: c
       logical :: is_divided
 
       is_divided = .false.
@@ -48,22 +48,10 @@ contains
       else
          call divide(m, s%set_t)
       end if
-      associate (first => lbound(s%parts, 1), last => s%count)
-         allocate (s%motions(first:last), s%errors(first:last), s%sensitivities(first:last), s%proofs(first:last))
-      end associate
-      do c = lbound(s%parts, 1), s%count
+      allocate (s%motions(s%count), s%errors(s%count), s%sensitivities(s%count), s%proofs(s%count))
+      do c = 1, s%count
          s%motions(c) = new_motion(size(s%parts(c)%links))
       end do
-      if (s%count == 1) return
-
-      ! The ground does not move.
-      associate (q => s%motions(0), ground => s%parts(0))
-         q%known = 2
-         q%origin = plane_origin(ground)
-         do i = 1, size(ground%links)
-            q%position(:, i) = ground%links(i)%position - [q%origin, 0.0_wp]
-         end do
-      end associate
    end subroutine new_set_motion
 
    !> Some part has not all of its motion.
@@ -152,18 +140,11 @@ contains
       integer, intent(in) :: i
       type(spread_t) :: x
 
-      associate (c => s%rows(i)%part, k => s%rows(i)%number)
-         x%tolerances = s%parts(c)%tolerances
-         if (c == 0) then
-            x%of = ground_sensitivities(s%parts(c), request_of(s, i))
-            x%error = 0.0_wp*x%of
-         else
-            associate (found => s%sensitivities(c))
-               x%known = found%known(k)
-               x%of = found%of(:, :, :, k)
-               x%error = found%error(:, :, :, k)
-            end associate
-         end if
+      associate (found => s%sensitivities(s%rows(i)%part), k => s%rows(i)%number)
+         x%tolerances = s%parts(s%rows(i)%part)%tolerances
+         x%known = found%known(k)
+         x%of = found%of(:, :, :, k)
+         x%error = found%error(:, :, :, k)
       end associate
    end function spread_in_set
 end module set_motion
