@@ -12,12 +12,11 @@
 module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
-   use mechanism, only: drive_t, mechanism_t, drive_x, drive_y
+   use mechanism, only: mechanism_t, drive_x, drive_y
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
-   use closure_equations, only: residual, jacobian, remainder, find_drive_values, drive_residual, drive_row, &
-      drive_remainder
+   use closure_equations, only: residual, jacobian, remainder, find_drive_values
    use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance
    implicit none
    private
@@ -44,9 +43,9 @@ module circuit_curve
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
-      type(system_t) :: driven                !< with the one drive that is free
+      type(system_t) :: driven                !< with the drive that is free as well: its row is the last
       type(coordinates_t) :: free             !< in which the equations are not linear
-      real(wp), allocatable :: held(:)        !< (drives held) their values
+      real(wp), allocatable :: held(:)        !< (drives) the values of those that are held, and 0 of the free one
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
@@ -74,7 +73,6 @@ contains
       integer, intent(in) :: drive
       real(wp), intent(in) :: t
       real(wp) :: f(3, size(m%drives))
-      type(drive_t), allocatable :: laws(:)
       integer, allocatable :: others(:)
       integer :: i
 
@@ -84,10 +82,9 @@ contains
       c%first = f(1, drive)
       c%is_angle = .not. is_length(m%drives(drive))
       others = pack([(i, i=1, size(m%drives))], [(i /= drive, i=1, size(m%drives))])
-      c%held = f(1, others)
-      laws = c%closure%laws
-      c%closure%laws = laws(others)
-      c%driven%laws = laws([drive])
+      c%held = [f(1, others), 0.0_wp]
+      c%driven%laws = c%closure%laws([others, drive])
+      c%closure%laws = c%driven%laws(:size(others))
       c%free = new_coordinates(c%closure)
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
@@ -110,7 +107,7 @@ contains
 
       before = huge(before)
       do i = 1, max_iterations
-         call residual(c%closure, c%pose, c%held, r(:c%closure%n - 1))
+         call residual(c%driven, c%pose, c%held, r)
          r(c%closure%n) = 0.0_wp
          call factor_with(c, border, info)
          ok = info == 0
@@ -129,13 +126,15 @@ contains
       ok = change <= stalled
    end subroutine correct
 
-   !> The factors of the equations' Jacobian with `border` as its last row.
-   subroutine factor_with(c, border, info)
+   !> The factors of the equations' Jacobian with `border` as its last row, in the place of the `row` of the free drive.
+   subroutine factor_with(c, border, info, row)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
       integer, intent(out) :: info
+      real(wp), intent(out), optional :: row(:)
 
-      call jacobian(c%closure, c%pose, c%factors%a(:c%closure%n - 1, :))
+      call jacobian(c%driven, c%pose, c%factors%a)
+      if (present(row)) row = c%factors%a(c%closure%n, :)
       c%factors%a(c%closure%n, :) = border
       call factor(c%factors, info)
    end subroutine factor_with
@@ -148,8 +147,10 @@ contains
       value = x
       if (c%is_angle) return
       value = x*c%closure%length
-      if (c%driven%laws(1)%kind == drive_x) value = value + c%closure%origin(1)
-      if (c%driven%laws(1)%kind == drive_y) value = value + c%closure%origin(2)
+      associate (drive => c%driven%laws(size(c%held)))
+         if (drive%kind == drive_x) value = value + c%closure%origin(1)
+         if (drive%kind == drive_y) value = value + c%closure%origin(2)
+      end associate
    end function drive_value
 
    !> The links' position (3, links) `q` in the deck's unit, counted from its origin.
@@ -169,7 +170,7 @@ contains
       real(wp), intent(in) :: position(:, :)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: row(1, c%closure%n), q(3, size(position, 2)), along(c%closure%n)
+      real(wp) :: row(c%closure%n), q(3, size(position, 2)), along(c%closure%n)
       real(wp) :: a(2*c%closure%n - 1, c%closure%n), across(c%closure%n), part(2*c%closure%n - 1)
       integer :: i, k
 
@@ -180,7 +181,8 @@ contains
 
       ! The direction across all equations: what they leave of the axes, the largest of them.
       associate (n => c%closure%n)
-         call jacobian(c%closure, c%pose, a(:n - 1, :))
+         call jacobian(c%driven, c%pose, a(:n, :))
+         row = a(n, :)
          a(n:, :) = 0.0_wp
          do i = 1, n
             a(n - 1 + i, i) = 1.0_wp
@@ -197,9 +199,7 @@ contains
       end associate
       along = a(k, :)/max(tiny(1.0_wp), norm2(a(k, :)))
 
-      row = 0.0_wp
-      call drive_row(c%driven, c%pose, 1, row, 1)
-      call find_point(c, q, sign(1.0_wp, dot_product(row(1, :), along))*along, p, ok)
+      call find_point(c, q, sign(1.0_wp, dot_product(row, along))*along, p, ok)
    end subroutine start_point
 
    !> The point `b` of the curve at the distance `h` from `a` along its tangent; `ok`: it is regular, and where the
@@ -276,7 +276,7 @@ contains
       real(wp), intent(in) :: q(:, :), border(:)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: x(c%closure%n), row(1, c%closure%n), along(3, size(q, 2)), k, speed
+      real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2)), k, speed
       integer :: info
 
       c%pose%q = q
@@ -292,23 +292,22 @@ contains
       x(c%closure%n) = 1.0_wp
       call solve(c%factors, x)
       p%tangent = x/norm2(x)
-      call factor_with(c, p%tangent, info)
+      call factor_with(c, p%tangent, info, row)
       ok = info == 0
       if (.not. ok) return
 
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
-      call remainder(c%closure, c%pose, along, x(:c%closure%n - 1))
+      call remainder(c%driven, c%pose, along, x)
+      p%value(of_bend) = x(c%closure%n)
       x(c%closure%n) = 0.0_wp
       call solve(c%factors, x)
       p%bend = -x
 
-      row = 0.0_wp
-      call drive_row(c%driven, c%pose, 1, row, 1)
-      p%value(of_value) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
-      p%value(of_slope) = dot_product(row(1, :), p%tangent)
-      p%value(of_bend) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
-
+      call residual(c%driven, c%pose, c%held, x)
+      p%value(of_value) = x(c%closure%n)
+      p%value(of_slope) = dot_product(row, p%tangent)
+      p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
       p%value(of_size) = maxval(abs(p%q(:2, :)))
 
       call kantorovich(c%closure, c%free, c%factors, c%pose, k)

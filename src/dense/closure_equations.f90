@@ -31,8 +31,7 @@ module closure_equations
    use pose, only: system_t, pose_t, normal_angle, secants
    implicit none
    private
-   public :: residual, jacobian, remainder, find_drive_values
-   public :: drive_residual, drive_row, drive_remainder, closure_error, normal, projection_row
+   public :: residual, jacobian, remainder, find_drive_values, closure_error, normal, projection_row
 
 contains
 
@@ -53,7 +52,19 @@ contains
          end associate
       end do
       do k = 1, size(s%laws)
-         r(2*size(s%pairs) + k) = drive_residual(s, p, k, driven(k))
+         associate (row => r(2*size(s%pairs) + k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
+            select case (s%laws(k)%kind)
+            case (drive_angle)
+               row = p%q(3, subject)
+            case (drive_x, drive_y)
+               row = p%q(axis, s%link_of(subject)) + p%body_vector(axis, subject)
+            case (drive_relangle)
+               row = p%q(3, s%laws(k)%second) - p%q(3, subject)
+            case default
+               row = dot_product(closure_error(s, p, subject), along(s, p, subject))
+            end select
+            row = row - driven(k)
+         end associate
       end do
    end subroutine residual
 
@@ -62,7 +73,8 @@ contains
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: a(:, :)
-      integer :: k
+      real(wp) :: coefficients(3)
+      integer :: k, row
 
       a = 0.0_wp
       do k = 1, size(s%pairs)
@@ -78,7 +90,24 @@ contains
          end associate
       end do
       do k = 1, size(s%laws)
-         call drive_row(s, p, k, a, 2*size(s%pairs) + k)
+         row = 2*size(s%pairs) + k
+         coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
+         associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
+            select case (drive%kind)
+            case (drive_angle)
+               call place(s, a, row, subject, coefficients)
+            case (drive_x, drive_y)
+               coefficients(axis) = 1.0_wp
+               coefficients(3) = p%slope(axis, subject)
+               call place(s, a, row, s%link_of(subject), coefficients)
+            case (drive_relangle)
+               call place(s, a, row, drive%second, coefficients)
+               call place(s, a, row, subject, -coefficients)
+            case (drive_slide)
+               call place_both(s, a, row, subject, projection_row(s, p, subject, along(s, p, subject), &
+                  normal_angle(s, p, subject) + pi/2.0_wp, p%guide_zeros([2, 1], subject) + pi/2.0_wp))
+            end select
+         end associate
       end do
    end subroutine jacobian
 
@@ -100,7 +129,11 @@ contains
          end if
       end do
       do k = 1, size(s%laws)
-         gamma(2*size(s%pairs) + k) = drive_remainder(s, p, v, k)
+         associate (row => gamma(2*size(s%pairs) + k), subject => s%laws(k)%subject, kind => s%laws(k)%kind)
+            if (any(kind == [drive_x, drive_y])) &
+               row = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
+            if (kind == drive_slide) row = projection_remainder(s, p, v, subject, along(s, p, subject))
+         end associate
       end do
    end subroutine remainder
 
@@ -126,71 +159,6 @@ contains
 
       axis_of = merge(1, 2, kind == drive_x)
    end function axis_of
-
-   !> The coordinate of drive `k` less its value `driven`.
-   pure real(wp) function drive_residual(s, p, k, driven) result(r)
-      type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
-      integer, intent(in) :: k
-      real(wp), intent(in) :: driven
-
-      associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
-         select case (drive%kind)
-         case (drive_angle)
-            r = p%q(3, subject)
-         case (drive_x, drive_y)
-            r = p%q(axis, s%link_of(subject)) + p%body_vector(axis, subject)
-         case (drive_relangle)
-            r = p%q(3, drive%second) - p%q(3, subject)
-         case default
-            r = dot_product(closure_error(s, p, subject), along(s, p, subject))
-         end select
-      end associate
-      r = r - driven
-   end function drive_residual
-
-   !> Adds the coefficients of drive `k` to `row` of `a` (n, n).
-   pure subroutine drive_row(s, p, k, a, row)
-      type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
-      integer, intent(in) :: k, row
-      real(wp), intent(inout) :: a(:, :)
-      real(wp) :: coefficients(3)
-
-      coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
-      associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
-         select case (drive%kind)
-         case (drive_angle)
-            call place(s, a, row, subject, coefficients)
-         case (drive_x, drive_y)
-            coefficients(axis) = 1.0_wp
-            coefficients(3) = p%slope(axis, subject)
-            call place(s, a, row, s%link_of(subject), coefficients)
-         case (drive_relangle)
-            call place(s, a, row, drive%second, coefficients)
-            call place(s, a, row, subject, -coefficients)
-         case (drive_slide)
-            call place_both(s, a, row, subject, projection_row(s, p, subject, along(s, p, subject), &
-               normal_angle(s, p, subject) + pi/2.0_wp, p%guide_zeros([2, 1], subject) + pi/2.0_wp))
-         end select
-      end associate
-   end subroutine drive_row
-
-   !> Computes what the second derivative of the residual of drive `k` holds beside J a, at velocities `v` (3,
-   !> links).
-   pure real(wp) function drive_remainder(s, p, v, k) result(gamma)
-      type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
-      real(wp), intent(in) :: v(:, :)
-      integer, intent(in) :: k
-
-      gamma = 0.0_wp
-      associate (subject => s%laws(k)%subject, kind => s%laws(k)%kind)
-         if (any(kind == [drive_x, drive_y])) &
-            gamma = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
-         if (kind == drive_slide) gamma = projection_remainder(s, p, v, subject, along(s, p, subject))
-      end associate
-   end function drive_remainder
 
    !> Adds six `coefficients` to `row` of `a`, at the columns of the two links of pair `k`.
    pure subroutine place_both(s, a, row, k, coefficients)

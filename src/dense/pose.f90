@@ -79,7 +79,7 @@ contains
 
       allocate (p%q(3, size(m%links)), p%direction(2, size(m%links)))
       allocate (p%body_vector(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
-      allocate (p%guide_zeros(2, size(m%pairs)))
+      allocate (p%guide_zeros(2, size(m%pairs)), source=0.0_wp)
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
