@@ -9,7 +9,7 @@ module circuits_picture
    use motion, only: motion_t, new_motion
    use names, only: drive_name, subject_name
    use numerals, only: whole
-   use points, only: row_t, row_of, coordinates_of
+   use points, only: row_t, find_row, coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: angle_unit
    use extremes, only: is_angle
@@ -227,7 +227,7 @@ contains
          type(row_t) :: row
 
          q%position = deck_position(found%curve, position)
-         row = row_of(m, q, request)
+         call find_row(m, q, request, row)
          p = [drive_value(found%curve, value + found%list(i)%shift), row%value(column, 0)]/unit
       end function place
 

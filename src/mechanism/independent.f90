@@ -90,8 +90,11 @@ contains
       links = sorted_numbers(used, user, s%count)
 
       allocate (s%parts(s%count), s%cards(s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
-      place = [numbering_t(spread(0, 1, size(m%links))), numbering_t(spread(0, 1, size(m%points))), &
-         numbering_t(spread(0, 1, size(m%pairs))), numbering_t(spread(0, 1, size(m%drives)))]
+      associate (n => [size(m%links), size(m%points), size(m%pairs), size(m%drives)])
+         do k = 1, of_drives
+            allocate (place(k)%of(0:n(k)), source=0)
+         end do
+      end associate
       do k = 1, s%count
          part(request_link)%of = once(members(links, k))
          part(request_point)%of = once(members(points, k))
@@ -131,8 +134,8 @@ contains
    end function part_of_links
 
    !> Takes the `part` of `m`, with its requests `rows` and its BRANCH cards `branches`, as a mechanism of its own:
-   !> `own`. `place`: zeros, one for each link, point, pair and drive of `m`, before and after. Reason: of many parts
-   !> each takes the time of its own size alone.
+   !> `own`. `place`: zeros, one for each link, point, pair and drive of `m` and for number 0, before and after. Reason:
+   !> of many parts each takes the time of its own size alone.
    subroutine take_mechanism(m, part, rows, branches, place, own)
       type(mechanism_t), intent(in) :: m
       type(numbering_t), intent(in) :: part(:)
@@ -153,27 +156,20 @@ contains
       own%pairs%point_j = place(request_point)%of(own%pairs%point_j)
 
       own%drives = m%drives(part(of_drives)%of)
+      own%drives%second = place(request_link)%of(own%drives%second)
       do i = 1, size(own%drives)
-         associate (d => own%drives(i))
-            d%subject = place(driven_kinds(d%kind))%of(d%subject)
-            if (d%kind == drive_relangle) d%second = place(request_link)%of(d%second)
-         end associate
+         own%drives(i)%subject = place(driven_kinds(own%drives(i)%kind))%of(own%drives(i)%subject)
       end do
       own%requests = m%requests(rows)
+      own%requests%second = place(request_link)%of(own%requests%second)
       do i = 1, size(own%requests)
-         associate (request => own%requests(i))
-            request%subject = place(of_requests(request%kind))%of(request%subject)
-            if (request%second > 0) request%second = place(request_link)%of(request%second)
-         end associate
+         own%requests(i)%subject = place(of_requests(own%requests(i)%kind))%of(own%requests(i)%subject)
       end do
-      allocate (own%branch_requests(size(branches)))
-      do i = 1, size(branches)
-         associate (request => own%branch_requests(i))
-            request = m%branch_requests(branches(i))
-            request%card = branches(i)
-            if (request%link > 0) request%link = place(request_link)%of(request%link)
-         end associate
-      end do
+      if (allocated(m%branch_requests)) then
+         own%branch_requests = m%branch_requests(branches)
+         own%branch_requests%card = branches
+         own%branch_requests%link = place(request_link)%of(own%branch_requests%link)
+      end if
 
       if (allocated(m%tolerances)) then
          own%tolerances = m%tolerances

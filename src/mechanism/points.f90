@@ -10,7 +10,7 @@ module points
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, find_row, has_number, difference, centre_numbers, &
+   public :: row_t, find_row, has_number, difference, centre_numbers, &
       coordinates_of, is_due, is_listed, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
@@ -52,18 +52,8 @@ contains
       is_listed = request%listed .or. is_due(m, request, k)
    end function is_listed
 
-   !> The row of `request`, as far as the motion `q` is known. What belongs to the ground is known at every instant.
-   pure function row_of(m, q, request) result(row)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t) :: row
-
-      call find_row(m, q, request, row)
-   end function row_of
-
-   !> Writes the same to `row`: faster for the many rows of a table, since nothing is copied. What `row` was is
-   !> gone.
+   !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every
+   !> instant. A subroutine: of the many rows of a table none is copied.
    pure subroutine find_row(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -74,7 +64,6 @@ contains
 
       row = new_row
       row%kind = request%kind
-      row%name = name_of(m, request)
       ! What is known of a row is what is known of its links.
       links = request_links(m, request)
       do k = 1, size(links)
@@ -85,6 +74,7 @@ contains
       end do
 
       associate (i => request%subject)
+         if (request%kind <= request_pair) row%name = subject_name(m, request%kind, i)
          select case (request%kind)
          case (request_link)
             if (m%links(i)%ground) then
@@ -103,9 +93,12 @@ contains
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
          case (request_pole)
+            row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
             if (row%known < 1) return
             row%centre_t = pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate)
          case (request_curve)
+            row%name = m%points(i)%name
+            if (request%second > 0) row%name = trim(row%name)//' '//m%links(request%second)%name
             ! In the axes of the link from which it is seen, or in the fixed plane.
             p = point_motion(m, q, i)
             if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
@@ -117,23 +110,6 @@ contains
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end subroutine find_row
-
-   !> The name of the row of `request`: of a link, point or pair; of both links, or of point and link.
-   pure function name_of(m, request) result(name)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      character(2*label_length + 1) :: name
-
-      select case (request%kind)
-      case (request_pole)
-         name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
-      case (request_curve)
-         name = m%points(request%subject)%name
-         if (request%second > 0) name = trim(name)//' '//m%links(request%second)%name
-      case default
-         name = subject_name(m, request%kind, request%subject)
-      end select
-   end function name_of
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)

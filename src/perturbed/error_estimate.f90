@@ -4,7 +4,7 @@ module error_estimate
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_link, request_pair, request_pole
    use motion, only: motion_t
-   use points, only: row_t, row_of, difference, is_fixed
+   use points, only: row_t, find_row, difference, is_fixed
    use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
@@ -199,7 +199,7 @@ contains
       real(wp), dimension(3, 0:2) :: error, least
       type(row_t) :: row
 
-      row = row_of(m, q, m%requests(i))
+      call find_row(m, q, m%requests(i), row)
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
       ! A rate that is zero may be a sum that cancels; a coordinate that is zero without a sum stays so.

@@ -9,7 +9,7 @@ module sensitivities
    use card_numbers, only: number_value, set_number
    use known_digits, only: nothing_known
    use motion, only: motion_t
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use block_engine, only: block_engine_t
    use digits_in_doubt, only: sizes_t
    use rounded_numbers, only: caution
@@ -77,7 +77,7 @@ contains
       call make_ready(s%perturbed, 0, m, e, i)
       call find_rows(middle)
       do i = 1, size(m%requests)
-         row = row_of(m, q, m%requests(i))
+         call find_row(m, q, m%requests(i), row)
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)))
       end do
       do d = 1, size(m%tolerances)

@@ -4,7 +4,7 @@ module sum_errors
    use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole, request_curve
    use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
@@ -90,7 +90,7 @@ contains
       real(wp) :: error(3)
       type(row_t) :: row
 
-      row = row_of(m, motion_t(), request)
+      call find_row(m, motion_t(), request, row)
       error = abs(row%value(:, 0))
       if (request%kind == request_point) then
          associate (p => m%points(request%subject))
@@ -160,7 +160,7 @@ contains
       growth = 0.0_wp
       do i = 1, size(m%requests)
          if (m%requests(i)%kind < request_pole) cycle
-         row = row_of(m, q, m%requests(i))
+         call find_row(m, q, m%requests(i), row)
          if (row%state /= centre_finite) growth = huge(1.0_wp)
          if (row%state /= centre_finite) return
          associate (length => m%requests(i)%length, v => row%value(3, 1), a => row%value(3, 2))

@@ -4,7 +4,7 @@ module link_bounds
    use planar, only: real_vector_t => vector_t
    use mechanism, only: mechanism_t, request_t, request_link, request_point, pair_prismatic, plane_origin
    use motion, only: motion_t
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use block_engine, only: block_engine_t
    use balls, only: ball_t, rounding, room, distance, operator(+), operator(-), operator(*)
    use ball_equations, only: vector_t, unknown_t, ball_state_t, set_direction, add_rotating
@@ -142,7 +142,7 @@ contains
       type(ball_t) :: number(3, 0:2)
       type(vector_t) :: origin
 
-      row = row_of(m, q, request)
+      call find_row(m, q, request, row)
       number = zero
       select case (request%kind)
       case (request_link)

@@ -17,7 +17,7 @@ module csv
    use scales, only: is_length
    use drives, only: drive_motion
    use motion, only: motion_t, new_motion
-   use points, only: row_t, row_of, has_number, is_due, coordinates_of
+   use points, only: row_t, find_row, has_number, is_due, coordinates_of
    use assemblies, only: assemblies_t
    use independent, only: set_t, request_of
    use instant_centres, only: centre_finite, centre_resting
@@ -164,7 +164,7 @@ contains
             q%origin = s%motions(c)%origin
             do k = 1, size(assemblies(c)%list)
                q%position = assemblies(c)%list(k)%position
-               other = row_of(s%parts(c), q, request)
+               call find_row(s%parts(c), q, request, other)
                call add_other('ASSEMBLY '//whole(k))
             end do
          end associate
