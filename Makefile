@@ -93,10 +93,10 @@ $(BUILD)/$(1):
 	$$(quiet)mkdir -p $$@
 endef
 
-# What the documents say of messages and cards, for --explain and --ruler. The file is left alone if nothing has changed in it.
-$(BUILD)/document_texts.f90: docs/texts.awk docs/messages.md docs/cards.md
+# What the documents say of messages, cards and options, for --explain, --ruler and --help. The file is left alone if nothing has changed in it.
+$(BUILD)/document_texts.f90: docs/texts.awk docs/messages.md docs/cards.md docs/command.md
 	@mkdir -p $(BUILD)
-	@awk -f docs/texts.awk docs/messages.md docs/cards.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+	@awk -f docs/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: Makefile $(sources) $(helpers) $(suites) tests/depends.awk

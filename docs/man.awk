@@ -19,6 +19,7 @@ BEGIN {
 /^  / && section == "EXAMPLES" { sub(/^ */, ""); print "\\fB" plain($0) "\\fR"; next }
 /^  -/ { print ".TP\n" bold(substr($0, 1, 23)) "\n" plain(substr($0, 24)); next }
 /^  [0-9]/ { print ".TP\n" $1 "\n" plain(substr($0, 24)); next }
-/^FILE / || /^Real numbers: / { print ".PP" }
+/^FILE / { print ".PP" }
+/^ / { print plain(substr($0, 24)); next }
 /^Documents: / { print ".fi\n.SH SEE ALSO\nThe documents, with all cards, messages and formats:\n\\fI@PREFIX@/share/doc/kinmat/README.md\\fR."; exit }
 { print plain($0) }

@@ -1,5 +1,5 @@
-# The texts of docs/messages.md and docs/cards.md as a Fortran module, for --explain and --ruler. Usage:
-# awk -f docs/texts.awk docs/messages.md docs/cards.md.
+# The texts of docs/messages.md, docs/cards.md and docs/command.md as a Fortran module, for --explain, --ruler and --help. Usage:
+# awk -f docs/texts.awk docs/messages.md docs/cards.md docs/command.md.
 # plain(cell): the cell without the marks of Markdown
 function plain(cell,   link) {
    while (match(cell, /\[[^]]*\]\([^)]*\)/)) {
@@ -57,7 +57,11 @@ function write_table(name, arguments, key, otherwise) {
    printf "%s", cases[name ~ /^message/ ? "message" : "field"]
    print "      case default\n         text = \047" otherwise "\047\n      end select\n   end function " substr(name, 1, index(name, "(") - 1)
 }
-BEGIN { bar = "\001" }
+BEGIN {
+   bar = "\001"
+   help = "Usage: kinmat [OPTIONS] [DECK]\nCompute the motion of planar mechanisms from a deck, and print a listing.\n" \
+      "Without DECK, or with -, the deck is read from standard input.\nOptions:"
+}
 FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
 /^## / { card = $2 }
 /^[|]/ {
@@ -65,7 +69,8 @@ FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
    cells = split($0, cell, / *[|] */)
    if (!table) {
       # The head: what each column is.
-      table = !cards && /[|] Message [|]/ ? "message" : cards && /^[|] Field [|] Contents [|]/ ? "field" : "other"
+      table = !cards && /[|] Message [|]/ ? "message" : cards && /^[|] Field [|] Contents [|]/ ? "field" : /^[|] (Option|Status) [|]/ ? "help" : "other"
+      if (/^[|] Status /) help = help "\nFILE - is standard output, for one output; the listing gives way to it.\nExit status:"
       for (i = 2; i < cells; i++) column[i] = cell[i]
       next
    }
@@ -78,6 +83,7 @@ FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
       at[i] = text
    }
    if (table == "message") keep_message()
+   else if (table == "help") help = help "\n" folded("  " padded(at[2], 21), at[3], 23)
    else if (table == "field") {
       if (!(card in fields)) names[++fielded] = card
       # Field, contents, type and range, default, unit.
@@ -89,15 +95,20 @@ FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
 { table = "" }
 END {
    for (i = 1; i <= fielded; i++) keep("field", "\047" names[i] "\047", fields[names[i]])
-   print "!> Messages and fields of cards as the documents explain them: made by docs/texts.awk from docs/messages.md and"
-   print "!> docs/cards.md."
-   print "module document_texts\n   implicit none\n   private\n   public :: message_cell, explained_fields\n"
+   keep("field", "\047\047", help "\nExamples:\n  kinmat four_bar.deck -o four_bar.lst\n" \
+      "  kinmat --no-listing --svg four_bar.svg --table four_bar.csv four_bar.deck\n  kinmat --explain E101\n" \
+      "Documents: README.md and docs/, installed in PREFIX/share/doc/kinmat, where\n" \
+      "PREFIX is /usr/local unless make install was given another.")
+   print "!> Messages, fields of cards and options as the documents explain them: made by docs/texts.awk from"
+   print "!> docs/messages.md, docs/cards.md and docs/command.md."
+   print "module document_texts\n   implicit none\n   private\n   public :: message_cell, help_on\n"
    print "   integer, parameter, public :: message_count = " messages
    print "   character(1), parameter :: nl = new_line(\047a\047)\n\ncontains\n"
    print "   !> A cell of the table of messages: 1 the codes; 2 the words of a printed message in capitals, a mark ` between"
    print "   !> alternatives; 3 the message in capitals; 4 the lines that explain it."
    write_table("message_cell(row, column)", "      integer, intent(in) :: row, column\n", "10*row + column", "")
-   print "\n   !> A line or more for each field of the cards of the name `card`, in capitals: contents, type, default, unit."
-   write_table("explained_fields(card)", "      character(*), intent(in) :: card\n", "card", "This card has no fields.")
+   print "\n   !> A line or more for each field of the cards of the name `topic`, in capitals: contents, type, default, unit; for"
+   print "   !> the topic \047\047 the text of --help."
+   write_table("help_on(topic)", "      character(*), intent(in) :: topic\n", "topic", "This card has no fields.")
    print "end module document_texts"
 }

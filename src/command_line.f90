@@ -1,14 +1,13 @@
-!> The command's words: what to read, what to write, which sets. What the documents say of messages and of the fields of
-!> cards, as lines for a terminal: --explain, --ruler CARD.
+!> The command's words: what to read, what to write, which sets. What the documents say of messages, as lines for a
+!> terminal: --explain.
 module command_line
-   use kinds, only: wp_name
-   use numerals, only: significant, whole
+   use numerals, only: whole
    use failures, only: failure_t, fail, status_rejected, capitals
    use cards, only: forms, form_name, find_form, form_unknown
-   use document_texts, only: message_cell, message_count, explained_fields
+   use document_texts, only: message_cell, message_count
    implicit none
    private
-   public :: options_t, to_standard_output, word_t, read_command, read_words, help_text, explained, explained_fields
+   public :: options_t, word_t, read_command, read_words, explained
    public :: file_options
    public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table, &
       out_shared, out_last
@@ -21,7 +20,7 @@ module command_line
       enumerator :: out_shared = out_circuits, out_last = out_table
    end enum
 
-   !> The options that name the files of the outputs. A further output costs a word here and a line of the help.
+   !> The options that name the files of the outputs. A further output costs a word here.
    character(*), parameter :: file_options(out_last) = [character(10) :: '-o', '--csv', '--log', '--summary', '--svg', &
       '--animate', '--circuits', '--table']
 
@@ -51,61 +50,7 @@ module command_line
    !> More processes than any machine has processors would only take memory.
    integer, parameter :: max_jobs = 1024
 
-   character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
-   character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
-   !> The text of --help. docs/man.awk makes the man page of it: an option in columns 3 to 22, what it does from column
-   !> 24 on; a line that ends with a colon heads lines of its own kind.
-   character(*), parameter :: lines(*) = [character(79) :: &
-      'Usage: kinmat [OPTIONS] [DECK]', &
-      'Compute the motion of planar mechanisms from a deck, and print a listing.', &
-      'Without DECK, or with -, the deck is read from standard input.', &
-      'Options:', &
-      '  -o FILE              write the listing to FILE', &
-      '  --no-listing         print no listing', &
-      '  --csv FILE           write the results with '//csv_digits//' digits, a row for each link', &
-      '  --table FILE         write a table, a row for each instant', &
-      '  --summary FILE       write a row for each variant of sets with VARY cards', &
-      '  --log FILE           write the log of the solver, a line for each instant', &
-      '  --svg FILE           draw the mechanism and the paths of its points', &
-      '  --animate FILE       draw the mechanism in motion', &
-      '  --circuits FILE      draw the circuits that CIRCUITS cards ask for', &
-      '  --errors             add error estimates to the CSV', &
-      '  --check              check the deck and its structure, compute no motion', &
-      '  --sets K/N           run only part K of N of the job', &
-      '  --jobs N             run N processes (default: one for each processor)', &
-      '  --study              measure speed against error', &
-      '  --time               measure the time of a step', &
-      '  --quiet              suppress remarks', &
-      '  --ruler [CARD]       print the layouts of all cards, or the fields of CARD', &
-      '  --explain WORDS      explain the message with this code, or these words', &
-      '  --help               print this text', &
-      '  --version            print the version and the kind of real numbers', &
-      'FILE - is standard output, for one output; the listing gives way to it.', &
-      'Real numbers: '//wp_name//'.', &
-      'Exit status:', &
-      '  0                    every instant is solved', &
-      '  1                    the deck or the command is rejected', &
-      '  2                    the listing is complete, an instant is flagged', &
-      '  3                    error of file or disk', &
-      'Examples:', &
-      '  kinmat four_bar.deck -o four_bar.lst', &
-      '  kinmat --no-listing --svg four_bar.svg --table four_bar.csv four_bar.deck', &
-      '  kinmat --explain E101', &
-      'Documents: README.md and docs/, installed in PREFIX/share/doc/kinmat, where', &
-      'PREFIX is /usr/local unless make install was given another.']
-
 contains
-
-   !> The text of --help.
-   pure function help_text() result(text)
-      character(:), allocatable :: text
-      integer :: i
-
-      text = trim(lines(1))
-      do i = 2, size(lines)
-         text = text//new_line('a')//trim(lines(i))
-      end do
-   end function help_text
 
    !> Reads the process's arguments.
    subroutine read_command(options, failure)

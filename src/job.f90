@@ -6,6 +6,7 @@
 !> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
 module job
    use, intrinsic :: iso_fortran_env, only: int64
+   use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: settings_t, mechanism_t, instant_count, instant, with_all_links
@@ -13,9 +14,9 @@ module job
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
    use deck, only: read_deck, job_share_t, variants_before, build_variant
    use deck_variants, only: variation_t
-   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe, broken_pipe
+   use system_calls, only: watch_signals, signal_received, write_bytes
    use text_output, only: put, flush_output, turn_lost
-   use processes, only: processor_count, report, end_process
+   use processes, only: processor_count, end_process
    use command_line
    use outputs, only: outputs_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
    use shares, only: run_shares, next_part, write_in_turn
@@ -114,11 +115,12 @@ contains
          o%share%first = share%first
          o%share%last = share%last
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) o%share%unit = width
-         ! One process where sets take no time, or are to be drawn on one page.
+         ! One process where sets take no time, or are to be drawn on one page, or nothing can be written.
          processes = options%jobs
          work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
          if (processes == 0) processes = merge(processor_count(), 1, work > least_work)
-         if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits]))) processes = 1
+         if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits])) .or. any(o%files%error /= 0)) &
+            processes = 1
          processes = min(processes, variants_before(sets, size(sets) + 1))
          if (processes > 1) call run_shares(o, processes, status, message)
          do while (next_part(o))
@@ -136,20 +138,12 @@ contains
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
-      ! A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
-      ! without a word, unless other outputs were asked for, which end there too.
-      if (signal_received() > 0) then
-         status = status_signal + signal_received()
-      else if (broken_pipe_kills) then
-         if (any(o%files%error == broken_pipe)) then
-            status = status_signal + signal_pipe
-            if (count(o%asked) == 1) message = ''
-         end if
-      end if
+      ! A run that a signal has ended ends by that signal.
+      if (signal_received() > 0) status = status_signal + signal_received()
       if (.not. o%share%is_child) return
-      ! A child ends here: its parent takes over the status and the message, unless its turn has never come.
+      ! A child ends here: its parent takes over the status, unless its turn has never come.
       if (any(o%files%error == turn_lost)) call end_process(status_solved)
-      if (len(message) > 0) call report(message)
+      if (len(message) > 0) i = int(write_bytes(2_c_int, message//new_line('a')))
       call end_process(status)
 
    contains

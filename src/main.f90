@@ -5,7 +5,8 @@ program main
    use kinds, only: wp_name
    use failures, only: failure_t, capitals, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal, isatty
-   use command_line, only: options_t, out_listing, read_command, help_text, explained, explained_fields
+   use command_line, only: options_t, out_listing, read_command, explained
+   use document_texts, only: help_on
    use cards, only: layout_of
    use job, only: run_job
    use study, only: run_study
@@ -26,12 +27,12 @@ program main
    end if
    select case (options%show)
    case ('HELP')
-      call show(help_text())
+      call show(help_on(''))
    case ('VERSION')
       call show(version)
    case ('RULER')
       message = layout_of(options%deck)
-      if (len(options%deck) > 0) message = message//new_line('a')//explained_fields(capitals(options%deck))
+      if (len(options%deck) > 0) message = message//new_line('a')//help_on(capitals(options%deck))
       call show(message)
    case ('EXPLAIN')
       call show(explained(options%deck))

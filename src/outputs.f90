@@ -17,7 +17,7 @@ module outputs
       integer :: first = 1, last = 0            !< all of them
       integer :: length = huge(1)               !< so many of them are a part
       integer :: unit = 1                       !< so many variants are solved together
-      logical :: is_child = .false., is_parent = .false.
+      logical :: is_child = .false.
       !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
       !> lock of a part is that of a byte of the first.
       integer(c_int) :: taken = -1, done = -1

@@ -13,12 +13,12 @@
 !> other's: of 2000 sets in two threads, two listings had words cut short.
 module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
-   use failures, only: capitals, status_rejected, status_system
+   use failures, only: capitals, status_rejected, status_system, status_signal
    use numerals, only: whole
-   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, end_of_message, memfd_create, &
-      lseek, from_here, change_lock, locked, unlocked
-   use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
-   use text_output, only: held_length, write_held, release_output, has_failed, turn_lost
+   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, memfd_create, lseek, &
+      from_here, change_lock, locked, unlocked
+   use system_calls, only: close_descriptor, signal_received, signal_pipe, last_error, reason_of
+   use text_output, only: held_length, write_held, release_output, turn_lost
    use command_line, only: out_shared
    use outputs, only: outputs_t, share_of_job_t
    implicit none
@@ -44,24 +44,21 @@ module shares
 contains
 
    !> Computes the sets or variants of the share `o%share` in `processes` processes. It returns more than once: in each
-   !> child, to compute the parts that `next_part` gives and to end then; in the parent when all is done. `status`: then
-   !> the exit status; `message`: what to say of an error.
+   !> child, to compute the parts that `next_part` gives and to end then; in the parent when all is done: `next_part`
+   !> gives none. `status`: then the exit status; `message`: what to say of an error that no child has printed.
    subroutine run_shares(o, processes, status, message)
       class(outputs_t), intent(inout) :: o
       integer, intent(in) :: processes
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
-      character(4096) :: block
-      character(:), allocatable :: said
       type(poll_t) :: list(1)
-      integer :: children(processes), started, k, n
+      integer :: children(processes), started, k
       integer(c_int) :: ends(2), ended, ignored
-      logical :: closed, failed
+      logical :: closed
 
       associate (s => o%share, count => o%share%last - o%share%first + 1)
          s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
          if (count < processes*s%length) s%length = (count - 1)/processes + 1
-         s%is_parent = .true.
 
          started = 0
          if (pipe(ends) /= 0) ends = -1
@@ -69,10 +66,9 @@ contains
          if (s%taken >= 0) s%done = memfd_create('done'//c_null_char, 0_c_int)
          if (s%done >= 0) started = processes
          do k = 1, started
-            children(k) = fork_process(ends(2))
+            children(k) = fork_process()
             s%is_child = children(k) == 0
             if (s%is_child) then
-               s%is_parent = .false.
                ! Files that it computes no part of are left as they are.
                o%files%emptied = .true.
                allocate (s%waiting(0), s%lengths(out_shared, 0))
@@ -87,43 +83,31 @@ contains
                //capitals(reason_of(last_error()))//')'
             call interrupt_child(children(:started))
          end if
-         if (ends(1) >= 0) then
-            closed = close_descriptor(ends(2))
-            ! The children end; their first message is that of the whole, and so is the worst status.
-            said = ''
-            do
-               if (signal_received() > 0) call interrupt_child(children(:started))
-               list%descriptor = ends(1)
-               if (poll(list, 1_c_long, look_time) > 0) then
-                  n = read_bytes(ends(1), block)
-                  if (n <= 0) exit
-                  said = said//block(:n)
-               end if
-            end do
-            if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
+         ! The pipe ends when no child has it any more.
+         if (ends(1) >= 0) closed = close_descriptor(ends(2))
+         list%descriptor = ends(1)
+         do while (started > 0 .and. poll(list, 1_c_long, look_time) <= 0)
+            if (signal_received() > 0) call interrupt_child(children(:started))
+         end do
+         do k = 1, started
+            ended = 0
+            ignored = waitpid(int(children(k), c_int), ended, 0_c_int)
+            if (iand(ended, 127) == signal_pipe) then
+               status = status_signal + signal_pipe
+            else if (iand(ended, 127) == 0 .and. ended /= ishft(status_rejected, 8)) then
+               status = max(status, ishft(iand(ended, 65535), -8))
+            else if (status < status_system) then
+               ! Only the Fortran library ends a child as if the deck were rejected: memory is short. All parts before
+               ! its own are done.
+               message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s))) &
+                  //' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
+               status = status_system
+            end if
+         end do
 
-            do k = 1, started
-               ended = 0
-               ignored = waitpid(int(children(k), c_int), ended, 0_c_int)
-               ! Only the Fortran library ends a child with this status, if memory is short.
-               failed = ended == ishft(status_rejected, 8)
-               if (iand(ended, 127) == 0 .and. .not. failed) then
-                  status = max(status, ishft(iand(ended, 65535), -8))
-               else if (status < status_system) then
-                  ! All parts before its own are done.
-                  message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s)))
-                  if (failed) message = message//' HAS FAILED'
-                  if (.not. failed) message = message//' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
-                  status = status_system
-               end if
-            end do
-            closed = close_descriptor(ends(1))
-         end if
-
-         ! The children have written these files.
-         if (count_of(s%taken) > 0) o%files%emptied = .true.
-         if (s%taken >= 0) closed = close_descriptor(s%taken)
-         if (s%done >= 0) closed = close_descriptor(s%done)
+         ! The children have written these files, and computed all parts.
+         o%files%emptied = .true.
+         s%part = part_count(s)
       end associate
    end subroutine run_shares
 
@@ -133,8 +117,6 @@ contains
       class(outputs_t), intent(inout) :: o
       integer :: k
 
-      next_part = .not. o%share%is_parent
-      if (o%share%is_parent) return
       associate (s => o%share, files => o%files(:out_shared))
          if (s%is_child .and. s%part > 0) then
             if (goes_on(o)) then
@@ -194,7 +176,7 @@ contains
 
       associate (s => o%share, files => o%files(:out_shared))
          do while (size(s%waiting) > 0 .or. s%held)
-            if (any(has_failed(files))) exit
+            if (any(files%error /= 0)) exit
             part = s%part
             if (size(s%waiting) > 0) part = s%waiting(1)
 
@@ -215,7 +197,7 @@ contains
                if (size(s%waiting) == 0) call release_output(files(k))
             end do
             if (size(s%waiting) == 0) s%held = .false.
-            if (size(s%waiting) == 0 .or. any(has_failed(files))) cycle
+            if (size(s%waiting) == 0 .or. any(files%error /= 0)) cycle
             done = lseek(s%done, 1_c_long, from_here)
             call change_lock(s%taken, part, unlocked)
             s%waiting = s%waiting(2:)
@@ -231,7 +213,7 @@ contains
    logical function goes_on(o)
       class(outputs_t), intent(in) :: o
 
-      goes_on = .not. (o%ended .or. allocated(o%failure) .or. any(has_failed(o%files)))
+      goes_on = .not. (o%ended .or. allocated(o%failure) .or. any(o%files%error /= 0))
    end function goes_on
 
    !> How many parts there are; one where there is nothing to compute.

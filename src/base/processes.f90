@@ -1,23 +1,16 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
-   use failures, only: status_system
-   use system_calls, only: write_bytes, note_all_signals, last_error
+   use system_calls, only: note_all_signals, last_error
    implicit none
    private
-   public :: processor_count, fork_process, interrupt_child, end_process, end_without_memory, report, end_of_message
+   public :: processor_count, fork_process, interrupt_child, end_process
    public :: pipe, poll, poll_t, waitpid, memfd_create, lseek, from_here, change_lock, locked, unlocked
 
    !> SIGTERM; PR_SET_PDEATHSIG of prctl.
    integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
-   !> Ends the message that a child reports to its parent.
-   character(1), parameter :: end_of_message = achar(2)
-   character(*), parameter :: no_memory = ' *** NOT ENOUGH MEMORY FOR THE DECK'
-   !> Where this process reports an error: standard error, in a child the pipe to its parent.
-   integer(c_int), parameter :: standard_error = 2
-   integer(c_int) :: report_to = standard_error
 
    !> What poll is asked about a descriptor: whether there is input.
    type, bind(c) :: poll_t
@@ -115,17 +108,15 @@ contains
          processor_count = max(1, sum(popcnt(mask)))
    end function processor_count
 
-   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. It
-   !> reports to the pipe `writes`. The result is 0 in the child, its number in the parent, negative for an error.
-   integer function fork_process(writes)
-      integer(c_int), intent(in) :: writes
+   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. The
+   !> result is 0 in the child, its number in the parent, negative for an error.
+   integer function fork_process()
       integer(c_int) :: ignored
 
       fork_process = fork()
       if (fork_process /= 0) return
       ignored = prctl(when_parent_ends, signal_terminate)
       call note_all_signals
-      report_to = writes
    end function fork_process
 
    !> Asks the process `child` to end.
@@ -135,23 +126,6 @@ contains
 
       ignored = kill(int(child, c_int), signal_terminate)
    end subroutine interrupt_child
-
-   !> Reports the `message` of this process, a child, to its parent, in one piece.
-   subroutine report(message)
-      character(*), intent(in) :: message
-      integer(c_size_t) :: written
-
-      written = write_bytes(report_to, message//end_of_message)
-   end subroutine report
-
-   !> Ends this process because memory lacks, and uses none for it. Outputs end with the last block of lines written.
-   subroutine end_without_memory
-      integer(c_size_t) :: written
-
-      written = write_bytes(report_to, &
-         no_memory//merge(new_line('a'), end_of_message, report_to == standard_error))
-      call end_process(status_system)
-   end subroutine end_without_memory
 
    !> Sets or opens the lock of byte `k` of the file `descriptor` when it can be had, whatever signals come meanwhile.
    subroutine change_lock(descriptor, k, kind)

@@ -11,9 +11,8 @@ module system_calls
    public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
    public :: isatty
-   public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
-   public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, &
-      broken_pipe
+   public :: watch_signals, note_all_signals, signal_received, end_by_signal, signal_pipe
+   public :: occupy_standard_descriptors, last_error, reason_of, closed_descriptor
 
    !> The identity of a file.
    type :: identity_t
@@ -25,7 +24,7 @@ module system_calls
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
-   integer, parameter :: no_such_file = 2, closed_descriptor = 9, broken_pipe = 32
+   integer, parameter :: no_such_file = 2, closed_descriptor = 9
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
    integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
    !> Read and write for all, less the user's mask.
@@ -43,8 +42,6 @@ module system_calls
    integer(c_int), volatile :: received = 0
    !> Every signal is noted, not only the first.
    logical, volatile :: notes_all = .false.
-   !> A broken pipe would have ended this process without `watch_signals`.
-   logical, protected :: broken_pipe_kills = .false.
 
    !> The result of statx. Unlike that of stat it is the same on every architecture.
    type, bind(c) :: facts_t
@@ -259,8 +256,8 @@ contains
       text = words(:index(words, c_null_char) - 1)
    end function reason_of
 
-   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. A broken pipe or the limit of file sizes is a
-   !> write error and no longer a signal that kills.
+   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. The limit of file sizes is a write error
+   !> and no longer a signal that kills.
    subroutine watch_signals
       type(c_funptr) :: before
       integer :: i
@@ -269,8 +266,6 @@ contains
          before = signal(watched(i), c_funloc(note_signal))
          if (address(before) == ignored) before = signal(watched(i), before)
       end do
-      before = signal(signal_pipe, transfer(ignored, c_null_funptr))
-      if (address(before) == 0_c_intptr_t) broken_pipe_kills = .true.
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
       ! A parent that ignores this signal leaves no exit status of children.
       before = signal(signal_child, c_null_funptr)

@@ -9,7 +9,7 @@ module text_output
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
-   public :: held_length, write_held, release_output, has_failed, turn_lost, replaced
+   public :: held_length, write_held, release_output, turn_lost, replaced
 
    integer, parameter :: block_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
@@ -164,13 +164,6 @@ contains
       if (allocated(o%buffer) .and. .not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
-   !> Whether a write has failed: further results would be lost.
-   elemental logical function has_failed(o)
-      type(output_t), intent(in) :: o
-
-      has_failed = o%error /= 0
-   end function has_failed
-
    !> Writes the rest of the buffer and closes. Errors: status_system, if any line could not be written.
    subroutine close_output(o, failure)
       type(output_t), intent(inout) :: o
@@ -179,11 +172,11 @@ contains
       call write_held(o, held_length(o))
       deallocate (o%buffer)
       if (len(o%path) > 0) then
-         if (.not. close_descriptor(o%descriptor) .and. .not. has_failed(o)) o%error = last_error()
+         if (.not. close_descriptor(o%descriptor) .and. o%error == 0) o%error = last_error()
       else
          o%path = 'STANDARD OUTPUT'
       end if
-      if (.not. has_failed(o)) return
+      if (o%error == 0) return
       call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
 
@@ -207,7 +200,7 @@ contains
       integer(c_size_t) :: written, done
 
       ! The old contents of the file go; devices and pipes have none.
-      if (.not. (o%emptied .or. has_failed(o))) then
+      if (.not. (o%emptied .or. o%error /= 0)) then
          o%emptied = .true.
          id = identity_of(descriptor=o%descriptor)
          if (id%regular) then
@@ -215,7 +208,7 @@ contains
          end if
       end if
       done = 0
-      do while (done < len(text) .and. .not. has_failed(o))
+      do while (done < len(text) .and. o%error == 0)
          written = write_bytes(o%descriptor, text(done + 1:))
          if (written <= 0) o%error = last_error()
          done = done + written

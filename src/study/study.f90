@@ -17,7 +17,7 @@ module study
    use csv, only: table_t, new_table
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
-      has_failed, replaced
+      replaced
    use numerals, only: whole
    use processes, only: memfd_create
    use system_calls, only: close_descriptor
@@ -98,7 +98,7 @@ contains
                call study_set(sets(i), findings(i)%redundant > 0)
             end if
             call flush_output(o)
-            if (has_failed(o)) exit
+            if (o%error /= 0) exit
          end do
          call close_output(o, failure)
       end if

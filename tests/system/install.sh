@@ -39,7 +39,7 @@ page=$w/usr/share/man/man1/kinmat.1
 equal 'the man page: options are found' yes "$([ "$(wc -l < "$w/options")" -ge 14 ] && echo yes)"
 equal 'the man page: options it lacks' '' "$(while read -r option; do tr -d '\\' < "$page" | grep -qF -- "fB$option" || echo "$option"; done < "$w/options")"
 equal 'the man page: its sections' 'NAME SYNOPSIS DESCRIPTION OPTIONS EXIT STATUS EXAMPLES SEE ALSO ' "$(sed -n 's/^[.]SH //p' "$page" | tr '\n' ' ')"
-equal 'the man page: exit statuses' '0 1 2 3 ' "$(sed -n '/^.SH EXIT/,$p' "$page" | grep -E '^[0-9]$' | tr '\n' ' ')"
+equal 'the man page: exit statuses' '0 1 2 3 130 143 141 ' "$(sed -n '/^.SH EXIT/,$p' "$page" | grep -E '^[0-9]+$' | tr '\n' ' ')"
 readme=$(sed -n 's/.*fI\(.*README[.]md\).*/\1/p' "$page")
 equal 'the man page: the documents where they are' "/usr/share/doc/kinmat/README.md there" "$readme $([ -s "$w$readme" ] && echo there)"
 equal 'the man page: lines over 120 columns' '' "$(awk 'length > 120' "$page")"
