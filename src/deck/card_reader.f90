@@ -43,6 +43,8 @@ contains
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(out) :: parsed
       type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: code
+      character(:), allocatable :: name
       logical :: cut(size(card_fields))
       integer :: before, last, i
 
@@ -58,7 +60,13 @@ contains
       if (parsed%form == form_title) call read_title(parsed%card, errors)
       call check_characters(parsed%card, parsed%names_certain, errors)
       parsed%label = capitals(parsed%label)
-      if (errors%count == before .and. parsed%form == form_unknown) call refuse_name(card, parsed%form, errors)
+      if (errors%count == before .and. parsed%form == form_unknown) then
+         name = field_text(card, card_fields(card_name))
+         parsed%form = find_form(name)
+         code = merge(card_unknown, card_indented, parsed%form == form_unknown)
+         if (name == '') code = field_blank
+         call add_field_error(errors, code, card, card_fields(card_name))
+      end if
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before
       if (.not. parsed%valid .or. parsed%form == form_title) return
@@ -112,7 +120,7 @@ contains
       else if (field_text(card, card_fields(card_name)) /= '*') then
          call add_field_error(errors, card_unknown, card, card_fields(card_name))
       else if (allocated(above%star)) then
-         call add_field_error(errors, star_second, card, card_fields(card_name))
+         call add_field_error(errors, card_second, card, card_fields(card_name))
       else if (above%form /= form_unknown) then
          call find_cuts(card, wide_fields, '---', cut, errors)
          do i = 1, 3
@@ -136,7 +144,6 @@ contains
       type(card_t), intent(in) :: card
       logical, intent(out) :: clean
       type(input_errors_t), intent(inout) :: errors
-      type(error_code_t) :: code
       type(field_t) :: field
       integer :: column, last
 
@@ -150,29 +157,10 @@ contains
             call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
          return
       end if
-      code = control_character
-      if (ichar(card%text(column:column)) == 9) code = tab_character
-      if (ichar(card%text(column:column)) > 127) code = foreign_character
       field = card_fields(findloc(card_fields%last >= column, .true., dim=1))
-      call add_error(errors, code, card, field, column, field_text(card, field))
+      call add_error(errors, merge(tab_character, foreign_character, ichar(card%text(column:column)) == 9), card, &
+         field, column, field_text(card, field))
    end subroutine check_characters
-
-   !> Adds the error of a card name that does not exist. `form`: that of a name that does not begin in column 1, or
-   !> form_unknown.
-   subroutine refuse_name(card, form, errors)
-      type(card_t), intent(in) :: card
-      integer, intent(out) :: form
-      type(input_errors_t), intent(inout) :: errors
-      character(:), allocatable :: name
-      type(error_code_t) :: code
-
-      name = field_text(card, card_fields(card_name))
-      form = find_form(name)
-      code = card_unknown
-      if (form /= form_unknown) code = card_indented
-      if (name == '') code = field_blank
-      call add_field_error(errors, code, card, card_fields(card_name))
-   end subroutine refuse_name
 
    !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
    !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues

@@ -169,10 +169,8 @@ contains
          i = set%mechanism%points(i)%link
          j = set%mechanism%points(j)%link
          if (i == 0 .or. j == 0) return
-         if (i == j) then
-            call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
-         else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
-            call add_card_error(set, pair_grounds, k, label_c)
+         if (i == j .or. (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground)) then
+            call add_card_error(set, pair_one_link, k, label_c)
          else if (any(set%mechanism%pairs(n)%drawn)) then
             ! It has those numbers as drawn. The points of a cylinder must lie apart.
             call take_drawn(set%mechanism, n)
@@ -244,17 +242,22 @@ contains
       call add_card_error(set, unknown(kind), k, i, hint)
    end subroutine look_up
 
-   !> The place in `words` of label A of card `k`; 0 if it is none of them: for a card without other errors, that is the
-   !> error `code`.
-   subroutine match_word(set, k, words, code, place)
+   !> The place in `words` of label A of card `k`; 0 if it is none of them, an error of a card without others.
+   subroutine match_word(set, k, words, place)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
       character(*), intent(in) :: words(:)
-      type(error_code_t), intent(in) :: code
       integer, intent(out) :: place
+      character(:), allocatable :: list
+      integer :: i
 
       place = findloc(words, set%cards(k)%label(label_a), dim=1)
-      if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
+      if (place > 0 .or. .not. set%cards(k)%valid) return
+      list = trim(words(1))
+      do i = 2, size(words)
+         list = list//', '//trim(words(i))
+      end do
+      call add_card_error(set, word_unknown, k, label_a, list)
    end subroutine match_word
 
    !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`. `value` ends the sentence.

@@ -140,7 +140,7 @@ contains
       associate (set => progress%set)
          if (card%text(1:1) == '*') then
             if (set%count == 0) then
-               call add_field_error(set%errors, star_first, card, card_fields(card_name))
+               call add_field_error(set%errors, card_alone, card, card_fields(card_name))
             else
                call read_star(card, set%cards(set%count), set%errors)
             end if
@@ -161,8 +161,6 @@ contains
             set%cards(set%count) = parsed
             set%number_of(parsed%form) = set%number_of(parsed%form) + 1
             set%names_certain = set%names_certain .and. parsed%names_certain
-         else if (set%count == 0) then
-            call add_field_error(set%errors, set_empty, card, card_fields(card_name))
          else
             ! A card that was not understood may be the missing one.
             if (set%names_certain .and. set%number_of(form_link) == 0) &

@@ -34,7 +34,7 @@ contains
                call build_term()
             else if (all(form_above(k) /= [form_add, form_rise, form_unknown])) then
                ! A card with a wrong name may have been a DRIVE card.
-               call add_card_error(set, add_alone, k, card_name)
+               call add_card_error(set, card_alone, k, card_name)
             end if
          end if
       end do
@@ -101,7 +101,7 @@ contains
          integer :: kind, links(3), label
 
          associate (card => set%cards(k), m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
-            call match_word(set, k, drive_words, drive_kind, kind)
+            call match_word(set, k, drive_words, kind)
             if (kind == 0) return
             drive%kind = kind
             drive%polynomial = card%real*unit_of(drive)
@@ -129,7 +129,7 @@ contains
             else
                links = drive_links(m, drive)
                if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
-               if (all(m%links(links)%ground)) call add_card_error(set, drive_ground, k, label)
+               if (all(m%links(links)%ground)) call add_card_error(set, is_ground, k, label)
             end if
          end associate
       end subroutine build_drive
@@ -149,15 +149,16 @@ contains
             drive => set%mechanism%drives(set%cards(k)%subject), &
             term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
             if (card%form == form_rise) then
-               call match_word(set, k, rise_words, rise_law, kind)
+               call match_word(set, k, rise_words, kind)
                term%kind = term_cycloid + max(kind, 1) - 1
                term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
-               if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
+               if (card%valid .and. card%real(2) <= 0.0_wp) &
+                  call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
                if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
                return
             end if
 
-            if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
+            if (card%valid .and. .not. any(card%given)) call add_card_error(set, field_blank, k, real_1)
             if (is_row(card)) then
                term%kind = term_table
                term%table%x(row) = card%real(1)
@@ -166,7 +167,7 @@ contains
                    card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
                if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
             else
-               call match_word(set, k, term_words, add_kind, kind)
+               call match_word(set, k, term_words, kind)
                if (kind == term_harmonic) &
                   term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
                if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
@@ -194,7 +195,8 @@ contains
    !> other error.
    subroutine check_terms(set)
       type(card_set_t), intent(inout) :: set
-      real(wp) :: first, last
+      real(wp) :: first, last, times(2)
+      real(wp), parameter :: max_order = 120.0_wp
       integer :: k
 
       call find_instants(set%mechanism, first, last)
@@ -216,8 +218,14 @@ contains
                      if (first <= 0.0_wp .and. last >= 0.0_wp) call add_instant_error(power_zero, 0.0_wp)
                   end if
                end associate
-               if (is_large(term, first)) call add_instant_error(power_large, first)
-               if (is_large(term, last)) call add_instant_error(power_large, last)
+               ! R1 t**R2 and its derivatives stay far from the ends of the range of reals.
+               times = abs([first, last])
+               where (times <= 0.0_wp) times = 1.0_wp
+               associate (r => max(abs(term%r), [tiny(1.0_wp), 1.0_wp, 1.0_wp]))
+                  times = log10(r(1)) + 2.0_wp*log10(r(2)) + (abs(term%r(2)) + 2.0_wp)*abs(log10(times))
+               end associate
+               if (any(times > max_order)) &
+                  call add_instant_error(power_large, merge(first, last, times(1) > max_order))
             end if
          end associate
       end do
@@ -234,17 +242,4 @@ contains
          call add_card_error(set, code, k, label_a, trim(adjustl(text)))
       end subroutine add_instant_error
    end subroutine check_terms
-
-   !> Whether the power `term`, or a derivative of it, comes near the end of the range of reals at the time `t`.
-   pure logical function is_large(term, t)
-      type(term_t), intent(in) :: term
-      real(wp), intent(in) :: t
-      real(wp), parameter :: max_order = 120.0_wp
-
-      is_large = .false.
-      if (abs(t) <= 0.0_wp .or. abs(term%r(1)) <= 0.0_wp) return
-      associate (p => abs(term%r(2)))
-         is_large = log10(abs(term%r(1))) + 2.0_wp*log10(max(p, 1.0_wp)) + (p + 2.0_wp)*abs(log10(abs(t))) > max_order
-      end associate
-   end function is_large
 end module deck_drives

@@ -54,18 +54,19 @@ contains
                do i = label_a, label_c, 2
                   if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
                end do
-               if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
+               if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) &
+                  call add_card_error(set, word_unknown, k, label_b, 'RAD, DEG')
             case (form_lang)
-               call match_word(set, k, ['EN', 'PL'], lang_kind, place)
+               call match_word(set, k, ['EN', 'PL'], place)
                m%polish = place == 2
             case (form_method)
                if (.not. card%valid) cycle
-               call match_word(set, k, method_words, method_kind, place)
+               call match_word(set, k, method_words, place)
                if (place > 0) m%method = place
                m%tolerance = card%real(1)
                if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &
                    (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
-                  call add_card_error(set, tolerance_range, k, real_1)
+                  call add_card_error(set, number_range, k, real_1, 'ABOVE 1E-15, UP TO 1E-2')
             case (form_time)
                if (.not. card%valid) cycle
                if (card%whole < 1 .or. card%whole > max_steps) then
@@ -179,24 +180,22 @@ contains
          type(request_t) :: one
          integer :: earlier, place, link
 
-         call match_word(set, k, print_words, print_kind, place)
+         call match_word(set, k, print_words, place)
          if (place == 0) return
          one = request
          one%kind = place - 1
          associate (name => set%cards(k)%label(label_b))
             call put_name(seen(one%kind), name, k, earlier)
             if (earlier > 0) then
-               call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
+               call add_card_error(set, repeated, k, label_a, whole(set%cards(earlier)%card%number))
             else if (one%kind == 0 .and. name /= '') then
-               call add_card_error(set, print_all_name, k, label_b)
+               call add_card_error(set, field_unused, k, label_b)
             else if (one%kind == 0) then
                do place = request_link, request_pair
                   one%kind = place
                   call request_all(one)
                end do
             else if (name == '') then
-               if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
-                  call add_card_error(set, print_nothing, k, label_a)
                call request_all(one)
             else
                call look_up(set, one%kind, k, label_b, one%subject)
@@ -205,7 +204,7 @@ contains
                if (one%kind == request_link) link = one%subject
                if (one%kind == request_point) link = set%mechanism%points(one%subject)%link
                if (one%extremes .and. link > 0) then
-                  if (set%mechanism%links(link)%ground) call add_card_error(set, extremes_ground, k, label_b)
+                  if (set%mechanism%links(link)%ground) call add_card_error(set, is_ground, k, label_b)
                end if
                call add_request(one)
             end if
@@ -264,14 +263,14 @@ contains
             if (set%mechanism%method /= method_newton) call add_card_error(set, newton_needed, k, card_name)
             call look_up(set, request_link, k, label_a, request%link)
             if (request%link > 0) then
-               if (set%mechanism%links(request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
+               if (set%mechanism%links(request%link)%ground) call add_card_error(set, is_ground, k, label_a)
             end if
             if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
             request%t = set%cards(k)%real(1)
          end associate
          i = findloc(requests(:n - 1)%link == requests(n)%link &
             .and. .not. abs(requests(:n - 1)%t - requests(n)%t) > 0.0_wp, .true., dim=1)
-         if (i > 0) call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
+         if (i > 0) call add_card_error(set, repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
       end do
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches

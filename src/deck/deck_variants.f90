@@ -72,9 +72,9 @@ contains
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) cycle
             if (forms(form)%reals == 0) then
-               call add_card_error(set, toler_alone, k, card_name)
+               call add_card_error(set, card_alone, k, card_name)
             else if (any(set%cards(above + 1:k - 1)%form == form_toler)) then
-               call add_card_error(set, toler_second, k, card_name)
+               call add_card_error(set, card_second, k, card_name)
             else
                do i = 1, 3
                   if (.not. card%given(i)) cycle
@@ -170,7 +170,7 @@ contains
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) return
             if (all(form /= varied_forms)) then
-               call add_card_error(set, vary_alone, i, card_name)
+               call add_card_error(set, card_alone, i, card_name)
                return
             end if
             if (one%place == 0 .or. one%place > reals_of(form, set%cards(above)%label(label_a))) then
@@ -208,7 +208,7 @@ contains
                v%numbers(n)%list = [v%numbers(n)%list, one%list]
                v%numbers(n)%count = size(v%numbers(n)%list)
             else
-               call add_card_error(set, vary_twice, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
+               call add_card_error(set, repeated, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
             end if
          end associate
       end subroutine take_card
@@ -222,18 +222,16 @@ contains
          if (card%label(label_b) == list_word) then
             one%list = pack(card%real, card%given)
             one%count = size(one%list)
-            if (one%count == 0) call add_card_error(set, add_blank, i, card_name)
+            if (one%count == 0) call add_card_error(set, field_blank, i, real_1)
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
          if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_card_error(set, vary_count, i, label_b, whole(max_variants))
-         else if (card%given(3)) then
-            call add_card_error(set, field_unused, i, real_3)
+         else if (card%given(3) .or. (count_given == 1 .and. card%given(2))) then
+            call add_card_error(set, field_unused, i, merge(real_3, real_2, card%given(3)))
          else if (.not. any(card%given(1:2))) then
             call add_card_error(set, field_blank, i, real_1)
-         else if (count_given == 1 .and. card%given(2)) then
-            call add_card_error(set, vary_one, i, real_2)
          else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
             call add_card_error(set, vary_equal, i, real_2)
          else

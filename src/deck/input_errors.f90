@@ -37,7 +37,6 @@ module input_errors
    type(error_code_t), parameter, public :: &
       deck_empty = error_code_t(1, 'THE DECK IS EMPTY'), &
       end_missing = error_code_t(2, 'IS THE LAST CARD OF THE DECK: ADD AN END CARD AFTER IT', form_end), &
-      set_empty = error_code_t(3, 'CLOSES A SET WITHOUT CARDS'), &
       link_missing = error_code_t(4, 'CLOSES A SET WITHOUT A LINK CARD', form_link), &
       time_missing = error_code_t(5, 'CLOSES A SET WITHOUT A TIME OR AT CARD', form_time), &
       deck_long = error_code_t(6, 'THE DECK IS TOO LONG; CARDS ALLOWED:')
@@ -48,8 +47,7 @@ module input_errors
       card_repeated = error_code_t(13, 'IS ALLOWED ONLY ONCE IN A SET; FIRST ON CARD'), &
       past_last_column = error_code_t(14, 'IS BEYOND COLUMN 80'), &
       tab_character = error_code_t(15, 'CONTAINS A TAB'), &
-      control_character = error_code_t(16, 'CONTAINS A CONTROL CHARACTER'), &
-      foreign_character = error_code_t(17, 'CONTAINS A CHARACTER THAT IS NOT ASCII'), &
+      foreign_character = error_code_t(16, 'CONTAINS A CHARACTER THAT IS NOT PRINTABLE ASCII'), &
       border_crossed = error_code_t(18, 'CROSSES THE FIELD BORDER BETWEEN COLUMNS', own_layout), &
       field_unused = error_code_t(19, 'IS IN A FIELD THAT THIS CARD DOES NOT USE', own_layout)
    ! Numbers. The range of 1E-max_power to 1Emax_power leaves room for fourth powers in the real kind.
@@ -57,24 +55,20 @@ module input_errors
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
    type(error_code_t), parameter, public :: &
       number_other = error_code_t(20, 'IS NOT A NUMBER'), &
-      number_blank = error_code_t(23, 'IS NOT A NUMBER (EMBEDDED BLANK)'), &
-      number_comma = error_code_t(24, 'IS NOT A NUMBER (DECIMAL COMMA)'), &
       number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
       number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'IS NOT A REAL NUMBER: WRITE A DECIMAL POINT OR AN EXPONENT (5.0)'), &
       number_fraction = error_code_t(31, 'IS NOT AN INTEGER: REMOVE THE POINT OR EXPONENT')
-   ! Fields, and the cards that belong to the one above them: `*` and TOLER.
+   ! Fields, and the cards that belong to the one above them: `*`, TOLER, VARY, ADD and RISE.
    type(error_code_t), parameter, public :: &
       field_blank = error_code_t(34, 'THE FIELD IS BLANK: FILL IT IN', own_layout), &
       label_blank_inside = error_code_t(35, 'IS NOT A LABEL: LABELS CANNOT CONTAIN BLANKS', own_layout), &
       number_range = error_code_t(36, 'IS OUT OF RANGE; ALLOWED:'), &
       label_long = error_code_t(37, 'IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS', own_layout), &
-      star_first = error_code_t(40, 'CONTINUES NO CARD: IT IS THE FIRST CARD OF THE SET'), &
-      star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
+      card_second = error_code_t(42, 'IS A SECOND * OR TOLER CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: ALSO ON THE CARD THAT THIS ONE CONTINUES'), &
-      toler_alone = error_code_t(45, 'MUST FOLLOW THE CARD TO WHICH THE TOLERANCES APPLY'), &
-      toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'), &
-      toler_second = error_code_t(47, 'IS A SECOND TOLER CARD FOR THE SAME CARD')
+      card_alone = error_code_t(45, 'MUST FOLLOW THE CARD TO WHICH IT APPLIES'), &
+      toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE')
    ! Names.
    type(error_code_t), parameter, public :: &
       name_repeated = error_code_t(50, 'IS A NAME DEFINED TWICE; FIRST ON CARD'), &
@@ -84,28 +78,20 @@ module input_errors
       link_unused = error_code_t(54, 'IS A LINK WITHOUT PAIR OR DRIVE, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &
-      vary_alone = &
-         error_code_t(55, 'MUST FOLLOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD'), &
       vary_number = error_code_t(56, 'IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO', own_layout), &
       vary_equal = error_code_t(58, 'EQUALS THE FIRST VALUE: A RANGE NEEDS TWO DIFFERENT VALUES'), &
-      vary_one = error_code_t(59, 'IS A LAST VALUE, WHICH A SINGLE VALUE DOES NOT HAVE: LEAVE IT BLANK'), &
-      vary_twice = error_code_t(62, 'VARIES A NUMBER THAT VARIES ALREADY ON CARD'), &
       vary_tie = error_code_t(63, 'TIES NUMBERS WITH DIFFERENT COUNTS OF VALUES; SEE CARD'), &
       vary_many = error_code_t(64, 'THE GRID HAS TOO MANY VARIANTS; ALLOWED:')
    ! Pairs and drives.
    type(error_code_t), parameter, public :: &
-      pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK', own_layout), &
-      pair_grounds = error_code_t(61, 'JOINS TWO GROUND LINKS'), &
+      pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK OR OF GROUND', own_layout), &
       cylinder_drawing = error_code_t(65, 'A CYLINDER NEEDS A DRAWING, THAT IS JOINT CARDS; OTHERWISE USE PRISM'), &
       cylinder_points = error_code_t(69, 'BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'), &
-      drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', own_layout), &
-      drive_ground = error_code_t(71, 'IS GROUND, WHICH CANNOT BE DRIVEN: NAME WHAT MOVES'), &
+      word_unknown = error_code_t(70, 'IS NOT ONE OF', own_layout), &
+      is_ground = error_code_t(71, 'IS GROUND: NAME WHAT MOVES'), &
       drive_one_link = error_code_t(74, 'IS NAMED TWICE: NAME TWO LINKS'), &
       drive_revolute = error_code_t(75, 'IS A REVOLUTE PAIR, WHICH HAS NO SLIDE'), &
-      add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE, ADD OR RISE CARD'), &
-      add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', own_layout), &
-      add_blank = error_code_t(78, 'GIVES NO NUMBERS', own_layout), &
       power_negative = &
          error_code_t(79, 'MUST HAVE AN INTEGER POWER, SINCE T < 0 AT THE INSTANT', own_layout), &
       power_zero = &
@@ -114,26 +100,14 @@ module input_errors
       table_order = error_code_t(82, 'IS NOT LATER THAN THE ROW ABOVE: TIMES OF A TABLE INCREASE'), &
       table_range = error_code_t(83, 'HAS NO ROWS AROUND THE INSTANT'), &
       power_large = error_code_t(84, 'OVERFLOWS (R1 T**R2) AT THE INSTANT'), &
-      rise_law = error_code_t(66, 'IS NOT CYCLOID, 3-4-5, HARMONIC OR PARABOLA', own_layout), &
-      rise_duration = error_code_t(67, 'IS NOT A DURATION: IT MUST BE GREATER THAN 0.0', own_layout), &
       rpm_unit = error_code_t(68, 'IS ONLY ALLOWED IF THE UNIT OF TIME IS S, MS, MIN OR H')
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'EQUALS T0: USE AN AT CARD FOR ONE INSTANT'), &
-      branch_ground = error_code_t(86, 'IS A GROUND LINK, WHICH HAS NO OTHER BRANCH'), &
       newton_needed = error_code_t(87, 'REQUIRES METHOD NEWTON'), &
-      branch_repeated = error_code_t(88, 'IS REPEATED; FIRST ON CARD'), &
       units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', own_layout), &
-      lang_kind = error_code_t(90, 'IS NOT EN OR PL', own_layout), &
-      units_angle = error_code_t(91, 'IS NOT RAD OR DEG', own_layout), &
-      method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', own_layout), &
-      tolerance_range = error_code_t(93, 'IS OUT OF RANGE: A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
-      print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', own_layout), &
-      print_all_name = error_code_t(95, 'IS A NAME, WHICH ALL DOES NOT TAKE'), &
-      print_repeated = error_code_t(96, 'IS REPEATED; FIRST ON CARD'), &
-      print_nothing = error_code_t(97, 'ASKS FOR ITEMS THAT THE SET DOES NOT HAVE'), &
+      repeated = error_code_t(96, 'IS REPEATED; FIRST ON CARD'), &
       extremes_time = error_code_t(98, 'NEEDS A TIME CARD: IT SEARCHES BETWEEN THE INSTANTS OF TIME'), &
-      extremes_ground = error_code_t(99, 'IS FIXED TO THE GROUND AND HAS NO EXTREMES'), &
       centre_still = error_code_t(100, 'HAS NO RELATIVE MOTION: BOTH ARE ON ONE LINK OR ON GROUND'), &
       centre_apart = error_code_t(107, 'IS IN ANOTHER INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD')
 

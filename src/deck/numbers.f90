@@ -66,7 +66,7 @@ contains
          place = 1
          return
       end if
-      if (place <= len(text)) error = error_at(text, place)
+      if (place <= len(text)) error = number_other
       place = min(place, len(text))
       if (error%number > 0) return
 
@@ -100,7 +100,7 @@ contains
          error = number_other
       else if (wrong >= first) then
          place = wrong
-         error = error_at(text, wrong)
+         error = number_other
          if (scan(text(wrong:wrong), '.') == 1 .or. (wrong > first .and. scan(text(wrong:wrong), 'EeDd') == 1)) &
             error = number_fraction
       else
@@ -109,15 +109,4 @@ contains
          if (status /= 0) value = 0
       end if
    end subroutine read_whole
-
-   !> The error at the character `text(i:i)`, at which the grammar stopped.
-   pure function error_at(text, i) result(error)
-      character(*), intent(in) :: text
-      integer, intent(in) :: i
-      type(error_code_t) :: error
-
-      error = number_other
-      if (text(i:i) == ' ') error = number_blank
-      if (text(i:i) == ',') error = number_comma
-   end function error_at
 end module numbers

@@ -122,8 +122,8 @@ refusal() {
    equal "$1: status" 1 $?
    equal "$1: code" "$3" "$(sed -n 's/^ [*]* *\(E[0-9][0-9][0-9]\) .*/\1/p' "$w/err")"
 }
-refusal 'a ground link' "$(card EXTREMES LINKS BASE)" E099
-refusal 'a ground point' "$(card EXTREMES POINTS A0)" E099
+refusal 'a ground link' "$(card EXTREMES LINKS BASE)" E071
+refusal 'a ground point' "$(card EXTREMES POINTS A0)" E071
 refusal 'twice' "$(card EXTREMES POINTS C)" E096
 refusal 'no such pair' "$(card EXTREMES PAIRS NONE)" E053
 refusal 'a negative distance' "$(card EXTREMES LINKS CRANK '' '' -1.0)" E036

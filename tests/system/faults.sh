@@ -686,9 +686,9 @@ equal 'a line of a million characters: few of them told' yes "$([ "$(wc -c < "$w
 { printf 'LINK    A'; head -c 1000000 /dev/zero | tr '\0' ' '; echo B; echo END; } > "$w/deck"
 refused 'a million blanks in a line' ' *** E014  CARD 1  COLUMN 1000010  FIELD PAST-80: "B" IS BEYOND COLUMN 80'
 head -c 1000000 /dev/zero > "$w/deck"
-refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" CONTAINS A CONTROL CHARACTER'
+refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" CONTAINS A CHARACTER THAT IS NOT PRINTABLE ASCII'
 tr -d '\r' < "$kinmat" > "$w/deck"
-refused 'the program as its own deck, without carriage returns' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" CONTAINS A CONTROL CHARACTER'
+refused 'the program as its own deck, without carriage returns' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" CONTAINS A CHARACTER THAT IS NOT PRINTABLE ASCII'
 rm -f "$w/deck"
 
 # What is harmless is remarked and computed: the listing is that of the deck without it, but for its remarks and its echo.

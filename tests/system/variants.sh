@@ -159,8 +159,8 @@ equal 'impossible: limit' '1 agree' "$(worst "$w/limit" 'form = 180/atan2(0, -1)
 } > "$w/refused.deck"
 run refused
 equal 'refused: status' 2 $status
-equal 'refused: rows' '1 25 0 ;2 0 0 E067;3 25 0 ;' "$(rows "$w/refused.csv" variant solved flagged flag.mark | tr '\n' ';')"
-equal 'refused: words' 1 "$(grep -c '^ \*\*\* E067 .*IS NOT A DURATION: IT MUST BE GREATER THAN 0.0' "$w/refused.lst")"
+equal 'refused: rows' '1 25 0 ;2 0 0 E036;3 25 0 ;' "$(rows "$w/refused.csv" variant solved flagged flag.mark | tr '\n' ';')"
+equal 'refused: words' 1 "$(grep -c '^ \*\*\* E036 .*IS OUT OF RANGE; ALLOWED: ABOVE 0.0' "$w/refused.lst")"
 
 # What a table cannot hold. Faults of VARY cards are in tests/unit/deck/test_deck_variants.pf.
 "$kinmat" "$w/order.deck" --no-listing --table "$w/table.csv" > "$w/out" 2>&1
