@@ -43,12 +43,13 @@ function keep_message(   codes, message, text) {
    codes = at["Code"]
    message = at["Message"]
    messages++
-   keep("message", 10*messages + 1, codes)
    gsub(/`/, "", message)
-   keep("message", 10*messages + 2, toupper(message))
+   text = toupper(codes " " message)
+   gsub(/[,:;]/, "", text)
+   keep("message", 10*messages + 1, text)
    text = folded(padded(codes, 7), message, 7)
    if (at["Cause"] != "") text = text "\n" folded("       CAUSE  ", at["Cause"], 14)
-   keep("message", 10*messages + 3, text "\n" folded("       CURE   ", at["Cure"], 14))
+   keep("message", 10*messages + 2, text "\n" folded("       CURE   ", at["Cure"], 14))
 }
 # write_table(name, arguments, key, otherwise): the function of the table
 function write_table(name, arguments, key, otherwise) {
@@ -104,8 +105,8 @@ END {
    print "module document_texts\n   implicit none\n   private\n   public :: message_cell, help_on\n"
    print "   integer, parameter, public :: message_count = " messages
    print "   character(1), parameter :: nl = new_line(\047a\047)\n\ncontains\n"
-   print "   !> A cell of the table of messages: 1 the codes; 2 the words of a printed message in capitals, a mark ` between"
-   print "   !> alternatives; 3 the message in capitals; 4 the lines that explain it."
+   print "   !> A cell of the table of messages: 1 the code and the words of the message, in capitals, without commas and colons; 2"
+   print "   !> the lines that explain it."
    write_table("message_cell(row, column)", "      integer, intent(in) :: row, column\n", "10*row + column", "")
    print "\n   !> A line or more for each field of the cards of the name `topic`, in capitals: contents, type, default, unit; for"
    print "   !> the topic \047\047 the text of --help."

@@ -7,7 +7,7 @@ module command_line
    use document_texts, only: message_cell, message_count
    implicit none
    private
-   public :: options_t, word_t, read_command, read_words, explained
+   public :: options_t, word_t, read_command, explained
    public :: file_options
    public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table, &
       out_shared, out_last
@@ -24,7 +24,7 @@ module command_line
    character(*), parameter :: file_options(out_last) = [character(10) :: '-o', '--csv', '--log', '--summary', '--svg', &
       '--animate', '--circuits', '--table']
 
-   !> A word of the command.
+   !> A word of the command: the name of a file.
    type :: word_t
       character(:), allocatable :: text
    end type word_t
@@ -45,8 +45,6 @@ module command_line
       character(:), allocatable :: show
    end type options_t
 
-   !> Words of a printed message count if they have so many letters together: more than LINKS and one name have.
-   integer, parameter :: known_length = 14
    !> More processes than any machine has processors would only take memory.
    integer, parameter :: max_jobs = 1024
 
@@ -54,22 +52,6 @@ contains
 
    !> Reads the process's arguments.
    subroutine read_command(options, failure)
-      type(options_t), intent(out) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-      type(word_t) :: words(command_argument_count())
-      integer :: i, length
-
-      do i = 1, size(words)
-         call get_command_argument(i, length=length)
-         allocate (character(length) :: words(i)%text)
-         if (length > 0) call get_command_argument(i, words(i)%text)
-      end do
-      call read_words(words, options, failure)
-   end subroutine read_command
-
-   !> Reads the words after the program's name.
-   subroutine read_words(words, options, failure)
-      type(word_t), intent(in) :: words(:)
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: word
@@ -80,14 +62,14 @@ contains
       options%show = ''
       has_deck = .false.
       i = 0
-      do while (i < size(words) .and. .not. allocated(failure))
-         i = i + 1
-         k = findloc(file_options == words(i)%text, .true., dim=1)
+      do while (i < command_argument_count() .and. .not. allocated(failure))
+         word = next_word()
+         k = findloc(file_options == word, .true., dim=1)
          if (k > 0) then
             call take_file(options%files(k))
             cycle
          end if
-         select case (words(i)%text)
+         select case (word)
          case ('--sets')
             word = next_word()
             k = index(word, '/')
@@ -121,7 +103,7 @@ contains
             ! All words that follow: the code of a message, or words of it.
             options%show = 'EXPLAIN'
             options%deck = ''
-            do while (i < size(words))
+            do while (i < command_argument_count())
                options%deck = trim(options%deck//' '//next_word())
             end do
             options%deck = trim(adjustl(options%deck))
@@ -132,7 +114,6 @@ contains
                   //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
             end if
          case default
-            word = words(i)%text
             if (len(word) == 0) then
                call reject('THE NAME OF THE DECK IS EMPTY')
             else if (word(1:1) == '-' .and. word /= '-') then
@@ -187,29 +168,30 @@ contains
          if (.not. allocated(failure)) call fail(failure, status_rejected, text)
       end subroutine reject
 
-      !> Takes the name of a `file` from after word number `i`, its option: `-` is standard output.
+      !> Takes the name of a `file` from after `word`, its option: `-` is standard output.
       subroutine take_file(file)
          type(word_t), intent(inout) :: file
-         character(:), allocatable :: option, path
+         character(:), allocatable :: path
 
-         option = words(i)%text
          path = next_word()
          if (len(path) == 0) then
-            call reject('OPTION '//option//' NEEDS A FILE NAME')
+            call reject('OPTION '//word//' NEEDS A FILE NAME')
          else if (allocated(file%text)) then
-            call reject('OPTION '//option//' IS GIVEN TWICE')
+            call reject('OPTION '//word//' IS GIVEN TWICE')
          end if
          if (path == '-') path = ''
          file%text = path
       end subroutine take_file
 
       !> The word after word number `i`, '' if there is none; that is number `i` then.
-      function next_word() result(word)
-         character(:), allocatable :: word
+      function next_word() result(next)
+         character(:), allocatable :: next
+         integer :: length
 
          i = i + 1
-         word = ''
-         if (i <= size(words)) word = words(i)%text
+         call get_command_argument(i, length=length)
+         allocate (character(length) :: next)
+         if (length > 0) call get_command_argument(i, next)
       end function next_word
 
       !> The whole number `word`, of at most 8 digits without a sign; 0 if it is none.
@@ -219,7 +201,7 @@ contains
          number = 0
          if (len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0) read (word, *) number
       end function whole_of
-   end subroutine read_words
+   end subroutine read_command
 
    !> Whether `file` is asked for, as standard output.
    elemental logical function to_standard_output(file)
@@ -229,49 +211,35 @@ contains
       if (allocated(file%text)) to_standard_output = len(file%text) == 0
    end function to_standard_output
 
-   !> Gives the entries of docs/messages.md that `words` ask for, or '' if there are none: the entries of the code in
-   !> `words`. Without a code, those whose message holds the words; otherwise those of the printed message `words`.
+   !> Gives the entries of docs/messages.md that have most letters in words of `words`: a code, words of a message, or a
+   !> printed message; '' if none has any.
    pure function explained(words) result(text)
       character(*), intent(in) :: words
       character(:), allocatable :: text
-      character(:), allocatable :: key, codes
-      integer :: i, k
-      integer :: scores(message_count)
+      integer :: scores(message_count), i
 
       text = ''
-      key = trim(adjustl(capitals(words)))
-      if (len(key) == 0) return
-
-      scores = 0
+      scores = [(likeness(message_cell(i, 1), trim(adjustl(capitals(words)))), i=1, message_count)]
       do i = 1, message_count
-         ! Codes are separated by a comma and a blank.
-         codes = message_cell(i, 1)
-         if (any([(index(' '//key//' ', ' '//codes(k:k + 3)//' ') > 0, k=1, len(codes) - 3, 6)])) scores(i) = 1
-      end do
-      if (all(scores == 0)) scores = [(merge(1, 0, index(message_cell(i, 2), key) > 0), i=1, message_count)]
-      if (all(scores == 0)) scores = [(likeness(message_cell(i, 2), key), i=1, message_count)]
-      if (all(scores == 0)) return
-      do i = 1, message_count
-         if (scores(i) < maxval(scores)) cycle
+         if (scores(i) == 0 .or. scores(i) < maxval(scores)) cycle
          if (len(text) > 0) text = text//new_line('a')//new_line('a')
-         text = text//message_cell(i, 3)
+         text = text//message_cell(i, 2)
       end do
    end function explained
 
-   !> Counts the letters of those words of the printed message `key` that are words of `message`, each word once; 0 if
-   !> they are few.
+   !> Counts the letters of those words of `key` that are words of `message`, each word once.
    pure integer function likeness(message, key) result(letters)
       character(*), intent(in) :: message, key
-      integer :: first, last
+      integer :: first, last, next
 
       letters = 0
       first = 1
       do while (first <= len(key))
-         last = first + index(key(first:)//' ', ' ') - 2
+         next = first + index(key(first:)//' ', ' ')
+         last = first - 1 + verify(key(first:next - 2), ',:;', back=.true.)
          if (index(' '//message//' ', ' '//key(first:last)//' ') > 0 .and. &
             index(' '//key(:first - 1), ' '//key(first:last)//' ') == 0) letters = letters + last - first + 1
-         first = last + 2
+         first = next
       end do
-      if (letters < known_length) letters = 0
    end function likeness
 end module command_line

@@ -12,7 +12,7 @@ module job
    use mechanism, only: settings_t, mechanism_t, instant_count, instant, with_all_links
    use independent, only: set_t
    use structure, only: findings_t, check_structure, find_structure, find_groups, faults_text
-   use deck, only: read_deck, job_share_t, variants_before, build_variant
+   use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
    use system_calls, only: watch_signals, signal_received, write_bytes
    use text_output, only: put, flush_output, turn_lost
@@ -59,7 +59,7 @@ module job
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
       logical :: varies = .false.                   !< the deck has VARY cards
-      type(variation_t), allocatable :: variations(:)   !< (first:last) empty of sets without VARY cards
+      type(variation_t), allocatable :: variations(:)   !< of all sets of the deck; empty without VARY cards
    end type writers_t
 
 contains
@@ -74,19 +74,20 @@ contains
       type(findings_t), allocatable, save :: findings(:)
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
-      type(job_share_t) :: share
+      integer(int64) :: variants
       real :: work
-      integer :: i, processes
+      integer :: i, processes, count_sets
 
       status = status_solved
       o%options = options
-      share = job_share_t(options%share, options%shares)
-      call read_deck(options%deck, sets, message, failure, share, o%variations)
-      o%varies = share%varies
+      call read_deck(options%deck, sets, message, failure, o%variations)
+      o%varies = any(sets%variants > 0)
+      ! A set without VARY cards counts as one variant.
+      variants = sum(int(max(1, sets%variants), int64))
       if (.not. allocated(failure) .and. o%varies) then
          ! Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
          ! Their numbers must be whole numbers of the default kind.
-         if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
+         if (variants > huge(1)) call fail(failure, status_rejected, &
             'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
          if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
             allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
@@ -96,6 +97,14 @@ contains
                'OPTION '//trim(file_options(i))//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
          end do
       end if
+      if (.not. allocated(failure)) then
+         o%share%first = int(variants*(options%share - 1)/options%shares) + 1
+         o%share%last = int(variants*options%share/options%shares)
+         count_sets = size(sets)
+         o%first = merge(1, o%share%first, o%varies)
+         o%last = merge(count_sets, o%share%last, o%varies)
+         if (o%last - o%first + 1 < count_sets) sets = sets(o%first:o%last)
+      end if
       if (.not. allocated(failure) .and. allocated(options%files(out_circuits)%text)) then
          if (.not. any(sets%circuits)) call fail(failure, status_rejected, &
             'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
@@ -103,17 +112,11 @@ contains
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (allocated(failure) .and. len(message) == 0) message = said()//' *** '//failure%text
       if (.not. allocated(failure)) then
-         o%first = share%first
-         o%last = share%last
-         if (o%varies) o%first = 1
-         if (o%varies) o%last = size(sets)
-         call open_outputs(options, o%first, o%last, share%sets, o, failure)
+         call open_outputs(options, o%first, o%last, count_sets, o, failure)
       end if
       if (.not. allocated(failure)) then
          call watch_signals
          o%share%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
-         o%share%first = share%first
-         o%share%last = share%last
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) o%share%unit = width
          ! One process where sets take no time, or are to be drawn on one page, or nothing can be written.
          processes = options%jobs
@@ -121,7 +124,7 @@ contains
          if (processes == 0) processes = merge(processor_count(), 1, work > least_work)
          if (options%check .or. any(o%asked([out_svg, out_animation, out_circuits])) .or. any(o%files%error /= 0)) &
             processes = 1
-         processes = min(processes, variants_before(sets, size(sets) + 1))
+         processes = min(processes, sum(max(1, sets%variants)))
          if (processes > 1) call run_shares(o, processes, status, message)
          do while (next_part(o))
             call run_sets(sets, findings, o)

@@ -400,7 +400,7 @@ contains
       line = scientific(x, many)
       n = huge(n)
       if (index(line, 'E') == 0) return
-      e = exponent_of(line)
+      read (line(index(line, 'E') + 1:), '(i5)') e
       places = e + k + 1
       if (places > max_places) return
       n = 0
@@ -420,7 +420,7 @@ contains
       character(80) :: line
 
       line = scientific(x, count - 1)
-      e = exponent_of(line)
+      read (line(index(line, 'E') + 1:), '(i5)') e
       line = line(1:1)//line(3:index(line, 'E') - 1)
       read (line, '(i18)') n
    end subroutine digits_by_format
@@ -436,11 +436,4 @@ contains
       write (line, form) x
       line = adjustl(line)
    end function scientific
-
-   !> The exponent of the number that `scientific` wrote to `line`.
-   pure integer function exponent_of(line)
-      character(*), intent(in) :: line
-
-      read (line(index(line, 'E') + 1:), '(i5)') exponent_of
-   end function exponent_of
 end module numerals

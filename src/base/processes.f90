@@ -1,7 +1,7 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
-   use system_calls, only: note_all_signals, last_error
+   use system_calls, only: notes_all, last_error
    implicit none
    private
    public :: processor_count, fork_process, interrupt_child, end_process
@@ -116,7 +116,7 @@ contains
       fork_process = fork()
       if (fork_process /= 0) return
       ignored = prctl(when_parent_ends, signal_terminate)
-      call note_all_signals
+      notes_all = .true.
    end function fork_process
 
    !> Asks the process `child` to end.

@@ -5,13 +5,13 @@
 !> CLOSE, and takes a failed read for the end of a file.
 module system_calls
    use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int32_t, c_int64_t, c_long, c_size_t, c_char, c_ptr, &
-      c_null_char, c_f_pointer, c_associated, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+      c_null_char, c_f_pointer, c_intptr_t, c_funptr, c_funloc, c_null_funptr
    implicit none
    private
    public :: identity_t, identity_of, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
    public :: isatty
-   public :: watch_signals, note_all_signals, signal_received, end_by_signal, signal_pipe
+   public :: watch_signals, notes_all, signal_received, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, closed_descriptor
 
    !> The identity of a file.
@@ -25,8 +25,8 @@ module system_calls
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
    integer, parameter :: no_such_file = 2, closed_descriptor = 9
-   integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
-   integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
+   integer(c_int), parameter :: from_working_directory = -100, basic_facts = int(z'7FF', c_int)
+   integer(c_int), parameter :: empty_path = int(z'1000', c_int), no_links = int(z'100', c_int)
    !> Read and write for all, less the user's mask.
    integer(c_int), parameter :: permissions = int(o'666', c_int)
    !> Kinds of files within a mode.
@@ -40,7 +40,7 @@ module system_calls
 
    !> The signal that was noted: all that a handler may change.
    integer(c_int), volatile :: received = 0
-   !> Every signal is noted, not only the first.
+   !> Every signal is noted, not only the first: the process ends by itself after that.
    logical, volatile :: notes_all = .false.
 
    !> The result of statx. Unlike that of stat it is the same on every architecture.
@@ -108,12 +108,6 @@ module system_calls
          import :: c_int, c_char
          character(kind=c_char), intent(in) :: path(*)
       end function unlink
-      !> realpath(3): the path without symbolic links; null on error.
-      type(c_ptr) function realpath(path, resolved) bind(c)
-         import :: c_ptr, c_char
-         character(kind=c_char), intent(in) :: path(*)
-         character(kind=c_char), intent(inout) :: resolved(*)
-      end function realpath
       !> The address of errno, which C offers as a macro alone.
       type(c_ptr) function errno_location() bind(c, name='__errno_location')
          import :: c_ptr
@@ -210,16 +204,14 @@ contains
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
 
-   !> Removes the file that `path` leads to; a symbolic link to it stays.
+   !> Removes the file `path`; a symbolic link stays, and so does its file.
    subroutine remove_file(path)
       character(*), intent(in) :: path
-      !> PATH_MAX, and more.
-      character(65536) :: resolved
-      type(c_ptr) :: place
+      type(facts_t) :: facts
       integer(c_int) :: status
 
-      place = realpath(path//c_null_char, resolved)
-      if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
+      status = statx(from_working_directory, path//c_null_char, no_links, basic_facts, facts)
+      if (iand(int(facts%mode), kind_bits) == kind_regular) status = unlink(path//c_null_char)
    end subroutine remove_file
 
    !> Opens standard input, output and error where they are closed: no deck is read then, and writing fails. Otherwise
@@ -270,11 +262,6 @@ contains
       ! A parent that ignores this signal leaves no exit status of children.
       before = signal(signal_child, c_null_funptr)
    end subroutine watch_signals
-
-   !> From now on no further SIGINT or SIGTERM kills this process either: it ends by itself after the first.
-   subroutine note_all_signals
-      notes_all = .true.
-   end subroutine note_all_signals
 
    !> Handles a signal by what is safe at any moment: keeps its number, and restores the usual actions unless all are
    !> noted.

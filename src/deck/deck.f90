@@ -1,7 +1,6 @@
 !> Reads a card deck to sets of computations. The whole deck is read and all its errors are reported; nothing is
 !> computed from a deck with an error.
 module deck
-   use, intrinsic :: iso_fortran_env, only: int64
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, build_bodies
@@ -10,25 +9,16 @@ module deck
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drawing, build_echo
-   use deck_source, only: source_t, open_source, next_card, close_source
+   use deck_source, only: source_t, open_source, next_card
    use failures, only: failure_t, fail, status_rejected
    use input_errors
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, job_share_t, variants_before, build_variant
+   public :: read_deck, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
-
-   !> A share of a deck's sets, or of its variants where the deck has VARY cards: the `number`-th of `count`. The shares
-   !> one after another are all of them.
-   type :: job_share_t
-      integer :: number = 1, count = 1
-      integer :: first = 1, last = 0              !< numbers of its sets or variants; set by `read_deck`
-      integer :: sets = 0                         !< of the whole deck; the same
-      logical :: varies = .false.                 !< it has VARY cards: all sets are kept; the same
-   end type job_share_t
 
    !> A set that has its END.
    type :: closed_t
@@ -48,26 +38,22 @@ contains
 
    !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
    !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
-   !> (`report` says why) or status_system. `share`: only its sets are wanted, or of a deck with VARY cards its
-   !> variants, for which all sets are. `variations` (as `sets`): their VARY cards; empty if a set has none.
-   subroutine read_deck(path, sets, report, failure, share, variations)
+   !> (`report` says why) or status_system. `variations` (as `sets`): their VARY cards; empty if a set has none.
+   subroutine read_deck(path, sets, report, failure, variations)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
       character(:), allocatable, intent(out) :: report
       type(failure_t), allocatable, intent(out) :: failure
-      type(job_share_t), intent(inout), optional :: share
       type(variation_t), allocatable, intent(out), optional :: variations(:)
       type(reading_t) :: progress
       type(source_t) :: source
-      integer :: errors, from, to
-      integer(int64) :: n
+      integer :: errors
 
       allocate (progress%sets(4))
       call begin_set(progress%set, 1)
       call open_source(source, path, failure)
       if (.not. allocated(failure)) then
          call read_cards(source, progress, failure)
-         call close_source(source)
       end if
       report = error_report(progress%set%errors)
       errors = progress%set%errors%count
@@ -75,31 +61,9 @@ contains
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
 
-      from = 1
-      to = progress%closed
-      if (present(share)) then
-         share%varies = any(progress%sets(:progress%closed)%mechanism%variants > 0)
-         share%sets = progress%closed
-         n = share%sets
-         if (share%varies) n = variants_before(progress%sets%mechanism, share%sets + 1)
-         share%first = int(n*(share%number - 1)/share%count) + 1
-         share%last = int(n*share%number/share%count)
-         if (.not. share%varies) then
-            from = share%first
-            to = share%last
-         end if
-      end if
-      sets = progress%sets(from:to)%mechanism
-      if (present(variations)) variations = progress%sets(from:to)%variation
+      sets = progress%sets(:progress%closed)%mechanism
+      if (present(variations)) variations = progress%sets(:progress%closed)%variation
    end subroutine read_deck
-
-   !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.
-   pure integer function variants_before(sets, i) result(n)
-      type(mechanism_t), intent(in) :: sets(:)
-      integer, intent(in) :: i
-
-      n = sum(max(1, sets(:i - 1)%variants))
-   end function variants_before
 
    !> Reads all cards of the deck. Errors: status_system.
    subroutine read_cards(source, progress, failure)

@@ -9,7 +9,7 @@ module deck_source
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of
    implicit none
    private
-   public :: source_t, open_source, next_card, close_source
+   public :: source_t, open_source, next_card
 
    integer(c_int), parameter :: standard_input = 0
    integer, parameter :: block_length = 2**20
@@ -104,24 +104,19 @@ contains
       source%at = next
    end subroutine next_card
 
-   !> Closes the file of `source`; standard input stays open.
-   subroutine close_source(source)
-      type(source_t), intent(inout) :: source
-      logical :: closed
-
-      if (source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
-   end subroutine close_source
-
-   !> Reads a block to the end of the buffer, of which only what is not used yet is kept. Errors: status_system.
+   !> Reads a block to the end of the buffer, of which only what is not used yet is kept. At the end the file
+   !> is closed. Errors: status_system.
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure
       character(block_length), save :: block
       integer :: length, error
+      logical :: closed
 
       length = read_bytes(source%descriptor, block)
       error = last_error()
       source%ended = length <= 0
+      if (source%ended .and. source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
       source%buffer = source%buffer(source%at:)//block(:max(0, length))
       source%at = 1
       if (length < 0) call fail(failure, status_system, &

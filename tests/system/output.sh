@@ -57,7 +57,9 @@ told 'a file that is not there, three paths' 1 $? "$twice"
 told 'a link to a file that is not there' 1 $? "$twice"
 "$kinmat" deck -o target --log link 2> err
 told 'a file that is not there, and a link to it' 1 $? "$twice"
-equal 'refused outputs are not made' '' "$(ls x1 target 2> /dev/null)"
+equal 'refused outputs are not made' '' "$(ls x1 2> /dev/null)"
+equal 'what a link led to is empty' '' "$(cat target)"
+rm target
 equal 'a link to a refused output stays' target "$(readlink link)"
 "$kinmat" deck -o x1 --csv /nonexistent/x 2> err
 told 'the second output cannot be opened' 3 $? ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)'
