@@ -17,12 +17,13 @@ module circuit_curve
    use linear_solver, only: factors_t, new_factors, factor, solve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values
-   use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance
+   use root_distance, only: coordinates_at, kantorovich, distance
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
    public :: of_value, of_slope, of_bend, of_size
-   public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, same_place, same
+   public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, &
+      same_place, same, reversed
 
    integer, parameter :: max_iterations = 12
    !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
@@ -44,7 +45,6 @@ module circuit_curve
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
       type(system_t) :: driven                !< with the drive that is free as well: its row is the last
-      type(coordinates_t) :: free             !< in which the equations are not linear
       real(wp), allocatable :: held(:)        !< (drives) the values of those that are held, and 0 of the free one
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
@@ -62,6 +62,7 @@ module circuit_curve
       real(wp) :: value(of_value:of_size) = 0.0_wp
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
       logical :: is_dead = .false.            !< the drive turns back here
+      logical :: is_change = .false.          !< circuits meet here, or one crosses itself: between two points of one
    end type curve_point_t
 
 contains
@@ -85,7 +86,6 @@ contains
       c%held = [f(1, others), 0.0_wp]
       c%driven%laws = c%closure%laws([others, drive])
       c%closure%laws = c%driven%laws(:size(others))
-      c%free = new_coordinates(c%closure)
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
    end subroutine make_curve
@@ -170,36 +170,16 @@ contains
       real(wp), intent(in) :: position(:, :)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: row(c%closure%n), q(3, size(position, 2)), along(c%closure%n)
-      real(wp) :: a(2*c%closure%n - 1, c%closure%n), across(c%closure%n), part(2*c%closure%n - 1)
-      integer :: i, k
+      real(wp) :: q(3, size(position, 2)), border(c%closure%n)
+      integer :: i
 
       q = position
       q(:2, :) = q(:2, :)/c%closure%length
-      c%pose%q = q
-      call set_pose(c%closure, c%pose)
-
-      ! The direction across all equations: what they leave of the axes, the largest of them.
-      associate (n => c%closure%n)
-         call jacobian(c%driven, c%pose, a(:n, :))
-         row = a(n, :)
-         a(n:, :) = 0.0_wp
-         do i = 1, n
-            a(n - 1 + i, i) = 1.0_wp
-         end do
-         do i = 1, n - 1
-            k = maxloc(sum(a(:n - 1, :)**2, dim=2), dim=1)
-            across = a(k, :)/max(tiny(1.0_wp), norm2(a(k, :)))
-            part = matmul(a, across)
-            do k = 1, n
-               a(:, k) = a(:, k) - part*across(k)
-            end do
-         end do
-         k = n - 1 + maxloc(sum(a(n:, :)**2, dim=2), dim=1)
-      end associate
-      along = a(k, :)/max(tiny(1.0_wp), norm2(a(k, :)))
-
-      call find_point(c, q, sign(1.0_wp, dot_product(row, along))*along, p, ok)
+      ! A row without a meaning: only by chance is it at right angles to the tangent.
+      border = [(cos(real(i, wp)), i=1, size(border))]
+      call find_point(c, q, border/norm2(border), p, ok)
+      if (.not. ok) return
+      if (p%value(of_slope) < 0.0_wp) p = reversed(p)
    end subroutine start_point
 
    !> The point `b` of the curve at the distance `h` from `a` along its tangent; `ok`: it is regular, and where the
@@ -217,6 +197,16 @@ contains
       call find_point(c, q, a%tangent, b, ok)
       if (ok) ok = maxval(abs(b%q - q)) <= max(same, 0.5_wp*abs(h))
    end subroutine step_along
+
+   !> `p`, its tangent turned round.
+   pure function reversed(p) result(r)
+      type(curve_point_t), intent(in) :: p
+      type(curve_point_t) :: r
+
+      r = p
+      r%tangent = -p%tangent
+      r%value(of_slope) = -p%value(of_slope)
+   end function reversed
 
    !> The distance from `a` to `b` along the tangent of `a`.
    pure real(wp) function step_between(c, a, b) result(h)
@@ -277,6 +267,7 @@ contains
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
       real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2)), k, speed
+      real(wp), allocatable :: g(:, :, :)
       integer :: info
 
       c%pose%q = q
@@ -310,8 +301,9 @@ contains
       p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
       p%value(of_size) = maxval(abs(p%q(:2, :)))
 
-      call kantorovich(c%closure, c%free, c%factors, c%pose, k)
-      speed = distance(c%closure, c%free, 0.0_wp*along, along)
+      g = coordinates_at(c%closure, c%pose)
+      k = kantorovich(c%closure, g, c%factors, c%pose)
+      speed = distance(g, p%tangent)
       p%reach = max_step
       if (speed > 0.0_wp) p%reach = min(certified/max(k, tiny(k)), max_step)/speed
    end subroutine find_point

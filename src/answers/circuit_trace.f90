@@ -5,12 +5,12 @@ module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
    use circuit_curve, only: curve_t, curve_point_t, of_slope, of_bend, of_size, step_along, step_between, &
-      lies_between, offset_from
+      lies_between, offset_from, reversed
    use drives, only: halve, middle_of
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, least_step, find_root, end_closed, end_far, end_lost
+   public :: circuit_t, trace, least_step, find_root, end_closed, end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
@@ -27,19 +27,11 @@ module circuit_trace
       enumerator :: end_closed = 1, end_far, end_lost
    end enum
 
-   !> A position at which circuits meet, or one crosses itself, between two points of one of them.
-   type :: change_point_t
-      real(wp), allocatable :: q(:, :)         !< (3, links) its place
-      real(wp) :: value = 0.0_wp               !< of the drive
-      logical, allocatable :: circuits(:)      !< (circuits) which meet, once all are known
-   end type change_point_t
-
    type :: circuit_t
       type(curve_point_t), allocatable :: points(:)     !< along it; of a closed one the last is the first
       integer :: ends(2) = end_lost                     !< how it ends at the first and at the last point
       logical :: rests = .false.                        !< the drive does not move on it
       real(wp) :: shift = 0.0_wp                        !< whole turns (rad) to be added to the drive's values
-      type(change_point_t), allocatable :: changes(:)
    end type circuit_t
 
 contains
@@ -78,20 +70,9 @@ contains
          points(n:) = circuit%points
          call move_alloc(points, circuit%points)
          circuit%ends(1) = back%ends(2)
-         circuit%changes = [back%changes, circuit%changes]
       end if
       circuit%rests = .not. any(is_sure(circuit%points))
    end subroutine trace
-
-   !> `p`, its tangent turned round.
-   pure function reversed(p) result(r)
-      type(curve_point_t), intent(in) :: p
-      type(curve_point_t) :: r
-
-      r = p
-      r%tangent = -p%tangent
-      r%value(1) = -p%value(1)
-   end function reversed
 
    !> Follows the curve from `start` in the sense of its tangent to its end.
    subroutine follow(c, start, circuit)
@@ -103,7 +84,7 @@ contains
       integer :: n, sure, k
       logical :: ok, closes, leaves
 
-      allocate (circuit%points(64), circuit%changes(0))
+      allocate (circuit%points(64))
       n = 0
       sure = 0
       a = start
@@ -153,15 +134,16 @@ contains
 
    contains
 
-      !> From the last of the `n` points of `circuit` across the change point ahead to `b`, as far behind it: certified
-      !> steps shrink in proportion to the distance from it.
+      !> From the last of the `n` points of `circuit` across the change point ahead, which is appended, to `b`, as far
+      !> behind it: certified steps shrink in proportion to the distance from it.
       subroutine pass_change_point(b)
          type(curve_point_t), intent(out) :: b
-         type(change_point_t) :: change
+         type(curve_point_t) :: change
          real(wp) :: shrinks, h
 
          ok = .false.
          if (n < 2) return
+         change = circuit%points(n)
          associate (before => circuit%points(n - 1), a => circuit%points(n))
             shrinks = a%reach/before%reach
             if (shrinks >= 1.0_wp) return
@@ -171,11 +153,12 @@ contains
             ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
                .and. norm2(b%tangent - a%tangent) < straight
             if (.not. ok) return
-            change%q = a%q
             call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
-            change%value = 0.5_wp*(a%value(0) + b%value(0))
+            change%value(0) = 0.5_wp*(a%value(0) + b%value(0))
          end associate
-         circuit%changes = [circuit%changes, change]
+         change%reach = 0.0_wp
+         change%is_change = .true.
+         call append(change)
       end subroutine pass_change_point
 
       !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes

@@ -3,8 +3,7 @@
 !> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
 !>
 !> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
-!> instant, and all assemblies at values over the whole range of the drive and at angles of each link: a circuit between
-!> all of these is not found.
+!> instant, and all assemblies at angles of each link: a circuit between all of these is not found.
 !>
 !> The links at a dead point are those that are singular where the motion begins there.
 module circuits
@@ -12,17 +11,16 @@ module circuits
    use system_calls, only: signal_received
    use planar, only: pi
    use mechanism, only: mechanism_t, drive_t, drive_angle
-   use scales, only: characteristic_length
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, singular_dead
    use analysis, only: analysis_t, make_analysis, advance
    use assemblies, only: assemblies_t, assembly_t, find_assemblies
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
       of_size, step_between, lies_between, same_place, same
-   use circuit_trace, only: circuit_t, change_point_t, trace, least_step, end_closed
+   use circuit_trace, only: circuit_t, trace, least_step, end_closed
    use ranges, only: held_at, put_estimate
    implicit none
    private
-   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, turns_of
+   public :: circuits_t, circuit_branch_t, find_circuits, turns_of
 
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
@@ -38,15 +36,15 @@ module circuits
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
+      integer, allocatable :: assemblies(:)    !< of the first instant that are on it, numbered as by card ASSEMBLY
    end type circuit_branch_t
 
-   !> An assembly at the drive's value of the first instant.
-   type :: circuit_assembly_t
-      integer :: number = 0                    !< as of card ASSEMBLY
-      integer :: branch = 0
-      real(wp) :: value = 0.0_wp               !< the drive's value, with whole turns as on its branch
-      real(wp), allocatable :: q(:, :)         !< (3, links) in the curve's unit
-   end type circuit_assembly_t
+   !> A change point.
+   type :: meeting_t
+      real(wp), allocatable :: q(:, :)         !< (3, links) its place
+      real(wp) :: value = 0.0_wp               !< the drive's (rad or deck's length)
+      logical, allocatable :: circuits(:)      !< (circuits) which meet there
+   end type meeting_t
 
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
@@ -59,15 +57,13 @@ module circuits
       type(circuit_t), allocatable :: list(:)
       type(circuit_branch_t), allocatable :: branches(:)
       type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links where known
-      type(circuit_assembly_t), allocatable :: assemblies(:)
-      type(change_point_t), allocatable :: meetings(:)   !< the drive's value in the deck's unit
+      type(meeting_t), allocatable :: meetings(:)
    end type circuits_t
 
    !> A slide is followed farther than it goes in any assembly of the first instant, by this factor.
    real(wp), parameter :: beyond = 2.0_wp
-   !> Values of the drive at which all assemblies are found, for an angle each 5 deg, and of the angle of each link;
-   !> fewer where that takes more than so many paths.
-   integer, parameter :: most_values = 72, link_values = 8, max_paths = 1000
+   !> Angles of each link at which all assemblies are found; fewer where that takes more than so many paths.
+   integer, parameter :: link_values = 24, max_paths = 1000
 
 contains
 
@@ -90,7 +86,7 @@ contains
       end if
       found%drive = drive
       found%is_complete = all_of_them%is_known
-      allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
+      allocate (found%list(0), found%branches(0), found%dead(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
       found%is_redundant = is_redundant(found%curve)
       if (found%is_redundant) return
@@ -105,7 +101,7 @@ contains
       do i = 1, size(all_of_them%list)
          call add_circuit(found, all_of_them%list(i)%position)
       end do
-      call search_whole_range(held, found, all_of_them)
+      call search_whole_range(held, found)
 
       do i = 1, size(found%list)
          call add_branches(found, held, i)
@@ -114,42 +110,26 @@ contains
       call add_assemblies(found, all_of_them%list)
    end subroutine find_circuits
 
-   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at values of the drive over its whole
-   !> range: a turn, or as far as all links together reach; and at angles of each link that moves, driven instead: a
-   !> circuit that is narrow in the drive is mostly wide in some link. `first`: the assemblies at the first instant.
-   subroutine search_whole_range(m, found, first)
+   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that moves. The
+   !> link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide in some link.
+   subroutine search_whole_range(m, found)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(inout) :: found
-      type(assemblies_t), intent(in) :: first
       type(mechanism_t) :: driven
       type(assemblies_t) :: more
-      real(wp) :: from, range
+      real(wp) :: from
       integer :: link, k, n, i
 
       driven = m
-      do link = 0, size(m%links)
-         range = turn
-         if (link == 0) then
-            ! The drive itself.
-            if (any(first%blocks%is_wide)) cycle
-            n = most_values
-            from = found%curve%first
-            if (.not. found%curve%is_angle) then
-               range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
-               from = from - 0.5_wp*(range/found%curve%closure%length)
-            end if
-            from = drive_value(found%curve, from)
-         else
-            if (m%links(link)%ground) cycle
-            n = link_values
-            driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
-            from = 0.0_wp
-            if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
-         end if
-
+      do link = 1, size(m%links)
+         if (m%links(link)%ground) cycle
+         driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
+         from = 0.0_wp
+         if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
+         n = link_values
          k = 0
          do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
-            driven%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
+            driven%drives(found%drive)%polynomial(1) = from + turn*real(k, wp)/real(n, wp)
             call find_assemblies(driven, 0.0_wp, more)
             do i = 1, size(more%list)
                call add_circuit(found, more%list(i)%position)
@@ -160,28 +140,12 @@ contains
       end do
    end subroutine search_whole_range
 
-   !> The drives of `m` that are set free, each alone: those that move; if none does, all.
-   pure function free_drives(m) result(list)
-      type(mechanism_t), intent(in) :: m
-      integer, allocatable :: list(:)
-      logical :: moves
-      integer :: i
-
-      allocate (list(0))
-      do i = 1, size(m%drives)
-         moves = any(abs(m%drives(i)%polynomial(2:)) > 0.0_wp)
-         if (allocated(m%drives(i)%terms)) moves = moves .or. size(m%drives(i)%terms) > 0
-         if (moves) list = [list, i]
-      end do
-      if (size(list) == 0) list = [(i, i=1, size(m%drives))]
-   end function free_drives
-
    !> Adds the circuit through the links' `position` (3, links), in the deck's unit and from its origin, unless it is
    !> known.
    subroutine add_circuit(found, position)
       type(circuits_t), intent(inout) :: found
       real(wp), intent(in) :: position(:, :)
-      type(curve_point_t) :: p, again
+      type(curve_point_t) :: p
       type(circuit_t), allocatable :: more(:)
       integer :: n, i, k
       logical :: ok
@@ -191,7 +155,7 @@ contains
       call start_point(found%curve, position, p, ok)
       if (.not. ok) return
       if (p%reach < least_step .or. p%value(of_size) > found%curve%far) return
-      call locate(found, p, i, k, again)
+      call locate(found, p, i, k)
       if (i > 0) return
       found%are_more = n > max_circuits .or. found%work > max_work
       if (found%are_more) return
@@ -202,13 +166,12 @@ contains
       call move_alloc(more, found%list)
    end subroutine add_circuit
 
-   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1, and `again`, its point
-   !> there. `i` is 0 if none does.
-   subroutine locate(found, p, i, k, again)
+   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1. `i` is 0 if none does.
+   subroutine locate(found, p, i, k)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
       integer, intent(out) :: i, k
-      type(curve_point_t), intent(out) :: again
+      type(curve_point_t) :: again
       real(wp) :: least, greatest
       logical :: passes
 
@@ -286,7 +249,8 @@ contains
             numbers = [0, numbers, 0]
          end if
          do k = 2, size(ends)
-            b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k))
+            b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k), &
+               assemblies=[integer ::])
             b%range = values([b%first, b%last])
             if (b%range(1) > b%range(2)) then
                b%range = b%range(2:1:-1)
@@ -297,24 +261,23 @@ contains
       end associate
    end subroutine add_branches
 
-   !> Adds the assemblies of the `list`, those of card ASSEMBLY, that are on circuits on which the drive moves.
+   !> Adds to the branches their assemblies of the `list`, those of card ASSEMBLY, if the drive moves on the circuit.
    subroutine add_assemblies(found, list)
       type(circuits_t), intent(inout) :: found
       type(assembly_t), intent(in) :: list(:)
-      type(curve_point_t) :: p, again
+      type(curve_point_t) :: p
       integer :: number, i, k, b
       logical :: ok
 
       do number = 1, size(list)
          call start_point(found%curve, list(number)%position, p, ok)
          if (.not. ok) cycle
-         call locate(found, p, i, k, again)
+         call locate(found, p, i, k)
          if (i == 0) cycle
          if (found%list(i)%rests) cycle
          b = findloc(found%branches%circuit == i .and. found%branches%first <= k .and. k < found%branches%last, &
             .true., dim=1)
-         found%assemblies = [found%assemblies, circuit_assembly_t(number, b, &
-            drive_value(found%curve, again%value(0) + found%list(i)%shift), again%q)]
+         found%branches(b)%assemblies = [found%branches(b)%assemblies, number]
       end do
    end subroutine add_assemblies
 
@@ -322,21 +285,20 @@ contains
    subroutine add_meetings(found, i)
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i
-      type(change_point_t) :: one
+      real(wp) :: value
       integer :: k, j
 
-      do k = 1, size(found%list(i)%changes)
-         associate (change => found%list(i)%changes(k))
+      do k = 1, size(found%list(i)%points)
+         associate (p => found%list(i)%points(k))
+            if (.not. p%is_change) cycle
             do j = 1, size(found%meetings)
-               if (same_place(found%curve, found%meetings(j)%q, change%q)) exit
+               if (same_place(found%curve, found%meetings(j)%q, p%q)) exit
             end do
             if (j > size(found%meetings)) then
-               one = change
-               one%value = change%value + found%list(i)%shift
-               if (.not. any(found%list(i)%points%is_dead)) one%value = near_first(found%curve, change%value)
-               one%value = drive_value(found%curve, one%value)
-               one%circuits = spread(.false., 1, size(found%list))
-               found%meetings = [found%meetings, one]
+               value = p%value(0) + found%list(i)%shift
+               if (.not. any(found%list(i)%points%is_dead)) value = near_first(found%curve, p%value(0))
+               found%meetings = [found%meetings, &
+                  meeting_t(p%q, drive_value(found%curve, value), spread(.false., 1, size(found%list)))]
             end if
             found%meetings(j)%circuits(i) = .true.
          end associate

@@ -1,6 +1,6 @@
 !> The picture of circuits as SVG: for each set and drive a diagram of each number that PRINT asks for and that varies,
-!> over the drive, each circuit in its own colour; dots are dead points, rings change points, numbers assemblies of the
-!> first instant. An angle that goes on for more than a turn is drawn without whole turns.
+!> over the drive, each circuit in its own colour; dots are dead points, rings change points. An
+!> angle that goes on for more than a turn is drawn without whole turns.
 module circuits_picture
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
@@ -23,10 +23,9 @@ module circuits_picture
    private
    public :: put_circuits
 
-   !> A circuit in a chart: its points, in the units in which numbers are printed, `first` (2) taken away.
+   !> A circuit in a chart.
    type :: chart_curve_t
-      real(wp), allocatable :: p(:, :)          !< (2, points)
-      real(wp) :: first(2) = 0.0_wp
+      real(wp), allocatable :: p(:, :)          !< (2, points) in the units in which numbers are printed
    end type chart_curve_t
 
    !> A number varies if it does so by more than this, in rad or in lengths of the curve.
@@ -40,10 +39,8 @@ module circuits_picture
    real(wp), parameter :: dot = 3.5_wp, ring = 6.0_wp, tick = 5.0_wp
    !> An axis goes on by this part of its values, or of the largest of them where all are the same.
    real(wp), parameter :: margin = 0.04_wp, least_margin = 4096.0_wp*epsilon(1.0_wp)
-   !> Steps between ticks, in any power of ten or in degrees; at most so many.
-   real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp]
-   real(wp), parameter :: degree_steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp, 15.0_wp, 30.0_wp, 45.0_wp, 60.0_wp, &
-      90.0_wp]
+   !> Steps between ticks, in any power of ten, and of a turn in degrees; at most so many.
+   real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp], turn_step = 45.0_wp
    integer, parameter :: most_ticks = 9
 
 contains
@@ -111,6 +108,7 @@ contains
       integer :: from(2), to(2), i, j, k, n
       integer(int64) :: number
       type(motion_t) :: q
+      type(row_t) :: row
 
       ! The curves, and whether they vary. An angle begins within half a turn of 0.
       q = new_motion(size(m%links))
@@ -123,9 +121,17 @@ contains
       high = -huge(high)
       do i = 1, size(curves)
          associate (points => found%list(i)%points, curve => curves(i))
-            curve%p = reshape([(place(points(k)%value(0), points(k)%q), k=1, size(points))], [2, size(points)])
-            if (angular(2)) curve%first(2) = curve%p(2, 1) - without_turns(curve%p(2, 1)*unit(2))/unit(2)
-            curve%p = curve%p - spread(curve%first, 2, size(points))
+            allocate (curve%p(2, size(points)))
+            do k = 1, size(points)
+               q%position = deck_position(found%curve, points(k)%q)
+               call find_row(m, q, request, row)
+               at = [drive_value(found%curve, points(k)%value(0) + found%list(i)%shift), row%value(column, 0)]
+               curve%p(:, k) = at/unit
+            end do
+            if (angular(2)) then
+               at = curve%p(:, 1)
+               curve%p(2, :) = curve%p(2, :) - (at(2) - without_turns(at(2)*unit(2))/unit(2))
+            end if
             low = min(low, minval(curve%p, dim=2))
             high = max(high, maxval(curve%p, dim=2))
          end associate
@@ -158,12 +164,8 @@ contains
       do k = 1, 2
          range = high(k) - low(k)
          power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
-         i = findloc(range <= steps*power*most_ticks, .true., dim=1)
-         step = steps(merge(i, size(steps), i > 0))*power
-         if (angular(k) .and. range > 8.0_wp) then
-            i = findloc(range <= degree_steps*most_ticks, .true., dim=1)
-            if (i > 0) step = degree_steps(i)
-         end if
+         step = power*minval(steps, mask=range <= steps*power*most_ticks .or. steps >= 10.0_wp)
+         if (turn(k) > turn_step) step = turn_step
          do number = ceiling(low(k)/step - 1.0e-6_wp, int64), floor(high(k)/step + 1.0e-6_wp, int64)
             x = (real(number, wp)*step - low(k))/range
             at = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
@@ -176,12 +178,12 @@ contains
       call put_words(page%body, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', &
          drive_words//', '//trim(units(1)))
 
-      ! Each curve as many times, whole turns apart, as it enters the window; then its dead points, change points and
-      ! assemblies. The last point of a closed circuit is the first.
+      ! Each curve as many times, whole turns apart, as it enters the window; then its dead points and change points.
+      ! The last point of a closed circuit is the first.
       call put_window(page%body, corner, corner + extent)
       do i = 1, size(curves)
          color = color_of(i)
-         associate (circuit => found%list(i), p => curves(i)%p, first => curves(i)%first)
+         associate (circuit => found%list(i), p => curves(i)%p)
             call put_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
                phrase(say_circuit, m%polish)//' '//whole(i))
             from = turns_of(minval(p, dim=2))
@@ -197,18 +199,8 @@ contains
             do k = 1, n
                if (circuit%points(k)%is_dead) call put_circle(page%body, in_window(p(:, k)), dot, &
                   'class="dead" style="stroke:none;fill:'//color//'"')
-            end do
-            do k = 1, size(circuit%changes)
-               call put_circle(page%body, in_window(place(circuit%changes(k)%value, circuit%changes(k)%q) - first), &
-                  ring, 'class="change" style="fill:none;stroke:'//color//'"')
-            end do
-            do k = 1, size(found%assemblies)
-               associate (one => found%assemblies(k))
-                  if (found%branches(one%branch)%circuit /= i) cycle
-                  at = place(0.0_wp, one%q) - first
-                  call put_words(page%body, in_window([one%value/unit(1), at(2)]) + [0.0_wp, 4.0_wp], 'middle', &
-                     'class="assembly" style="fill:'//color//'"', whole(one%number))
-               end associate
+               if (circuit%points(k)%is_change) call put_circle(page%body, in_window(p(:, k)), ring, &
+                  'class="change" style="fill:none;stroke:'//color//'"')
             end do
          end associate
          call put_end(page%body, 'g')
@@ -219,17 +211,6 @@ contains
       call put_end(page%body, 'g')
 
    contains
-
-      !> The drive's value and the number at `value` and `position` on circuit number `i`, in their units.
-      function place(value, position) result(p)
-         real(wp), intent(in) :: value, position(:, :)
-         real(wp) :: p(2)
-         type(row_t) :: row
-
-         q%position = deck_position(found%curve, position)
-         call find_row(m, q, request, row)
-         p = [drive_value(found%curve, value + found%list(i)%shift), row%value(column, 0)]/unit
-      end function place
 
       !> By how many turns the place `p` (2) is off the window.
       pure function turns_of(p) result(turns)

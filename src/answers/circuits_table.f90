@@ -7,7 +7,7 @@ module circuits_table
    use independent, only: set_t
    use assemblies, only: assemblies_t
    use circuit_trace, only: end_closed, end_far, end_lost
-   use circuits, only: circuits_t, circuit_branch_t, turns_of, find_circuits, free_drives
+   use circuits, only: circuits_t, circuit_branch_t, turns_of, find_circuits
    use ranges, only: range_t, find_range, side_words, low, high
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -27,6 +27,7 @@ module circuits_table
    integer, parameter :: meeting_digits = 6
    !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
+
    !> Ranges are alike up to this, in rad and lengths.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
 
@@ -73,7 +74,7 @@ contains
             do side = low, high
                r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
                if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))
-               r%limit(side)%value = known(b%range(side), rounding)
+               r%limit(side)%value = known(b%range(side))
             end do
          end associate
          do i = 1, size(list)
@@ -84,23 +85,21 @@ contains
       end do
    end subroutine add_branch_ranges
 
-   !> Finds the circuits of each free drive of the set that `s` analyses, from its first instant.
+   !> Finds the circuits of each drive, the others held, of the set that `s` analyses, from its first instant.
    subroutine find_all_circuits(s, list)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
       type(assemblies_t), allocatable :: first
-      integer, allocatable :: drives(:)
       integer :: c, i, n
 
-      allocate (list(sum([(size(free_drives(s%now%parts(c))), c=1, s%now%count)])))
+      allocate (list(sum([(size(s%now%parts(c)%drives), c=1, s%now%count)])))
       n = 0
       do c = 1, s%now%count
-         drives = free_drives(s%now%parts(c))
-         do i = 1, size(drives)
+         do i = 1, size(s%now%parts(c)%drives)
             n = n + 1
             ! Not allocated: they are not known.
             if (allocated(s%assemblies)) first = s%assemblies(c)
-            call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), first)
+            call find_circuits(s%now%parts(c), s%now%motions(c), i, list(n), first)
             list(n)%part = c
          end do
       end do
@@ -141,7 +140,7 @@ contains
       type(circuits_t), intent(in) :: found
       character(column_ends(3)) :: row
       character(:), allocatable :: text
-      type(diagnostic_t) :: limit
+      type(diagnostic_t) :: meeting
       integer :: i, k
 
       row = ' '//phrase(say_circuit, m%polish)
@@ -151,7 +150,7 @@ contains
          //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
       do k = 1, size(found%branches)
          associate (b => found%branches(k))
-            text = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
+            text = words_of(b%assemblies)
             row = ' '//whole(b%circuit)
             row(column_ends(1) + 1:) = whole(k)
             ! Where there are more assemblies than the column has room for, the range stands behind them.
@@ -164,21 +163,21 @@ contains
       ! For each dead point the drive's value, links, and the branches that end there.
       if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
       do i = 1, size(found%dead)
-         limit = found%dead(i)
-         limit%value = known(limit%value, rounding)
          text = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
             [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
-            //measure(m, limit, value_digits)
-         if (limit%links(1) > 0) text = text//', '//at_limit(m, limit)
+            //value_words(m, found, found%dead(i)%value)
+         if (found%dead(i)%links(1) > 0) text = text//', '//at_limit(m, found%dead(i))
          call put_folded(o, '   ', text, repeat(' ', 6))
       end do
 
       ! For each change point the circuits that meet there, and the drive's value.
       if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
       do i = 1, size(found%meetings)
+         meeting = diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=found%meetings(i)%value)
+         if (abs(meeting%value) <= sqrt(epsilon(1.0_wp))) meeting%value = 0.0_wp
          call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
             pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
-            //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
+            //measure(m, meeting, meeting_digits))
       end do
    end subroutine put_branches
 
@@ -193,11 +192,14 @@ contains
 
       associate (circuit => found%list(b%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, known(b%range(1), rounding), value_digits)
+            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, b%range(1))
          else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
             text = full_turn_words(turns_of(circuit), m%polish)
          else
-            text = without_unit(b%range(1))//' .. '//without_unit(b%range(2))
+            ! The head of the column has their unit.
+            text = value_words(m, found, b%range(1))
+            text = text(:index(text, ' '))//'.. '//value_words(m, found, b%range(2))
+            text = text(:index(text, ' ', back=.true.) - 1)
             rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
             do side = 1, 2
                if (b%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
@@ -205,35 +207,23 @@ contains
             end do
          end if
       end associate
-
-   contains
-
-      !> The value `x` of the drive in the unit of the table.
-      function without_unit(x) result(words)
-         real(wp), intent(in) :: x
-         character(:), allocatable :: words
-
-         words = value_words(m, found, known(x, rounding), value_digits)
-         words = words(:index(words, ' ') - 1)
-      end function without_unit
    end function range_words
 
-   !> The value `x` (rad or length) of the free drive of `found`, with its unit.
-   function value_words(m, found, x, digits) result(words)
+   !> The value `x` (rad or length) of the free drive of `found`, 0 if it is rounding, with its unit.
+   function value_words(m, found, x) result(words)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
       real(wp), intent(in) :: x
-      integer, intent(in) :: digits
       character(:), allocatable :: words
 
-      words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=x), digits)
+      words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), value_digits)
    end function value_words
 
-   !> `x` (rad or length), 0 where it is no larger than `error`.
-   pure real(wp) function known(x, error)
-      real(wp), intent(in) :: x, error
+   !> `x` (rad or length), 0 if it is rounding.
+   pure real(wp) function known(x)
+      real(wp), intent(in) :: x
 
-      known = merge(0.0_wp, x, abs(x) <= error)
+      known = merge(0.0_wp, x, abs(x) <= rounding)
    end function known
 
    !> BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT

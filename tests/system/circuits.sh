@@ -181,7 +181,6 @@ with parallelogram "$(card CIRCUITS)" > "$w/deck"
 equal 'diagrams' 2 "$(grep -c '<g class="circuits" data-drive="ANGLE CRANK">' "$w/svg")"
 equal 'their circuits' '1 2 1 2' "$(sed -n 's/.*data-circuit="\([0-9]*\)".*/\1/p' "$w/svg" | xargs)"
 equal 'their change points' 8 "$(grep -c 'class="change"' "$w/svg")"
-equal 'their assemblies' '1 2 1 2' "$(sed -n 's/.*class="assembly".*>\([0-9]*\)<.*/\1/p' "$w/svg" | xargs)"
 equal 'as many ends as beginnings' "$(grep -cE '<(g|svg|text)[ >]' "$w/svg")" "$(grep -cE '</(g|svg|text)>' "$w/svg")"
 equal 'numbers' '' "$(grep -niE '[" ,](nan|inf)|[*]{3}' "$w/svg" | grep -v '{')"
 # A triple rocker has dots at both dead points, in the diagrams of its coupler and its rocker.
