@@ -1,17 +1,16 @@
-!> From the balls of the unknowns to those of links, points and pairs, along the tree as `link_motion` has it.
+!> From the balls of the unknowns to those of links, along the tree as `link_motion` has it.
 module link_bounds
    use kinds, only: wp
    use planar, only: real_vector_t => vector_t
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, pair_prismatic, plane_origin
+   use mechanism, only: mechanism_t, pair_prismatic
    use motion, only: motion_t
-   use points, only: row_t, find_row
    use block_engine, only: block_engine_t
-   use balls, only: ball_t, rounding, room, distance, operator(+), operator(-), operator(*)
-   use ball_equations, only: vector_t, unknown_t, ball_state_t, set_direction, add_rotating
+   use balls, only: ball_t, distance, operator(+), operator(*)
+   use ball_equations, only: vector_t, unknown_t, ball_state_t, add_rotating
    use ball_numbers, only: angle_errors, around, point_error, of_number, of_vector
    implicit none
    private
-   public :: link_vectors_t, link_vectors, bound_links, row_bound
+   public :: link_vectors_t, link_vectors, bound_links
 
    type(ball_t), parameter :: zero = ball_t(0.0_wp, 0.0_wp)
 
@@ -56,12 +55,10 @@ contains
    end function link_vectors
 
    !> The exact place from the origin of `q` and angle of each link, with the vectors `l`, and their derivatives lie in
-   !> `links` (3, 0:2, links); the exact unknowns lie in `s`. Exactly 0 of moving links that nothing asks for. `largest`
-   !> (2, 0:2): the largest distances of lengths and of angles from those of the motion `q` that the engine `e` of `m`
-   !> has found.
-   pure subroutine bound_links(l, m, e, s, q, links, largest)
+   !> `links` (3, 0:2, links); the exact unknowns lie in `s`. 0 of the ground and of links that nothing asks for.
+   !> `largest` (2, 0:2): the largest distances of lengths and of angles from those of the motion `q` of the engine `e`.
+   pure subroutine bound_links(l, e, s, q, links, largest)
       type(link_vectors_t), intent(in) :: l(:)
-      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       type(ball_state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
@@ -72,14 +69,6 @@ contains
       integer :: i
 
       links = zero
-      do i = 1, size(links, 3)
-         if (.not. m%links(i)%ground) cycle
-         associate (position => m%links(i)%position, origin => plane_origin(m))
-            links(:, 0, i)%mid = position - [origin, 0.0_wp]
-            links(:2, 0, i)%radius = 2.0_wp*of_number*(norm2(position(:2)) + norm2(origin))
-            links(3, 0, i)%radius = of_number*abs(position(3))
-         end associate
-      end do
       largest = 0.0_wp
       do i = 1, size(l)
          associate (h => e%chain%links(i), own => e%chain%links(i)%link, &
@@ -129,84 +118,4 @@ contains
       c(1) = a(1)*b(0) + a(0)*b(1)
       c(2) = a(2)*b(0) + ball_t(2.0_wp, 0.0_wp)*(a(1)*b(1)) + a(0)*b(2)
    end function product_of
-
-   !> (3, 0:2) How far the exact numbers are from those of the row of the motion `q` of `m` that `request` asks for, a
-   !> link, point or pair, at most; the exact `links` (3, 0:2, links) lie in these balls.
-   pure function row_bound(m, q, links, request) result(error)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(ball_t), intent(in) :: links(:, 0:, :)
-      type(request_t), intent(in) :: request
-      real(wp) :: error(3, 0:2)
-      type(row_t) :: row
-      type(ball_t) :: number(3, 0:2)
-      type(vector_t) :: origin
-
-      call find_row(m, q, request, row)
-      number = zero
-      select case (request%kind)
-      case (request_link)
-         number = links(:, :, request%subject)
-      case (request_point)
-         number(:2, :) = point_balls(m, links, request%subject)
-      case default
-         number(1, :) = pair_balls(m, links, request%subject)
-      end select
-      if (any(request%kind == [request_link, request_point])) then
-         origin = around(real_vector_t(q%origin(1), q%origin(2)), 2.0_wp*of_number*norm2(plane_origin(m)))
-         number(:2, 0) = number(:2, 0) + [origin%x, origin%y]
-      end if
-      ! Degrees, and the digits of a row.
-      error = distance(number, row%value)*(1.0_wp + 4.0_wp*rounding)*room
-   end function row_bound
-
-   !> (2, 0:2) Place of point `i` from the motion's origin, with its derivatives.
-   pure function point_balls(m, links, i) result(x)
-      type(mechanism_t), intent(in) :: m
-      type(ball_t), intent(in) :: links(:, 0:, :)
-      integer, intent(in) :: i
-      type(ball_t) :: x(2, 0:2)
-      type(vector_t) :: p(0:2)
-
-      associate (offset => m%points(i)%offset, link => links(:, :, m%points(i)%link))
-         p%x = link(1, :)
-         p%y = link(2, :)
-         call add_rotating(around(real_vector_t(offset(1), offset(2)), of_number*norm2(offset)), &
-            angle_of(link(3, :)), p)
-         x(1, :) = p%x
-         x(2, :) = p%y
-      end associate
-   end function point_balls
-
-   !> The angle with these derivatives (0:2).
-   pure type(unknown_t) function angle_of(x) result(f)
-      type(ball_t), intent(in) :: x(0:2)
-
-      f%value = x(0)
-      f%rate = x(1)
-      f%acceleration = x(2)
-      call set_direction(f)
-   end function angle_of
-
-   !> (0:2) Those of pair `k`: its relative angle, or its slide.
-   pure function pair_balls(m, links, k) result(x)
-      type(mechanism_t), intent(in) :: m
-      type(ball_t), intent(in) :: links(:, 0:, :)
-      integer, intent(in) :: k
-      type(ball_t) :: x(0:2), angle(0:2), between(2, 0:2)
-      type(vector_t) :: guide(0:2)
-
-      associate (pair => m%pairs(k))
-         angle = links(3, :, m%points(pair%point_i)%link)
-         if (pair%kind == pair_prismatic) then
-            angle(0) = angle(0) + ball_t(pair%alpha, of_number*abs(pair%alpha))
-            guide = vector_t()
-            call add_rotating(vector_t(ball_t(1.0_wp, 0.0_wp), zero), angle_of(angle), guide)
-            between = point_balls(m, links, pair%point_j) - point_balls(m, links, pair%point_i)
-            x = product_of(between(1, :), guide%x) + product_of(between(2, :), guide%y)
-         else
-            x = links(3, :, m%points(pair%point_j)%link) - angle
-         end if
-      end associate
-   end function pair_balls
 end module link_bounds

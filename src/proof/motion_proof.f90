@@ -91,7 +91,7 @@ contains
          call prove_position(p%numbers, e, e%state, q%t, e%needed, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
-            if (bounded) call bound_links(p%links, m, e, here%ball_state_t, q, found%links, found%largest)
+            if (bounded) call bound_links(p%links, e, here%ball_state_t, q, found%links, found%largest)
             found%gap = here%gap
             found%has_step = p%has_begun
             if (found%has_step) call prove_step(p%numbers, e, e%needed, before, here, found%step)

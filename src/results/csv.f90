@@ -25,14 +25,13 @@ module csv
    use names, only: drive_name, subject_name
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use link_bounds, only: row_bound
    use set_motion, only: set_motion_t, find_row_in_set, known_numbers, error_in_set, spread_t, spread_in_set
    use text_output, only: output_t, put, add, replaced
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
    public :: csv_head, csv_instant, add_name, marks
-   public :: table_t, table_column_t, new_table, table_head, table_instant, drive_columns, dotted
+   public :: table_t, new_table, table_head, table_instant, drive_columns, dotted
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
@@ -149,13 +148,6 @@ contains
                   other%value = spread%of(:, :, k)
                   call add_other('PER '//trim(spread%tolerances(k)%name))
                end do
-            end if
-            ! The bounds of its errors that are proved, if proofs are asked for.
-            if (s%proofs(c)%taken) then
-               other = row
-               other%known = merge(row%known, -1, s%proofs(c)%is_proved)
-               if (s%proofs(c)%is_proved) other%value = row_bound(s%parts(c), s%motions(c), s%proofs(c)%links, request)
-               call add_other('BOUND')
             end if
             ! The row in each assembly at the first instant.
             if (.not. present(assemblies) .or. step > 0) cycle

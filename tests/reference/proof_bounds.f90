@@ -4,14 +4,14 @@
 program proof_bounds
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, request_t, request_link, instant_count, instant, with_all_links, method_newton
+   use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
    use motion, only: motion_t, mark_none, mark_singular, singular_change
    use branch_certificate, only: branch_crossed
    use deck, only: read_deck
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
-   use balls, only: ball_t
-   use link_bounds, only: row_bound
+   use balls, only: ball_t, distance
+   use ball_numbers, only: of_number
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
@@ -149,7 +149,11 @@ contains
       do i = 1, size(m%links)
          at = findloc(exact%name == m%links(i)%name, .true., dim=1)
          if (m%links(i)%ground .or. at == 0) cycle
-         bound = row_bound(m, q, links, request_t(request_link, i))
+         bound(:, 0) = distance(links(:, 0, i), q%position(:, i))
+         bound(:, 1) = distance(links(:, 1, i), q%velocity(:, i))
+         bound(:, 2) = distance(links(:, 2, i), q%acceleration(:, i))
+         ! The closed forms have places in the deck's coordinates, whose origin has roundings of its own.
+         bound(:2, 0) = bound(:2, 0) + 2.0_wp*of_number*norm2(plane_origin(m))
          off = away(q, i, exact(at))
          below = below + count(off > bound)
          if (any(off > bound)) print '(1x,2a,f0.6,9es9.1/20x,9es9.1)', trim(m%links(i)%name), ' AT ', q%t, off, bound
