@@ -1,20 +1,16 @@
 !> The animation of a run as SVG, without scripts: each link is a group that is moved and turned through the frames of a
-!> drawing (SMIL), over the paths of points, with the time below, and a bar on which it passes. The browser interpolates
-!> between two frames, place and angle evenly.
+!> drawing (SMIL), over the paths of points, with the time below. The browser interpolates between two frames, place and
+!> angle evenly.
 module animation
    use kinds, only: wp
    use planar, only: in_degrees, without_turns, point_of
-   use scales, only: is_length
-   use drives, only: drive_motion
    use motion, only: mark_none
-   use names, only: drive_name
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of
-   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_foot, line_height
+   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_foot, line_height
    use picture, only: closes
-   use svg, only: page_t, width, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
-      attribute, fitted
+   use svg, only: page_t, width, put_end, put_group, put_window, put_words, put_columns, pixels, attribute, fitted
    use listing, only: words_of_mark
    implicit none
    private
@@ -25,13 +21,6 @@ module animation
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
    !> part by more than 1 % of their lengths.
    real(wp), parameter :: max_turn = 0.3_wp
-   !> Room for the bar of the time, its ends, the radius of its dot.
-   integer, parameter :: bar_room = 14
-   real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], dot_radius = 4.0_wp
-   !> The values of so many drives stand beside the time.
-   integer, parameter :: max_drives = 3
-   !> What is smaller than this part of the largest value of a drive is 0: six digits are shown.
-   real(wp), parameter :: not_shown = 1.0e-9_wp
    !> What is seen of a link where it has no position; it stays where it was.
    real(wp), parameter :: pale = 0.2_wp
    !> What of a group is animated.
@@ -40,7 +29,7 @@ module animation
 
 contains
 
-   !> Draws the film `d` of a set, with the bar of the time below, at the end of the `page`.
+   !> Draws the film `d` of a set at the end of the `page`.
    subroutine put_animation(page, d)
       type(page_t), intent(inout), target :: page
       type(drawing_t), intent(in), target :: d
@@ -55,7 +44,6 @@ contains
 
       if (d%films == 0) return
       call make_canvas(page, d, d%frame(1), [(i, i=1, d%films)], c)
-      page%height = page%height + bar_room
       call find_course()
       c%s = d%now
       list = shapes_of(d, spread(.true., 1, size(c%m%links)), c%scale)
@@ -76,7 +64,6 @@ contains
       end do
 
       call put_clock()
-      call put_bar()
       call put_foot(c)
 
    contains
@@ -148,26 +135,13 @@ contains
          end do
       end subroutine put_moving_links
 
-      !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind
-      !> a window of one line.
+      !> Writes the time, in red with its words if the instant is flagged: a column of lines behind a window of one.
       subroutine put_clock()
-         real(wp) :: up(2, size(frame)), value(min(max_drives, size(c%m%drives)), frames), f(0:2)
+         real(wp) :: up(2, size(frame))
          character(:), allocatable :: words
-         integer :: k, i, y
+         integer :: k, y
 
-         ! The values of the first drives, angles in the deck's unit. Rounding errors of a 0 are not shown.
-         do i = 1, size(value, 1)
-            do k = 1, frames
-               f = drive_motion(c%m%drives(i), d%frame(frame(k))%t)
-               value(i, k) = f(0)
-            end do
-            if (c%m%degrees .and. .not. is_length(c%m%drives(i))) value(i, :) = in_degrees(value(i, :))
-            ! Beside a pole of its law a value may be beyond the range of reals.
-            value(i, :) = max(-huge(1.0_wp), min(huge(1.0_wp), value(i, :)))
-            where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
-         end do
-
-         y = c%bottom - 11 - line_height*flag_lines(d)
+         y = c%bottom - 11 - line_height
          call put_window(c%o, real([14, y - line_height], wp), real([width - 14, y], wp))
          call put_group(c%o, 'class="clock"', '')
          up(1, :) = 0.0_wp
@@ -176,9 +150,6 @@ contains
          do k = 1, frames
             associate (s => d%frame(frame(k)))
                words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
-               do i = 1, size(value, 1)
-                  words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
-               end do
                if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
                call put_words(c%o, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
                   trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
@@ -188,22 +159,6 @@ contains
          call put_end(c%o, 'svg')
       end subroutine put_clock
 
-      !> The bar on which the time passes.
-      subroutine put_bar()
-         real(wp) :: first(2), way(2, size(frame))
-
-         first = [bar_ends(1), real(c%bottom, wp)]
-         call put_line(c%o, 'polyline', reshape([first, bar_ends(2), first(2)], [2, 2]), 'class="time"')
-         way = 0.0_wp
-         associate (t0 => d%frame(1)%t, t1 => d%frame(d%films)%t)
-            if (abs(t1 - t0) > 0.0_wp) way(1, :) = (d%frame(frame)%t - t0)/(t1 - t0)*(bar_ends(2) - bar_ends(1))
-         end associate
-         call put_group(c%o, 'class="now"', '')
-         call put_moving(shift, way, smooth)
-         call put_circle(c%o, first, dot_radius, 'class="point"')
-         call put_end(c%o, 'g')
-      end subroutine put_bar
-
       !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
       subroutine put_moving(element, values, smooth)
          character(*), intent(in) :: element
@@ -212,7 +167,7 @@ contains
 
          if (size(values, 2) < 2) return
          call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
-            //fitted(seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';', '/>')
+            //fitted(seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';')
       end subroutine put_moving
    end subroutine put_animation
 end module animation

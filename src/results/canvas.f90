@@ -7,14 +7,14 @@ module canvas
    use numerals, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
-   use svg, only: page_t, width, put_words, put_circle, put_line, put_hatch, hatch_length, put_group, &
+   use svg, only: page_t, width, put_words, put_circle, put_line, put_group, &
       put_end, attribute, fitted
    use text_output, only: output_t
    use listing, only: words_of_mark
    use phrases
    implicit none
    private
-   public :: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_name
+   public :: canvas_t, make_canvas, to_pixels, put_shape, put_outlines, put_name
    public :: put_foot, add_lines, add_box, cover_of
 
    !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
@@ -32,8 +32,8 @@ module canvas
 
    !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
    real(wp), parameter :: margin = 62.0_wp, max_height = 520.0_wp, min_height = 60.0_wp
-   !> Room above for the title and below for times and scale; height of a line of words.
-   integer, parameter :: above = 34, below = 44
+   !> Room above for the title and below for times, scale and flagged instants; height of a line of words.
+   integer, parameter :: above = 34, below = 61
    integer, parameter, public :: line_height = 17
    !> By this part of its larger side a mechanism's picture is wider on each side, at most, for centrodes.
    real(wp), parameter :: centrode_room = 0.4_wp
@@ -60,8 +60,8 @@ contains
    !> Makes the canvas `c` of the drawing `d` at the end of the `page`, and begins it with the title. It shows the
    !> position `s` in full, and has room for the links at the frames `others`.
    !>
-   !> The scale has three digits, the height is even and the shift whole: rounding errors of the results do not move the
-   !> picture, and none of these is near a tie for what is symmetric or has few digits.
+   !> The scale has eight binary digits, the height is even and the shift whole: rounding errors of the results do not
+   !> move the picture, and none of these is near a tie for what is symmetric or has few digits.
    subroutine make_canvas(page, d, s, others, c)
       type(page_t), intent(inout), target :: page
       type(drawing_t), intent(in), target :: d
@@ -69,9 +69,9 @@ contains
       integer, intent(in) :: others(:)
       type(canvas_t), intent(out) :: c
       type(element_t), allocatable :: list(:)
-      real(wp) :: low(2), high(2), from(2), to(2)    ! what is drawn; it must not go beyond the latter
-      real(wp) :: room, power
-      integer :: height, top, e, i, k
+      real(wp) :: low(2), high(2), from(2), to(2)    ! what is drawn; centrodes only between the latter
+      real(wp) :: room
+      integer :: height, top, i, k
 
       c%o => page%body
       c%d => d
@@ -79,11 +79,9 @@ contains
       c%s = s
 
       ! What is drawn: all shapes at the position in full, links at the others, paths; and centrodes, which may run to
-      ! infinity, as far as the picture is wider by `centrode_room` on all sides at most.
+      ! infinity.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      from = -huge(1.0_wp)
-      to = huge(1.0_wp)
       list = shapes_of(d, spread(.true., 1, size(d%m%links)), 1.0_wp)
       do i = 1, size(list)
          if (list(i)%element == 'centrode') cycle
@@ -100,26 +98,22 @@ contains
       room = centrode_room*maxval(high - low)
       from = low - room
       to = high + room
-      do k = 1, size(d%poles)
-         if (s%has_centre(k)) call widen(s%centre(:, k:k))
-      end do
       do i = 1, size(list)
          if (list(i)%element == 'centrode') call widen(places_of(list(i), s))
       end do
+      low = max(low, from)
+      high = min(high, to)
 
       associate (extent => high - low)
          room = real(width, wp) - 2.0_wp*margin
          if (any(extent > 0.0_wp)) then
             c%scale = 1.0_wp/max(extent(1)/room, extent(2)/max_height)
-            e = 2 - floor(log10(c%scale))
-            power = 10.0_wp**abs(e)
             c%scale = c%scale*(1.0_wp + tie)
-            if (e >= 0) c%scale = aint(c%scale*power)/power
-            if (e < 0) c%scale = aint(c%scale/power)*power
+            c%scale = scale(aint(256.0_wp*fraction(c%scale)), exponent(c%scale) - 8)
          end if
          height = 2*ceiling(0.5_wp*max(min_height, c%scale*extent(2)) + margin - tie)
          top = page%height
-         c%bottom = top + above + height + below + line_height*flag_lines(d)
+         c%bottom = top + above + height + below
          page%height = c%bottom
          c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*extent(1)), &
             real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*extent(2))])
@@ -139,13 +133,9 @@ contains
       !> Widens what is drawn by the places `p` (2, :).
       subroutine widen(p)
          real(wp), intent(in) :: p(:, :)
-         integer :: j
 
-         do j = 1, size(p, 2)
-            if (any(p(:, j) < from) .or. any(p(:, j) > to)) cycle
-            low = min(low, p(:, j))
-            high = max(high, p(:, j))
-         end do
+         low = min(low, minval(p, dim=2))
+         high = max(high, maxval(p, dim=2))
       end subroutine widen
    end subroutine make_canvas
 
@@ -190,14 +180,11 @@ contains
       select case (shape%element)
       case ('circle')
          call put_circle(c%o, q(:, 1), shape%radius, shape%attributes)
-      case ('hatch')
-         call put_hatch(c%o, q(:, 1), q(:, 2), shape%attributes)
-         q(2, 2) = q(2, 2) + hatch_length
       case ('polygon')
-         call put_line(c%o, 'polygon', q, shape%attributes, shape%title)
+         call put_line(c%o, 'polygon', q, shape%attributes)
          if (shape%weight > 0.0_wp) q = reshape([q, q(:, 1)], [2, size(q, 2) + 1])
       case default
-         call put_line(c%o, 'polyline', q, shape%attributes, shape%title)
+         call put_line(c%o, 'polyline', q, shape%attributes)
       end select
       if (shape%weight < 0.0_wp) then
          call add_box(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
@@ -223,13 +210,6 @@ contains
          call put_line(c%o, trim(merge('polygon ', 'polyline', n > 2)), q, 'class="thin"')
       end do
    end subroutine put_outlines
-
-   !> The lines of words about flagged instants: one, if there are any.
-   pure integer function flag_lines(d)
-      type(drawing_t), intent(in) :: d
-
-      flag_lines = min(1, d%flagged)
-   end function flag_lines
 
    !> Ends the picture: below it when and why the first flagged instant is flagged, and how many are; and at the foot on
    !> the right the scale bar, 1, 2 or 5 times a power of ten units of length.

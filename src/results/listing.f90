@@ -159,7 +159,7 @@ contains
       !> Why some part of `s` has not all of its motion, each line once: of a limit of motion before it the time, of
       !> singular positions the links.
       subroutine put_marks()
-         character(:), allocatable :: line, lines
+         character(:), allocatable :: line, lines, text
          integer :: k, i
 
          lines = ''
@@ -174,7 +174,9 @@ contains
                   end do
                else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
-                  line = line(:k - 1)//', '//links(m, q%singular_links)//in_line(m, q%singular_links, ' ')//line(k:)
+                  text = links(m, q%singular_links)
+                  if (q%singular_links%in_line) text = text//' '//phrase(say_in_line, s%polish)
+                  line = line(:k - 1)//', '//text//line(k:)
                end if
             end associate
             if (index(lines, line//new_line('a')) > 0) cycle
@@ -225,8 +227,8 @@ contains
       end associate
       end_of = ' '//phrase(say_end, s%polish)//' '//whole(s%set_number)
       if (s%variant > 0) end_of = ' '//phrase(say_end_variant, s%polish)//' '//whole(s%variant)
-      call put(o, end_of//':  '//phrase(say_solved, s%polish)//' '//whole(solved) &
-         //', '//phrase(say_flagged, s%polish)//' '//whole(flagged))
+      call put(o, end_of//':  '//phrase(say_instants, s%polish)//' '//phrase(say_are_solved, s%polish)//' ' &
+         //whole(solved)//', '//phrase(say_flagged, s%polish)//' '//whole(flagged))
       call put(o, '')
    end subroutine listing_end
 
@@ -275,19 +277,9 @@ contains
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
 
-      text = links(m, r)//' '//phrase(say_at_limit, m%polish)//in_line(m, r, ', ')
+      text = links(m, r)//' '//phrase(say_at_limit, m%polish)
+      if (r%in_line) text = text//', '//phrase(say_in_line, m%polish)
    end function at_limit
-
-   !> `before` and the words for links in line; '' where those of `r` are not.
-   function in_line(m, r, before) result(text)
-      type(mechanism_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
-      character(*), intent(in) :: before
-      character(:), allocatable :: text
-
-      text = ''
-      if (r%in_line) text = before//phrase(say_in_line, m%polish)
-   end function in_line
 
    !> The sentence of diagnostic `r`.
    function words_of(m, r) result(text)

@@ -36,7 +36,6 @@ module phrases
       say_angle = phrase_t('ANGLE', 'KAT'), &
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
-      say_solved = phrase_t('INSTANTS SOLVED', 'CHWILE ROZWIAZANE'), &
       say_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
       say_no_position = phrase_t('NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA'), &
       say_singular = phrase_t('JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', &

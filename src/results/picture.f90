@@ -10,7 +10,7 @@ module picture
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
-   use canvas, only: canvas_t, make_canvas, flag_lines, to_pixels, put_shape, put_outlines, put_name, put_foot, &
+   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_outlines, put_name, put_foot, &
       add_lines, add_box, cover_of, tie, line_height
    use svg, only: page_t, put_end, put_group, put_window, put_circle, put_line, put_words, fitted
    use phrases
@@ -34,12 +34,12 @@ module picture
    !> The angle of an arc, and where it may begin, from the side of the link in its own sense (degrees).
    real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
-   !> The weight of an arrow for names, and what one farther from its place counts, in pixels of overlap.
-   real(wp), parameter :: arrow_weight = 3.0_wp, away = 30.0_wp
+   !> The weight of an arrow for names.
+   real(wp), parameter :: arrow_weight = 3.0_wp
 
-   !> A later frame is taken if it is wider across by this part of its longer side. Reason: the first instant is what a
-   !> reader expects, and rounding errors must not choose.
-   real(wp), parameter :: much_wider = 0.15_wp
+   !> The first frame is drawn in full that is so wide across, in parts of the widest. Reason: the first instant is what
+   !> a reader expects, and rounding errors must not choose.
+   real(wp), parameter :: wide = 0.7_wp
    !> A picture has this many faint positions at most and at least, and about this many faint links.
    integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
    !> Positions that differ by less than this part of the mechanism would cover one another; closer than the other the
@@ -93,7 +93,7 @@ contains
 
       ! At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
       if (size(d%own) > 0) then
-         y = real(c%bottom - 16 - line_height*flag_lines(d), wp)
+         y = real(c%bottom - 16 - line_height, wp)
          now = 'T = '//fitted(s%t)//' '//trim(d%m%time_unit)
          call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
          others = phrase(say_faint, d%m%polish)
@@ -155,12 +155,8 @@ contains
             k = findloc(c%m%points(ends)%link, link, dim=1)
             if (c%m%pairs(i)%kind /= pair_revolute .or. k == 0) cycle
             associate (other => c%m%points(ends(3 - k))%link)
-               if (other == base .or. (base == 0 .and. c%m%links(other)%ground)) then
-                  point = ends(k)
-                  exit
-               end if
+               if (point == 0 .or. other == base .or. (base == 0 .and. c%m%links(other)%ground)) point = ends(k)
             end associate
-            if (point == 0) point = ends(k)
          end do
          center = c%s%place(:2, link)
          if (point > 0) center = point_place(c%m, c%s, point)
@@ -177,15 +173,14 @@ contains
                lines(:, i, k) = to_pixels(c, center) + arc_radius*[e(1), -e(2)]
             end do
          end do
-         call put_clearest(lines, 0.0_wp)
+         call put_clearest(lines)
       end subroutine put_arc
 
-      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on either side, near or
-      !> farther away.
+      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on either side.
       subroutine put_arrow(point, sense)
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
-         real(wp), parameter :: asides(4) = arrow_aside*[1.0_wp, -1.0_wp, 2.0_wp, -2.0_wp]
+         real(wp), parameter :: asides(2) = arrow_aside*[1.0_wp, -1.0_wp]
          real(wp) :: e(2), start(2), lines(2, 0:pieces, size(asides))
          integer :: i, k
 
@@ -197,20 +192,19 @@ contains
                lines(:, i, k) = start + arrow_length*real(i, wp)/real(pieces, wp)*e
             end do
          end do
-         call put_clearest(lines, away)
+         call put_clearest(lines)
       end subroutine put_arrow
 
-      !> Draws that of the `lines` (2, 0:pieces, :), in pixels, which covers least, as an arrow. `later`: what each pair
-      !> of lines counts more than the pair before.
-      subroutine put_clearest(lines, later)
-         real(wp), intent(in) :: lines(:, 0:, :), later
+      !> Draws the first of the `lines` (2, 0:pieces, :), in pixels, that cover least, as an arrow.
+      subroutine put_clearest(lines)
+         real(wp), intent(in) :: lines(:, 0:, :)
          real(wp) :: cover, least, e(2)
          integer :: k, best
 
          best = 1
          least = huge(least)
          do k = 1, size(lines, 3)
-            cover = cover_of(c, lines(:, :, k)) + later*real((k - 1)/2, wp)
+            cover = cover_of(c, lines(:, :, k))
             if (cover >= least - tie) cycle
             least = cover
             best = k
@@ -300,27 +294,19 @@ contains
       end do
    end subroutine put_links
 
-   !> The one of the frames `list` that is drawn in full: of those of which most links are known the first, or one that
-   !> is much wider across; 0 for none. Reason: what is in line at the first instant is read better later.
+   !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
+   !> is `wide` across. Reason: links that are collinear at the first instant are read better later.
    integer function clearest(d, list) result(best)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: list(:)
-      real(wp) :: sides(2), widest
-      integer :: i, known
+      real(wp) :: across(size(list))
+      logical :: most(size(list))
+      integer :: i, known(size(list))
 
-      best = 0
-      known = -1
-      widest = 0.0_wp
-      do i = 1, size(list)
-         associate (s => d%frame(list(i)))
-            sides = sides_of(d, s)
-            if (count(s%known) < known) cycle
-            if (count(s%known) == known .and. minval(sides) <= widest + much_wider*maxval(sides)) cycle
-            known = count(s%known)
-            widest = minval(sides)
-            best = list(i)
-         end associate
-      end do
+      known = [(count(d%frame(list(i))%known), i=1, size(list))]
+      most = known == maxval(known)
+      across = [(minval(sides_of(d, d%frame(list(i)))), i=1, size(list))]
+      best = list(findloc(most .and. across >= wide*maxval(across, mask=most), .true., dim=1))
    end function clearest
 
    !> The sides (2) of the box that the known moving links cover at the position `s`.

@@ -13,12 +13,12 @@ module shapes
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
-      character(:), allocatable :: element      !< of SVG; 'hatch' the strokes below a line; 'centrode'
-      character(:), allocatable :: attributes, title
+      character(:), allocatable :: element      !< of SVG; 'centrode': a polyline that may run to infinity
+      character(:), allocatable :: attributes
       integer :: link = 0                       !< 0: the fixed plane
       logical :: is_below = .false.             !< it is drawn before all links
       real(wp), allocatable :: p(:, :), add(:, :)   !< (2, places) of a circle its centre
-      real(wp) :: radius = 0.0_wp               !< of a circle
+      real(wp) :: radius = 0.0_wp               !< of a circle; of a box how far it goes beyond its places
       !> Names should not cross its lines, the less the more they weigh; below 0: not cover its box.
       real(wp) :: weight = 0.0_wp
    end type element_t
@@ -30,13 +30,11 @@ module shapes
    !> Half the length and width of a block. A guide goes on by so much beyond the places of its block: the ground's, and
    !> that of a moving link.
    real(wp), parameter :: half_block(2) = [12.0_wp, 7.0_wp], beyond = 22.0_wp, rod_beyond = 15.0_wp
-   !> A support: its point, its two feet, and the ends of its hatched line.
+   !> A support: its point, its two feet, and the ends of its hatched line. A hatch lies so far below its line.
    real(wp), parameter :: support(2, 3) = reshape([0.0_wp, 0.0_wp, -10.0_wp, -16.0_wp, 10.0_wp, -16.0_wp], [2, 3]), &
-      base(2, 2) = reshape([-14.0_wp, -16.0_wp, 14.0_wp, -16.0_wp], [2, 2])
+      base(2, 2) = reshape([-14.0_wp, -16.0_wp, 14.0_wp, -16.0_wp], [2, 2]), below = 3.0_wp
    !> Names keep clear of boxes; lines weigh so much for them.
    real(wp), parameter :: box = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, curve_weight = 0.4_wp
-   !> A centrode that comes so near to its first place, in parts of its first step, has come back.
-   real(wp), parameter :: come_back = 0.5_wp
    !> A line within so many characteristic lengths is one place for the eye. A place so many of them away is no number
    !> for a viewer.
    real(wp), parameter :: one_place = 1.0e-5_wp, far = 1.0e3_wp
@@ -50,7 +48,7 @@ contains
       logical, intent(in) :: known(:)
       real(wp), intent(in) :: scale
       type(element_t), allocatable :: list(:)
-      character(:), allocatable :: stroke, name
+      character(:), allocatable :: stroke
       real(wp) :: place(2, 3), u(2), v(2)
       logical :: is_dot(size(d%m%points))
       integer :: ends(2), used, i, k
@@ -67,8 +65,8 @@ contains
          k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
          if (k == 0) cycle
          place = spread(point_place(d%m, d%now, ends(k)), 2, 3)
-         call add(0, 'polygon', 'class="support"', place, support, box, trim(d%m%links(d%m%points(ends(k))%link)%name))
-         call add(0, 'hatch', 'class="hatch"', place(:, :2), base, box)
+         call add(0, 'polygon', 'class="support"', place, support, box)
+         call add(0, 'polyline', 'class="hatch"', place(:, :2), base - spread([0.0_wp, below], 2, 2), box, below)
          call add(0, 'polyline', 'class="support"', place(:, :2), base)
       end do
       do i = 1, size(d%guides)
@@ -85,14 +83,12 @@ contains
       do i = 1, size(d%m%links)
          if (d%m%links(i)%ground) cycle
          stroke = 'style="stroke:'//color_of(i)
-         name = trim(d%m%links(i)%name)
          associate (p => d%outlines(i)%corner)
             if (size(p, 2) == 2) then
-               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, title=name)
-               call add(i, 'polyline', 'class="core"', p, title=name)
+               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight)
+               call add(i, 'polyline', 'class="core"', p)
             else if (size(p, 2) > 2) then
-               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
-                  title=name)
+               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight)
             end if
          end associate
       end do
@@ -102,8 +98,7 @@ contains
             v = half_block(2)*quarter_turn(direction(g%block_angle))
             call add(g%block, 'polygon', 'class="block" style="fill:' &
                //merge(ground_block, color_of(g%block), d%m%links(g%block)%ground)//'"', &
-               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
-               trim(d%m%pairs(g%pair)%name))
+               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box)
          end associate
       end do
       do i = 1, size(d%m%pairs)
@@ -124,17 +119,15 @@ contains
    contains
 
       !> Adds an `element` of SVG that moves with `link`.
-      subroutine add(link, element, attributes, p, pixels, weight, title, radius)
+      subroutine add(link, element, attributes, p, pixels, weight, radius)
          integer, intent(in) :: link
          character(*), intent(in) :: element, attributes
          real(wp), intent(in) :: p(:, :)
          real(wp), intent(in), optional :: pixels(:, :), weight, radius
-         character(*), intent(in), optional :: title
 
          used = used + 1
          if (used > size(list)) list = [list, list]
-         list(used) = element_t(element=element, attributes=attributes, title='', link=link, p=p, add=0.0_wp*p)
-         if (present(title)) list(used)%title = title
+         list(used) = element_t(element=element, attributes=attributes, link=link, p=p, add=0.0_wp*p)
          if (present(pixels)) list(used)%add = pixels
          if (present(weight)) list(used)%weight = weight
          if (present(radius)) list(used)%radius = radius
@@ -142,9 +135,9 @@ contains
 
       !> Adds the pieces of a line through the places `p` (2, :), which go from each place that `goes_on` to the next;
       !> none where they stay at one place, as does the pole of two links that a joint holds together.
-      subroutine add_pieces(link, element, attributes, p, goes_on, title)
+      subroutine add_pieces(link, element, attributes, p, goes_on)
          integer, intent(in) :: link
-         character(*), intent(in) :: element, attributes, title
+         character(*), intent(in) :: element, attributes
          real(wp), intent(in) :: p(:, :)
          logical, intent(in) :: goes_on(:)
          integer :: first, last
@@ -156,7 +149,7 @@ contains
          first = 1
          do last = 1, size(goes_on)
             if (goes_on(last)) cycle
-            if (last > first) call add(link, element, attributes, p(:, first:last), weight=curve_weight, title=title)
+            if (last > first) call add(link, element, attributes, p(:, first:last), weight=curve_weight)
             first = last + 1
          end do
       end subroutine add_pieces
@@ -172,27 +165,25 @@ contains
             known(k) = d%frame(k)%known(d%m%points(i)%link)
             p(:, k) = point_place(d%m, d%frame(k), i)
          end do
-         associate (name => d%m%points(i)%name)
-            call add_pieces(0, 'polyline', 'class="curve" '//attribute('data-path', trim(name))//' style="stroke:' &
-               //color_of(d%m%points(i)%link)//'"', p, known .and. eoshift(known, 1), trim(name))
-         end associate
+         call add_pieces(0, 'polyline', 'class="curve" '//attribute('data-path', trim(d%m%points(i)%name)) &
+            //' style="stroke:'//color_of(d%m%points(i)%link)//'"', p, known .and. eoshift(known, 1))
       end subroutine add_path
 
       !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
       !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
       subroutine add_guide(g)
          type(guide_t), intent(in) :: g
-         character(:), allocatable :: name
          real(wp), allocatable :: p(:, :), pixels(:, :)
          real(wp) :: e(2), beside(2)
 
          e = direction(g%angle)
-         name = trim(d%m%pairs(g%pair)%name)
          if (d%m%links(g%carrier)%ground) then
             p = reshape([g%foot + g%low*e, g%foot + g%high*e], [2, 2])
             pixels = reshape([-beyond*e, beyond*e], [2, 2])
-            call add(g%carrier, 'hatch', 'class="hatch"', p, pixels)
-            call add(g%carrier, 'polyline', 'class="guide"', p, pixels, line_weight, name)
+            ! A vertical one has it on the right, whatever rounding makes of its cosine.
+            beside = -sign(below, cos(d%now%place(3, g%carrier) + g%angle) + one_place)*quarter_turn(e)
+            call add(g%carrier, 'polyline', 'class="hatch"', p, pixels + spread(beside, 2, 2), line_weight)
+            call add(g%carrier, 'polyline', 'class="guide"', p, pixels, line_weight)
          else
             beside = d%m%points(g%pivot)%offset - g%foot
             p = reshape([g%foot + min(g%low, 0.0_wp)*e, g%foot + max(g%high, 0.0_wp)*e], [2, 2])
@@ -203,8 +194,8 @@ contains
                pixels = reshape([pixels(:, 1), 0.0_wp*[beside, beside, beside], pixels(:, 2)], [2, 5])
             end if
             call add(g%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(g%carrier)//'"', p, pixels, &
-               line_weight, name)
-            call add(g%carrier, 'polyline', 'class="slot"', p, pixels, 0.0_wp, name)
+               line_weight)
+            call add(g%carrier, 'polyline', 'class="slot"', p, pixels)
          end if
       end subroutine add_guide
 
@@ -214,10 +205,10 @@ contains
       subroutine add_centrode(i, side)
          integer, intent(in) :: i, side
          character(:), allocatable :: attributes
-         real(wp) :: p(2, d%films), u(2), v(2)
+         real(wp) :: p(2, d%films)
          real(wp) :: turn(d%films)                        ! the rate of the second link from the first
          logical :: goes_on(d%films)                      ! the next place is on the same piece
-         integer :: links(2), k, last
+         integer :: links(2), k
 
          associate (pole => d%m%requests(d%poles(i)))
             links = [pole%second, pole%subject]
@@ -231,20 +222,10 @@ contains
          end do
          goes_on = goes_on .and. all(abs(p) < far*characteristic_length(d%m), dim=1)
          goes_on = goes_on .and. eoshift(goes_on, 1) .and. ((turn > 0.0_wp) .eqv. (eoshift(turn, 1) > 0.0_wp))
-         ! It ends where it comes back to its first place and goes on as it began: drawn twice, dashes would fill the
-         ! gaps.
-         do last = 3, d%films - 1
-            if (.not. (goes_on(1) .and. goes_on(last))) cycle
-            u = p(:, 2) - p(:, 1)
-            v = p(:, last + 1) - p(:, last)
-            if (norm2(p(:, last) - p(:, 1)) <= come_back*norm2(u) .and. dot_product(u, v) > 0.9_wp*norm2(u)*norm2(v)) &
-               goes_on(last:) = .false.
-         end do
-
          attributes = 'class="centrode" '//attribute('data-centrode', pole_name(d%m, d%poles(i)))//' '// &
             attribute('data-link', trim(d%m%links(links(side))%name))//' style="stroke:' &
             //link_color(d%m, links(side))//'"'
-         call add_pieces(links(side), 'centrode', attributes, p, goes_on, pole_name(d%m, d%poles(i)))
+         call add_pieces(links(side), 'centrode', attributes, p, goes_on)
       end subroutine add_centrode
    end function shapes_of
 

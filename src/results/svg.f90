@@ -2,12 +2,11 @@
 !> corner, y down. ASCII; numbers have at most two decimals, so that equal pictures are equal bytes.
 module svg
    use kinds, only: wp
-   use planar, only: quarter_turn
    use text_output, only: output_t, put, add, replaced
    use numerals, only: fixed, whole, max_decimals
    implicit none
    private
-   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, put_hatch, &
+   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, &
       put_words, put_columns, pixels, attribute, fitted
 
    !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
@@ -36,12 +35,12 @@ module svg
       '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
-      '.centrode{stroke-width:1.5;stroke-dasharray:7 4}', &
+      '.centrode{stroke-width:4;stroke-opacity:0.4}', &
       '.centre{fill:#fff;stroke-width:2}', &
       '.guide{stroke-width:1.5}', &
       '.rod{stroke-width:5}', &
       '.slot{stroke-width:1.5;stroke:#fff;stroke-opacity:0.8}', &
-      '.hatch{stroke-width:1}', &
+      '.hatch{stroke-width:6;stroke-dasharray:1 6;stroke-linecap:butt}', &
       '.support{stroke-width:1.5;fill:#fff}', &
       '.block{stroke-width:1.5}', &
       '.joint{fill:#fff;stroke:#222;stroke-width:1.5}', &
@@ -52,9 +51,6 @@ module svg
 
    !> More than rounding errors of a pixel's coordinate.
    real(wp), parameter :: tie = 1.0e-6_wp
-   !> Distance and length of the strokes of a hatch, in pixels.
-   real(wp), parameter, public :: hatch_length = 6.0_wp
-   real(wp), parameter :: hatch_step = 7.0_wp
 
 contains
 
@@ -114,42 +110,14 @@ contains
       call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
    end subroutine put_circle
 
-   !> Writes a line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it. `title`, if
-   !> not '', is what a viewer says of it.
-   subroutine put_line(o, element, p, attributes, title)
+   !> Writes a line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it.
+   subroutine put_line(o, element, p, attributes)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element, attributes
       real(wp), intent(in) :: p(:, :)
-      character(*), intent(in), optional :: title
-      character(:), allocatable :: ending
 
-      ending = '/>'
-      if (present(title)) then
-         if (title /= '') ending = '><title>'//escaped(title)//'</title></'//element//'>'
-      end if
-      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ', ending)
+      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ')
    end subroutine put_line
-
-   !> Writes the hatch of the ground, strokes on the lower side of the line from `p` to `q` (2).
-   subroutine put_hatch(o, p, q, attributes)
-      type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2), q(2)
-      character(*), intent(in) :: attributes
-      real(wp) :: e(2), length
-      integer :: k, n
-
-      length = norm2(q - p)
-      ! What is far out of the picture may have no length left.
-      if (length <= 0.0_wp) return
-      n = max(1, int(min(200.0_wp, length/hatch_step)))
-      e = (q - p)/length
-      call add(o, '<path '//attributes//' d="')
-      do k = 1, n
-         call add(o, 'M'//place(p + real(k, wp)*(q - p)/real(n, wp)) &
-            //'l'//place(hatch_length*(sign(1.0_wp, e(1))*quarter_turn(e) - e)))
-      end do
-      call put(o, '"/>')
-   end subroutine put_hatch
 
    !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where
    !> 'start', 'end'.
@@ -163,10 +131,10 @@ contains
    end subroutine put_words
 
    !> Writes an element that begins with `begins` and has the columns of `values` (:, :) in an attribute: `inside`
-   !> stands between the numbers of a column, `between` between columns, `ending` after them.
-   subroutine put_columns(o, begins, values, inside, between, ending)
+   !> stands between the numbers of a column, `between` between columns.
+   subroutine put_columns(o, begins, values, inside, between)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: begins, inside, between, ending
+      character(*), intent(in) :: begins, inside, between
       real(wp), intent(in) :: values(:, :)
       integer :: i, k
 
@@ -178,7 +146,7 @@ contains
             call add(o, pixels(values(i, k)))
          end do
       end do
-      call put(o, '"'//ending)
+      call put(o, '"/>')
    end subroutine put_columns
 
    !> Begins a window: of what follows only the part from `low` to `high` (2) is seen.
