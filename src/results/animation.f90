@@ -9,15 +9,14 @@ module animation
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of
    use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_foot, line_height
-   use picture, only: closes
    use svg, only: page_t, width, put_end, put_group, put_window, put_words, put_columns, pixels, attribute, fitted
    use listing, only: words_of_mark
    implicit none
    private
    public :: put_animation
 
-   !> The time from its first to its last frame, and of the rest at its end where the motion does not come back (s).
-   real(wp), parameter :: motion_seconds = 10.0_wp, pause_seconds = 1.0_wp
+   !> How long the motion takes; then it begins again.
+   character(*), parameter :: duration = '10s'
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
    !> part by more than 1 % of their lengths.
    real(wp), parameter :: max_turn = 0.3_wp
@@ -37,8 +36,6 @@ contains
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
       integer, allocatable :: frame(:)       ! (keys) at equal steps of time
-      integer :: frames                      ! without the pause at the end
-      real(wp) :: seconds                    ! from the first to the last
       logical :: smooth                      ! there are positions between them
       integer :: i
 
@@ -46,7 +43,7 @@ contains
       call make_canvas(page, d, d%frame(1), [(i, i=1, d%films)], c)
       call find_course()
       c%s = d%now
-      list = shapes_of(d, spread(.true., 1, size(c%m%links)), c%scale)
+      list = shapes_of(d, c%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
       where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
       ! A centrode may run through the pictures of other sets.
@@ -54,8 +51,8 @@ contains
       do i = 1, size(list)
          if (is_fixed(i) .and. list(i)%is_below) call put_shape(c, list(i))
       end do
-      call put_group(c%o, 'class="film" data-frames="'//whole(frames)//'" data-keys="' &
-         //whole(size(frame))//'" data-end="'//full(d%frame(d%films)%t)//'"', '')
+      call put_group(c%o, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
+         //full(d%frame(d%films)%t)//'"', '')
       call put_moving_links()
       call put_end(c%o, 'g')
       call put_end(c%o, 'svg')
@@ -68,25 +65,19 @@ contains
 
    contains
 
-      !> Finds how the frames follow one another. The motion begins again after its end: at once where it has come back,
-      !> otherwise after a pause. It is not shown backwards: drives do not run so.
+      !> Finds how the frames follow one another. The motion is not shown backwards: drives do not run so.
       subroutine find_course()
-         integer :: k, stride, pause
+         integer :: k, stride
 
          stride = max(1, 1 + (d%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
          frame = [(min(k, d%films), k=1, d%films + stride - 1, stride)]
-         frames = size(frame)
          smooth = .true.
-         do k = 2, frames
+         do k = 2, size(frame)
             associate (now => d%frame(frame(k)), before => d%frame(frame(k - 1)))
                if (any(now%known .and. before%known .and. &
                   abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
             end associate
          end do
-         pause = 0
-         if (.not. closes(d, frame)) pause = nint(real(frames - 1, wp)*pause_seconds/motion_seconds)
-         frame = [frame, spread(d%films, 1, pause)]
-         seconds = motion_seconds*real(max(1, size(frame) - 1), wp)/real(max(1, frames - 1), wp)
       end subroutine find_course
 
       !> Draws the moving links, each with its shapes in its own axes and turned about its first corner, later ones over
@@ -145,9 +136,9 @@ contains
          call put_window(c%o, real([14, y - line_height], wp), real([width - 14, y], wp))
          call put_group(c%o, 'class="clock"', '')
          up(1, :) = 0.0_wp
-         up(2, :) = [(-real(line_height*(min(k, frames) - 1), wp), k=1, size(frame))]
+         up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
          call put_moving(shift, up, .false.)
-         do k = 1, frames
+         do k = 1, size(frame)
             associate (s => d%frame(frame(k)))
                words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
                if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
@@ -167,7 +158,7 @@ contains
 
          if (size(values, 2) < 2) return
          call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
-            //fitted(seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';')
+            //duration//'" repeatCount="indefinite" values="', values, ' ', ';')
       end subroutine put_moving
    end subroutine put_animation
 end module animation

@@ -7,8 +7,7 @@ module canvas
    use numerals, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
-   use svg, only: page_t, width, put_words, put_circle, put_line, put_group, &
-      put_end, attribute, fitted
+   use svg, only: page_t, width, tie, put_words, put_circle, put_line, put_group, put_end, attribute, fitted
    use text_output, only: output_t
    use listing, only: words_of_mark
    use phrases
@@ -50,8 +49,6 @@ module canvas
    integer, parameter :: max_pieces = 2000
    !> What a name over a name counts in each cell, and one that leaves the picture, in pixels of overlap with a line.
    real(wp), parameter :: over_name = 10.0_wp, outside = 500.0_wp
-   !> Pixels, and overlaps of this many of them, that differ by no more are the same: rounding errors do not choose.
-   real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
 
@@ -82,7 +79,7 @@ contains
       ! infinity.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      list = shapes_of(d, spread(.true., 1, size(d%m%links)), 1.0_wp)
+      list = shapes_of(d, 1.0_wp)
       do i = 1, size(list)
          if (list(i)%element == 'centrode') cycle
          call widen(places_of(list(i), s))

@@ -15,7 +15,7 @@ module drawing
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, joint_point, outline_t, outlines_of, hull, moved
+   public :: point_place, outline_t, outlines_of, hull, moved
 
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals, or so many
    !> for each turn of a drive. Reason: at ten degrees a step a path would have corners, and an animation leaps.
@@ -283,21 +283,6 @@ contains
 
       p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
-
-   !> The point at which pair number `i` is drawn: that of the link that is drawn later, of those `known` (links); of
-   !> the ground only where no other is known; 0 for none.
-   pure integer function joint_point(d, known, i) result(point)
-      type(drawing_t), intent(in) :: d
-      logical, intent(in) :: known(:)
-      integer, intent(in) :: i
-      integer :: ends(2), links(2)
-
-      ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-      links = d%m%points(ends)%link
-      point = 0
-      if (any(known(links))) &
-         point = ends(maxloc(merge(0, links, d%m%links(links)%ground), dim=1, mask=known(links)))
-   end function joint_point
 
    !> The outlines (links) of all links of `m`, in one pass over its points.
    pure function outlines_of(m) result(list)

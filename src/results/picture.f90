@@ -11,12 +11,12 @@ module picture
    use drawing, only: drawing_t, snapshot_t, point_place, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
    use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_outlines, put_name, put_foot, &
-      add_lines, add_box, cover_of, tie, line_height
-   use svg, only: page_t, put_end, put_group, put_window, put_circle, put_line, put_words, fitted
+      add_lines, add_box, cover_of, line_height
+   use svg, only: page_t, tie, put_end, put_group, put_window, put_circle, put_line, put_words, fitted
    use phrases
    implicit none
    private
-   public :: put_picture, clearest, faint_frames, closes
+   public :: put_picture, clearest, faint_frames
 
    !> A picture of more links or points than this has no names: they would cover it.
    integer, parameter :: max_names = 120
@@ -42,9 +42,8 @@ module picture
    real(wp), parameter :: wide = 0.7_wp
    !> A picture has this many faint positions at most and at least, and about this many faint links.
    integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
-   !> Positions that differ by less than this part of the mechanism would cover one another; closer than the other the
-   !> motion has come back.
-   real(wp), parameter :: alike = 0.03_wp, come_back = 1.0e-3_wp
+   !> Positions that differ by less than this part of the mechanism would cover one another.
+   real(wp), parameter :: alike = 0.03_wp
 
 contains
 
@@ -76,7 +75,7 @@ contains
          call put_outlines(c, d%frame(faint(k)))
       end do
       call put_end(c%o, 'g')
-      list = shapes_of(d, s%known, c%scale)
+      list = shapes_of(d, c%scale)
       call put_window(c%o, c%low, c%high)
       do k = 1, size(list)
          call put_shape(c, list(k))
@@ -340,22 +339,12 @@ contains
       allocate (list(0))
       n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. d%m%links%ground))))
       do i = 0, n
-         ! Where the motion comes back, the last frame is the first one again.
-         k = own(1 + i*(size(own) - 1)/merge(n + 1, n, closes(d, own)))
+         k = own(1 + i*(size(own) - 1)/n)
          if (distance(d, k, best) < alike) cycle
          if (any([(distance(d, k, list(j)) < alike, j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
-
-   !> Whether the motion of the moving links through the frames `list` ends where it has begun.
-   logical function closes(d, list)
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: list(:)
-
-      closes = .false.
-      if (size(list) > 2) closes = distance(d, list(1), list(size(list))) < come_back
-   end function closes
 
    !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
    !> link.

@@ -5,7 +5,7 @@ module shapes
    use mechanism, only: mechanism_t, pair_revolute
    use planar, only: direction, quarter_turn, rotated
    use scales, only: characteristic_length
-   use drawing, only: drawing_t, guide_t, joint_point, point_place
+   use drawing, only: drawing_t, guide_t, point_place
    use svg, only: attribute
    implicit none
    private
@@ -42,10 +42,9 @@ module shapes
 contains
 
    !> Returns the shapes of the drawing `d` at so many pixels a unit of length (`scale`), in the order in which they are
-   !> drawn; joints on those of their links that are `known` (links).
-   function shapes_of(d, known, scale) result(list)
+   !> drawn; joints on that of their links which is drawn later.
+   function shapes_of(d, scale) result(list)
       type(drawing_t), intent(in) :: d
-      logical, intent(in) :: known(:)
       real(wp), intent(in) :: scale
       type(element_t), allocatable :: list(:)
       character(:), allocatable :: stroke
@@ -102,8 +101,9 @@ contains
          end associate
       end do
       do i = 1, size(d%m%pairs)
-         k = joint_point(d, known, i)
-         if (d%m%pairs(i)%kind == pair_revolute .and. k > 0) call add(d%m%points(k)%link, 'circle', &
+         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
+         k = ends(maxloc(merge(0, d%m%points(ends)%link, d%m%links(d%m%points(ends)%link)%ground), dim=1))
+         if (d%m%pairs(i)%kind == pair_revolute) call add(d%m%points(k)%link, 'circle', &
             'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)), spread(d%m%points(k)%offset, 2, 1), &
             weight=box, radius=joint_radius)
       end do

@@ -29,28 +29,24 @@ module svg
       'text.between{fill:#777}', &
       'text.link{font-style:italic}', &
       'text.flag{fill:#d00000}', &
-      'polyline,polygon,path{fill:none;stroke:#222;stroke-linejoin:round;stroke-linecap:round}', &
+      'polyline,polygon{fill:none;stroke:#222;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}', &
       '.faint *{stroke:#d0d4d8;stroke-width:1.2}', &
-      '.curve{stroke-width:1.5;stroke:#222}', &
       '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
       '.centrode{stroke-width:4;stroke-opacity:0.4}', &
       '.centre{fill:#fff;stroke-width:2}', &
-      '.guide{stroke-width:1.5}', &
       '.rod{stroke-width:5}', &
-      '.slot{stroke-width:1.5;stroke:#fff;stroke-opacity:0.8}', &
+      '.slot{stroke:#fff;stroke-opacity:0.8}', &
       '.hatch{stroke-width:6;stroke-dasharray:1 6;stroke-linecap:butt}', &
-      '.support{stroke-width:1.5;fill:#fff}', &
-      '.block{stroke-width:1.5}', &
+      '.support{fill:#fff}', &
       '.joint{fill:#fff;stroke:#222;stroke-width:1.5}', &
       '.point{fill:#222}', &
       '.drive{stroke:#0a7a3c;stroke-width:2}', &
-      '.tip{stroke:none;fill:#0a7a3c}', &
-      '.scale{stroke-width:1.5}']
+      '.tip{stroke:none;fill:#0a7a3c}']
 
-   !> More than rounding errors of a pixel's coordinate.
-   real(wp), parameter :: tie = 1.0e-6_wp
+   !> Pixels, and overlaps of this many of them, that differ by no more are the same: rounding errors do not choose.
+   real(wp), parameter, public :: tie = 1.0e-6_wp
 
 contains
 
@@ -155,17 +151,9 @@ contains
       real(wp), intent(in) :: low(2), high(2)
 
       call put(o, '<svg x="'//pixels(low(1))//'" y="'//pixels(low(2))//'" width="'//pixels(high(1) - low(1)) &
-         //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//place(low)//' '//place(high - low) &
-         //'" overflow="hidden">')
+         //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//pixels(low(1))//' '//pixels(low(2))//' ' &
+         //pixels(high(1) - low(1))//' '//pixels(high(2) - low(2))//'" overflow="hidden">')
    end subroutine put_window
-
-   !> The place `p` (2) in a path.
-   pure function place(p) result(text)
-      real(wp), intent(in) :: p(2)
-      character(:), allocatable :: text
-
-      text = pixels(p(1))//' '//pixels(p(2))
-   end function place
 
    !> `x` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
    pure function pixels(x) result(text)

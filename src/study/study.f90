@@ -304,7 +304,6 @@ contains
       type(truth_t), intent(out) :: truth
       type(set_motion_t) :: s
       type(request_t), allocatable :: requests(:)
-      character(1) :: heading
       real(qp) :: before(1 + size(m%drives))     ! the time, and values of drives
       integer :: i, k, unit, status
 
@@ -316,7 +315,7 @@ contains
       call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
       if (unit == 0) return
       allocate (truth%value(size(truth%table%columns), 0:truth%compared - 1))
-      read (unit, '(a)', iostat=status) heading
+      read (unit, '()', iostat=status)
       do k = 0, truth%compared - 1
          if (.not. truth%due(1 + k)) cycle
          read (unit, *, iostat=status) before, truth%value(:, k)
@@ -377,9 +376,10 @@ contains
    subroutine open_reference(path, set, unit)
       character(*), intent(in) :: path, set
       integer, intent(out) :: unit
-      character(:), allocatable :: rows, this
+      character(:), allocatable :: rows
+      character(4096) :: this
       integer(c_int) :: descriptor
-      integer :: status, length
+      integer :: status
       logical :: closed
 
       unit = 0
@@ -387,11 +387,9 @@ contains
       descriptor = memfd_create('rows'//c_null_char, 0_c_int)
       if (descriptor < 0) return
       rows = '/dev/fd/'//whole(descriptor)
-      call get_command_argument(0, length=length)
-      allocate (character(length) :: this)
-      if (length > 0) call get_command_argument(0, this)
+      call get_command_argument(0, this)
       this = this(:index(this, '/', back=.true.))//'kinmat-quad'
-      call execute_command_line('exec 2>/dev/null; p='//shell_word(this)//'; [ -x "$p" ] || p=kinmat-quad; ' &
+      call execute_command_line('exec 2>/dev/null; p='//shell_word(trim(this))//'; [ -x "$p" ] || p=kinmat-quad; ' &
          //'case $("$p" --version) in *REAL128) ;; *) exit 1;; esac; ' &
          //'awk ''!/^[*]/ { kept = toupper($0) !~ /^('//left_out//')/ } kept'' '//shell_word(path) &
          //' | timeout '//whole(patience)//' "$p" --no-listing --table '//rows//' --sets '//set, exitstat=status)
