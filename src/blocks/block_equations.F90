@@ -23,7 +23,7 @@ module block_equations
    use block_state, only: state_t
    implicit none
    private
-   public :: find_known_parts, assemble_block, assemble_with_velocities, assemble_dense, right_hand_side
+   public :: find_known_parts, assemble_with_velocities, assemble_dense, right_hand_side
 
 contains
 
@@ -37,20 +37,9 @@ contains
          b%numbers%d, s%u, s%loop)
    end subroutine find_known_parts
 
-   !> Jacobian `a`, stored as the shape of the block says, and residual `r` (rows) of block `i` at the state.
-   pure subroutine assemble_block(b, i, s, a, r)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(*), r(*)
-      real(wp) :: v(b%list(i)%shape%rows)
-
-      ! The row of the own unknown of a drive is in no loop.
-      v = 0.0_wp
-      call assemble_with_velocities(b, i, s, a, r, v)
-   end subroutine assemble_block
-
-   !> Assembles block `i` as `assemble_block`, with the right-hand side `v` (rows) for the velocities there.
+   !> Jacobian `a`, stored as the shape of the block says, residual `r` (rows) of block `i` at the state, and the
+   !> right-hand side `v` (rows) for the velocities there. It is added to `v` in the row of a drive's own unknown, which
+   !> is in no loop.
    pure subroutine assemble_with_velocities(b, i, s, a, r, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -69,22 +58,24 @@ contains
       end associate
    end subroutine assemble_with_velocities
 
-   !> Assembles block `i` as `assemble_block`, with all of the Jacobian, zeros as well: `a` (rows, n).
+   !> All of the Jacobian of block `i` at the state, zeros as well, `a` (rows, n), and its residual `r` (rows).
    pure subroutine assemble_dense(b, i, s, a, r)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), r(*)
+      real(wp) :: v(b%list(i)%shape%rows)
       real(wp), allocatable :: entries(:)
       integer :: c, k
 
+      v = 0.0_wp
       associate (shape => b%list(i)%shape)
          if (shape%pattern == 0) then
-            call assemble_block(b, i, s, a, r)
+            call assemble_with_velocities(b, i, s, a, r, v)
             return
          end if
          allocate (entries(shape%entries))
-         call assemble_block(b, i, s, entries, r)
+         call assemble_with_velocities(b, i, s, entries, r, v)
          a(:, :shape%n) = 0.0_wp
          associate (p => b%patterns(shape%pattern))
             do c = 1, shape%n

@@ -9,7 +9,7 @@ module changed_rows
    use block_state, only: unknown_t
    use block_solver, only: solve_block
    use block_matrix, only: solve_first, solve_again
-   use block_equations, only: assemble_block, right_hand_side
+   use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t
    use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
       slide_unit
@@ -199,7 +199,7 @@ contains
 
       associate (shape => e%blocks%list(i)%shape, w => e%work, &
          own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-         call assemble_block(e%blocks, i, e%state, w%a, w%r)
+         call assemble_dense(e%blocks, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)
          if (info > 0) return
