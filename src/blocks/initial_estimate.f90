@@ -9,7 +9,7 @@
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted
+   use grouping, only: sorted_t, sorted, members
    use planar, only: direction, quarter_turn, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use links_tree, only: tree_t, axes_t
@@ -43,7 +43,7 @@ contains
       integer, intent(in) :: unknowns
       real(wp), intent(in) :: span
       real(wp) :: value(0:unknowns)
-      real(wp) :: phi(size(m%links)), angles(2)
+      real(wp) :: phi(size(m%links))
       integer :: i, u
 
       value = 0.0_wp
@@ -55,25 +55,34 @@ contains
          value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
       end do
       do i = 1, size(m%pairs)
-         if (t%slide(i) == 0) cycle
-         angles = phi(m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link)
-         value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, angles), &
-            direction(angles(1) + m%pairs(i)%alpha))/length
+         if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, phi), &
+            direction(phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha))/length
       end do
    end function estimated_values
 
-   !> (2) From the first point of pair `k` to the other, their links at the deck's places and the `angles` (2).
-   pure function closure_error_of(m, k, angles) result(closure_error)
+   !> (2) From the first point of pair `k` to the other, the links at the deck's places and the angles `phi` (links).
+   pure function closure_error_of(m, k, phi) result(closure_error)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
-      real(wp), intent(in) :: angles(2)
+      real(wp), intent(in) :: phi(:)
       real(wp) :: closure_error(2)
 
       associate (i => m%points(m%pairs(k)%point_i), j => m%points(m%pairs(k)%point_j))
-         closure_error = point_of([m%links(j%link)%position(:2), angles(2)], j%offset) &
-            - point_of([m%links(i%link)%position(:2), angles(1)], i%offset)
+         closure_error = point_of([m%links(j%link)%position(:2), phi(j%link)], j%offset) &
+            - point_of([m%links(i%link)%position(:2), phi(i%link)], i%offset)
       end associate
    end function closure_error_of
+
+   !> The distance by which pair `k` is open there.
+   pure real(wp) function opening_of(m, k, phi) result(opening)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      real(wp), intent(in) :: phi(:)
+
+      opening = norm2(closure_error_of(m, k, phi))
+      if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset + dot_product(closure_error_of(m, k, phi), &
+         quarter_turn(direction(phi(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))))
+   end function opening_of
 
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
    function estimated_directions(m, t, a, span) result(phi)
@@ -81,96 +90,86 @@ contains
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       real(wp), intent(in) :: span
-      real(wp) :: phi(size(m%links))
-      real(wp), dimension(0:t%orientations) :: u, v, w
+      real(wp), dimension(size(m%links)) :: phi, u, v, w
       real(wp) :: before, after
-      logical, allocatable :: placed(:)         ! (points) their places are known
+      logical :: placed(size(m%points)), is_far(size(m%links))      ! points with known places; links that turn far
       type(sorted_t) :: classes
+      integer, allocatable :: list(:)
       integer :: i, sweep
 
+      ! Links of one class have one angle, that of its first link.
       phi = m%links%position(3)
-      u = 0.0_wp
-      do i = size(m%links), 1, -1
-         if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - a%angle_offset(i)
-      end do
-      allocate (placed(size(m%points)))
-      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*span
-      if (largest_opening(u, spread(.true., 1, size(m%points))) <= good_part*span) return
-      v = u
       classes = sorted(t%orientation, t%orientations)
+      u = phi
+      do i = 1, t%orientations
+         list = members(classes, i)
+         u(list) = a%angle_offset(list) + (phi(list(1)) - a%angle_offset(list(1)))
+      end do
+      placed = .true.
+      if (largest_opening(u) <= good_part*span) return
+      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*span
+      v = u
       do sweep = 1, max_sweeps
          w = v
-         call minimize_closure_errors(v)
+         call minimize_closure_errors()
          if (maxval(abs(without_turns(v - w))) <= good_part) exit
       end do
       v = u + without_turns(v - u)
-      if (maxval(abs(v - u)) <= far_angle) return
+      is_far = abs(v - u) > far_angle
+      if (.not. any(is_far)) return
       ! Of what is open, only what small changes of other angles do not close contradicts an angle; what they open does
       ! not.
-      w = merge(u, v, abs(v - u) > far_angle)
-      before = min(largest_opening(u, placed), largest_opening(w, placed))
-      after = largest_opening(v, placed)
+      w = merge(u, v, is_far)
+      before = min(largest_opening(u), largest_opening(w))
+      after = largest_opening(v)
       if (after > min(closed_part*span, better_part*before)) return
-      if (.not. (is_contradicted(u, abs(v - u) > far_angle) .and. is_contradicted(w, abs(v - u) > far_angle))) return
-      do i = 1, size(m%links)
-         if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
-      end do
+      if (is_contradicted(u) .and. is_contradicted(w)) phi = phi + (v - u)
 
    contains
 
-      !> Gives each of the orientation `classes` in `u` (0:classes) the angle of the least closure errors, unless the
-      !> form is small at all angles. Then the places of its points are known as well.
-      subroutine minimize_closure_errors(u)
-         real(wp), intent(inout) :: u(0:)
-         real(wp) :: e(4), before, angle, sum_of
-         integer :: i, j, k, orientation
+      !> Gives each of the `classes` in `v` the angle of the least closure errors, unless the form is small at all
+      !> angles. Then the places of its points are known as well. `w`: the angles before.
+      subroutine minimize_closure_errors()
+         real(wp) :: e(4), angle, sum_of
+         integer :: i, j, k, class, pair, points(2)
 
-         do orientation = 1, t%orientations
-            before = u(orientation)
+         do class = 1, t%orientations
+            list = members(classes, class)
             e = 0.0_wp
             do j = 0, 4
                angle = 0.4_wp*pi*real(j, wp)
-               u(orientation) = angle
+               v(list) = a%angle_offset(list) + angle
                sum_of = 0.0_wp
-               do i = classes%first(orientation), classes%first(orientation + 1) - 1
-                  associate (link => classes%member(i))
-                     do k = t%near%first(link), t%near%first(link + 1) - 1
-                        if (is_reported(t%near%member(k), orientation)) &
-                           sum_of = sum_of + opening_of(u, t%near%member(k))**2
-                     end do
-                  end associate
+               do i = 1, size(list)
+                  do k = t%near%first(list(i)), t%near%first(list(i) + 1) - 1
+                     pair = t%near%member(k)
+                     points = [m%pairs(pair)%point_i, m%pairs(pair)%point_j]
+                     if (all(placed(points) .or. t%orientation(m%points(points)%link) == class)) &
+                        sum_of = sum_of + opening_of(m, pair, v)**2
+                  end do
                end do
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
             end do
-            u(orientation) = before
-            if (maxval(abs(e)) <= min_form_part*span**2) cycle
-            u(orientation) = least(e, before)
-            where (t%orientation(m%points%link) == orientation) placed = .true.
+            angle = w(list(1)) - a%angle_offset(list(1))
+            if (maxval(abs(e)) > min_form_part*span**2) then
+               angle = least(e, angle)
+               where (t%orientation(m%points%link) == class) placed = .true.
+            end if
+            v(list) = a%angle_offset(list) + angle
          end do
       end subroutine minimize_closure_errors
 
-      !> The other side of pair `k` of `orientation`, if it is of another class, has its place.
-      pure logical function is_reported(k, orientation)
-         integer, intent(in) :: k, orientation
-
-         associate (i => m%pairs(k)%point_i, j => m%pairs(k)%point_j)
-            is_reported = (placed(i) .or. t%orientation(m%points(i)%link) == orientation) &
-               .and. (placed(j) .or. t%orientation(m%points(j)%link) == orientation)
-         end associate
-      end function is_reported
-
-      !> A link of the classes `changed` (0:classes) has a pair, both sides of which have their places, that is open by
-      !> more than a part of that link's size, from the places of the deck and the angles `u`. Its size is the longest
-      !> vector to such a pair: how far a pair beside its origin is open says nothing of its angle.
-      pure logical function is_contradicted(u, changed) result(is)
-         real(wp), intent(in) :: u(0:)
-         logical, intent(in) :: changed(0:)
+      !> A link that turns far has a pair, both sides of which have their places, that is open by more than a part of
+      !> that link's size, from the places of the deck and the angles `v`. Its size is the longest vector to such a
+      !> pair: how far a pair beside its origin is open says nothing of its angle.
+      pure logical function is_contradicted(v) result(is)
+         real(wp), intent(in) :: v(:)
          real(wp) :: size_of, open, arm
          integer :: link, k
 
          is = .false.
          do link = 1, size(m%links)
-            if (.not. changed(t%orientation(link))) cycle
+            if (.not. is_far(link)) cycle
             size_of = 0.0_wp
             open = 0.0_wp
             do k = t%near%first(link), t%near%first(link + 1) - 1
@@ -178,52 +177,26 @@ contains
                           j => m%pairs(t%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
                   arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
-                  if (m%pairs(pair)%kind /= pair_revolute) &
-                     arm = arm + norm2(closure_error_of(m, pair, angles_of(u, pair)))
+                  if (m%pairs(pair)%kind /= pair_revolute) arm = arm + norm2(closure_error_of(m, pair, v))
                   size_of = max(size_of, arm)
-                  open = max(open, opening_of(u, pair))
+                  open = max(open, opening_of(m, pair, v))
                end associate
             end do
             is = is .or. open > open_part*size_of
          end do
       end function is_contradicted
 
-      !> The largest distance, from the places of the deck and the angles `u`, by which a pair is open of which both
+      !> The largest distance, from the places of the deck and the angles `v`, by which a pair is open of which both
       !> sides are `placed` (points).
-      pure real(wp) function largest_opening(u, placed) result(largest)
-         real(wp), intent(in) :: u(0:)
-         logical, intent(in) :: placed(:)
+      pure real(wp) function largest_opening(v) result(largest)
+         real(wp), intent(in) :: v(:)
          integer :: k
 
          largest = 0.0_wp
          do k = 1, size(m%pairs)
-            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(u, k))
+            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(m, k, v))
          end do
       end function largest_opening
-
-      !> The distance by which pair `k` is open.
-      pure real(wp) function opening_of(u, k) result(opening)
-         real(wp), intent(in) :: u(0:)
-         integer, intent(in) :: k
-         real(wp) :: angles(2), closure_error(2)
-
-         angles = angles_of(u, k)
-         closure_error = closure_error_of(m, k, angles)
-         opening = norm2(closure_error)
-         if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset &
-            + dot_product(closure_error, quarter_turn(direction(angles(1) + m%pairs(k)%alpha))))
-      end function opening_of
-
-      !> (2) The angles of the links of pair `k`.
-      pure function angles_of(u, k) result(angles)
-         real(wp), intent(in) :: u(0:)
-         integer, intent(in) :: k
-         real(wp) :: angles(2)
-         integer :: links(2)
-
-         links = m%points([m%pairs(k)%point_i, m%pairs(k)%point_j])%link
-         angles = a%angle_offset(links) + u(t%orientation(links))
-      end function angles_of
    end function estimated_directions
 
    !> The angle at which the form `e` is least, `start` where it is about as small.
