@@ -4,7 +4,7 @@ module proof_table
    use kinds, only: wp
    use mechanism, only: settings_t, instant
    use motion, only: mark_none
-   use branch_certificate, only: branch_crossed
+   use following, only: branch_crossed
    use motion_proof, only: holds
    use names, only: listed
    use set_analysis, only: set_analysis_t, set_bounds

@@ -5,9 +5,12 @@
 !> singular value s, with w and k on its left and right: to second order along k
 !>    w . r(x + a k) = a s + a^2 q/2,   q = w . r''[k, k],
 !> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
+!>
+!> The motion goes smoothly on, but where a BRANCH card asks for the other branch. A change point passed once is passed
+!> on the same branch again, in either direction: the motion is a function of time.
 module block_branches
    use kinds, only: wp
-   use mechanism, only: drive_t
+   use mechanism, only: drive_t, mechanism_t, branch_request_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, nothing_gathered, is_solved
    use drives, only: drive_motion, halve, middle_of
@@ -15,10 +18,9 @@ module block_branches
    use block_rank, only: values_t, decomposed, curvature_of
    use block_engine, only: block_engine_t, solve_each
    use block_diagnostics, only: links_of
-   use branch_requests, only: branch_requests_t, decide
    implicit none
    private
-   public :: pass, take_other_branch, is_short_and_right
+   public :: pass, take_other_branch, is_short_and_right, branch_requests_t, new_branch_requests, decide
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
@@ -38,7 +40,76 @@ module block_branches
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
 
+   !> The listing gives the time of a change point to six digits; so may a card.
+   real(wp), parameter :: digits_of_time = 1.0e-5_wp
+
+   !> A change point of a block at `t`, known to `width`.
+   type :: branch_switch_t
+      integer :: block = 0                        !< its number
+      real(wp) :: t = 0.0_wp, width = 0.0_wp      !< times, in the deck's unit
+      logical :: other = .false.                  !< the other branch was taken
+   end type branch_switch_t
+
+   !> BRANCH cards, and how change points were passed.
+   type :: branch_requests_t
+      type(branch_request_t), allocatable :: cards(:)   !< in the deck's order
+      logical, allocatable :: used(:)             !< (cards)
+      type(branch_switch_t), allocatable :: branch_switches(:)
+      real(wp), allocatable :: stood_until        !< until then the motion stood on a singular position, the last time
+   end type branch_requests_t
+
 contains
+
+   !> The BRANCH cards of `m`, none of them used yet.
+   pure function new_branch_requests(m) result(c)
+      type(mechanism_t), intent(in) :: m
+      type(branch_requests_t) :: c
+
+      allocate (c%branch_switches(0))
+      if (allocated(m%branch_requests)) then
+         c%cards = m%branch_requests
+      else
+         allocate (c%cards(0))
+      end if
+      allocate (c%used(size(c%cards)), source=.false.)
+   end function new_branch_requests
+
+   !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
+   !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended. Of the cards not used
+   !> yet that name one of the links, or none, that counts whose time was passed first on the way there.
+   pure subroutine decide(c, block, links, before, t, at, other)
+      type(branch_requests_t), intent(inout) :: c
+      integer, intent(in) :: block
+      logical, intent(in) :: links(:)
+      real(wp), intent(in) :: before, t, at
+      logical, intent(out) :: other
+      real(wp) :: way, here
+      integer :: i, best
+
+      do i = 1, size(c%branch_switches)
+         associate (p => c%branch_switches(i))
+            other = p%other
+            if (p%block == block .and. abs(p%t - at) <= p%width + abs(t - before)) return
+         end associate
+      end do
+      way = sign(1.0_wp, t - before)
+      here = at
+      if (allocated(c%stood_until)) here = way*max(way*at, way*c%stood_until)
+      best = 0
+      do i = 1, size(c%cards)
+         associate (card => c%cards(i))
+            if (c%used(i) .or. (card%link > 0 .and. .not. links(max(card%link, 1)))) cycle
+            if (way*(card%t - here) > abs(t - before) + digits_of_time*max(abs(card%t), abs(here))) cycle
+            if (best > 0) then
+               if (way*(card%t - c%cards(best)%t) >= 0.0_wp) cycle
+            end if
+            best = i
+         end associate
+      end do
+      other = best > 0
+      if (other) c%used(best) = .true.
+      c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
+   end subroutine decide
 
    !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `list`: a diagnostic for each.
    !> c%keeps_signs: the motion found last, with its record `c`, is that which goes on; otherwise the list says why
@@ -83,30 +154,21 @@ contains
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
-      real(wp) :: rounded(size(e%moving)), right, driven
-      logical :: crosses, is_short
-      integer :: k
+      real(wp), dimension(size(e%moving)) :: lipschitz, rounded
+      real(wp) :: right, driven
+      logical, dimension(size(e%moving)) :: crosses, is_short
 
-      crosses = any(e%crossed)
-      is = crosses
-      do k = 1, size(e%moving)
-         associate (i => e%moving(k))
-            is_short = e%change <= short_step .or. e%followed(i)%pivot + e%found(i)%pivot &
-               <= short_pivots*e%blocks%numbers%blocks(i)%lipschitz
-            if (e%crossed(i)) is = is .and. is_short
-            if (.not. crosses) is = is .or. is_short
-         end associate
-      end do
+      crosses = e%crossed(e%moving)
+      lipschitz = e%blocks%numbers%blocks(e%moving)%lipschitz
+      is_short = e%change <= short_step &
+         .or. e%followed(e%moving)%pivot + e%found(e%moving)%pivot <= short_pivots*lipschitz
+      is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
       if (.not. is) return
-      right = right_part*(short_step/max(short_step, e%change))**2
       driven = abs(e%t - e%history%t(0))*largest_drive_rate(e%state)
-      rounded = rounding*e%blocks%numbers%blocks(e%moving)%lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
-      if (crosses) then
-         right = right*e%change + minval(rounded, mask=e%crossed(e%moving))
-      else
-         right = right*e%change + maxval(rounded)
-      end if
-      is = is .and. correction <= min(right, max_wrong*e%change)
+      rounded = rounding*lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
+      right = right_part*(short_step/max(short_step, e%change))**2*e%change &
+         + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
+      is = correction <= min(right, max_wrong*e%change)
    end function is_short_and_right
 
    !> The time at which the fastest drive has made this `part` of its way in the substep to `t`, by its law in the

@@ -299,25 +299,20 @@ contains
       integer, intent(in) :: i
       type(diagnostic_t), intent(in) :: r
       real(wp), intent(in) :: value(0:)
-      real(wp) :: first, angle_offset
+      real(wp), allocatable :: angle(:)
       integer :: m, k
-      logical :: has_first
 
-      is_in_line = .false.
-      if (count(r%links > 0) /= 2) return
-      do k = 1, size(e%joint, 2)
-         is_in_line = is_in_line .or. all(e%joint(:, k) == r%links(:2)) .or. all(e%joint(:, k) == r%links(2:1:-1))
-      end do
-      has_first = .false.
+      is_in_line = count(r%links > 0) == 2 .and. any([(all(e%joint(:, k) == r%links(:2)) &
+         .or. all(e%joint(:, k) == r%links(2:1:-1)), k=1, size(e%joint, 2))])
+      allocate (angle(0))
       do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
          do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
-            associate (body_vector => e%blocks%numbers%d(k))
-               angle_offset = value(e%blocks%body_vectors(k)%orientation) + atan2(body_vector%y, body_vector%x)
-            end associate
-            if (.not. has_first) first = angle_offset
-            has_first = .true.
-            is_in_line = is_in_line .and. abs(sin(angle_offset - first)) <= parallel
+            angle = [angle, value(e%blocks%body_vectors(k)%orientation) &
+               + atan2(e%blocks%numbers%d(k)%y, e%blocks%numbers%d(k)%x)]
          end do
+      end do
+      do k = 2, size(angle)
+         is_in_line = is_in_line .and. abs(sin(angle(k) - angle(1))) <= parallel
       end do
    end function is_in_line
 end module block_diagnostics

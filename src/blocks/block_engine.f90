@@ -10,8 +10,8 @@ module block_engine
    use drives, only: drive_motion
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
-   use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
+   use predictor, only: history_t, remember, predict, largest_change, uncertain_part
+   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
    use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
    use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
@@ -92,6 +92,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
+      logical, allocatable :: need(:)                   ! (0:unknowns)
       integer :: i
 
       if (present(structure)) then
@@ -104,11 +105,18 @@ contains
       e%tolerance = m%tolerance
       if (.not. e%blocks%solvable) return
 
-      e%needed = needed_blocks(e%blocks, e%blocks%tree, wanted_links(m))
-      e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       associate (t => e%blocks%tree, axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), unit)
       end associate
+      ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
+      allocate (need(0:e%blocks%unknowns), source=.false.)
+      do i = 1, e%chain%wanted
+         associate (h => e%chain%links(i))
+            need([h%orientation, h%slide, h%root, h%root + min(h%root, 1)]) = .true.
+         end associate
+      end do
+      e%needed = blocks_that_give(e%blocks, e%blocks%list%shape%rows > e%blocks%list%shape%n, need)
+      e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%orientation_of = e%blocks%tree%orientation
       e%is_found = wanted_links(m) .and. e%orientation_of > 0
       do i = 1, size(m%links)
@@ -117,7 +125,6 @@ contains
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      allocate (e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)
@@ -163,8 +170,8 @@ contains
 
       e%engine_state_t = engine_state_t()
       e%state = new_state(e%blocks, size(m%drives))
-      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
-      e%history%order = m%predictor
+      e%history = history_t(predicted=iterated_unknowns(e%blocks, e%moving), order=m%predictor)
+      allocate (e%history%past(0:e%blocks%unknowns))
       associate (n => size(e%blocks%list))
          allocate (e%found(n), e%followed(n))
          allocate (e%crossed(n), e%is_singular(n), source=.false.)
@@ -195,9 +202,7 @@ contains
       integer :: i
 
       e%laws = m%drives
-      do i = 1, size(m%drives)
-         e%unit_of(i) = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives(i)))
-      end do
+      e%unit_of = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives))
       do i = 1, size(e%blocks%rows)
          associate (drive => e%blocks%rows(i)%drive)
             if (drive > 0) e%unit_of(drive) = e%unit_of(drive)/e%blocks%numbers%rows(i)%unit

@@ -17,7 +17,7 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
    use blocks, only: blocks_t, block_t, block_numbers_t
-   use block_state, only: unknown_t, state_t, set_direction, find_direction, set_derivatives
+   use block_state, only: state_t, set_direction
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
@@ -123,7 +123,14 @@ contains
       logical :: is_closed, is_right
 
       second = block%shape%rows + 1
-      call begin_block(block%first, block%last, b%unknown, b%orientations, s%u, w%start, size_of)
+      size_of = 1.0_wp
+      do k = block%first, block%last
+         associate (f => s%u(b%unknown(k)))
+            w%start(k - block%first + 1) = f%value
+            size_of = max(size_of, abs(f%value))
+         end associate
+         call set_direction(b, b%unknown(k), s)
+      end do
       call find_known_parts(b, i, s)
       before = huge(before)
       w%near%distance = 0.0_wp
@@ -194,10 +201,14 @@ contains
       end if
       if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
       if (c%singular) return
-      call set_derivatives(1, block%first, block%last, b%unknown, w%r(second), s%u)
+      do k = 1, block%shape%n
+         s%u(b%unknown(block%first + k - 1))%rate = w%r(block%shape%rows + k)
+      end do
       call right_hand_side(b, i, 2, s, w%r)
       call solve_next_side(block%shape, w, w%r)
-      call set_derivatives(2, block%first, block%last, b%unknown, w%r, s%u)
+      do k = 1, block%shape%n
+         s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
+      end do
       if (block%shape%rows == block%shape%n) return
       associate (rows => block%shape%rows, n => block%shape%n)
          rates = largest_rates(b, i, s)
@@ -218,25 +229,6 @@ contains
          call solve_again(shape, w%a, w%pivots, w%work, v)
       end if
    end subroutine solve_next_side
-
-   !> Directions at the start of the iteration for the unknowns with the numbers `unknown`(first:last) among `u`, the
-   !> first `angles` of which are angles; the values `start`, and the largest of them, 1 at least.
-   pure subroutine begin_block(first, last, unknown, angles, u, start, size_of)
-      integer, intent(in) :: first, last, unknown(*), angles
-      type(unknown_t), intent(inout) :: u(0:*)
-      real(wp), intent(inout) :: start(*)
-      real(wp), intent(out) :: size_of
-      integer :: k
-
-      size_of = 1.0_wp
-      do k = first, last
-         associate (f => u(unknown(k)))
-            start(k - first + 1) = f%value
-            size_of = max(size_of, abs(f%value))
-            if (unknown(k) <= angles) call find_direction(f)
-         end associate
-      end do
-   end subroutine begin_block
 
    !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
    !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.

@@ -6,8 +6,8 @@ module block_state
    use blocks, only: blocks_t, loop_angles
    implicit none
    private
-   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, set_values, &
-      set_derivatives, values_of, given, add_turns, largest_drive_rate
+   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, set_values, &
+      values_of, given, add_turns, largest_drive_rate
 
    !> Values alone: no factors, no scratch.
    type :: state_t
@@ -37,16 +37,10 @@ contains
       integer, intent(in) :: u
       type(state_t), intent(inout) :: s
 
-      if (u <= b%orientations) call find_direction(s%u(u))
+      if (u > b%orientations) return
+      s%u(u)%c = cos(s%u(u)%value)
+      s%u(u)%s = sin(s%u(u)%value)
    end subroutine set_direction
-
-   !> Cosine and sine of the angle `f`.
-   pure subroutine find_direction(f)
-      type(unknown_t), intent(inout) :: f
-
-      f%c = cos(f%value)
-      f%s = sin(f%value)
-   end subroutine find_direction
 
    !> Gives the unknowns of block `i` the values `x` (n).
    pure subroutine set_values(b, i, x, s)
@@ -61,20 +55,6 @@ contains
          call set_direction(b, b%unknown(b%list(i)%first + k - 1), s)
       end do
    end subroutine set_values
-
-   !> Gives the unknowns with the numbers `unknown`(first:last) among `u` the derivatives `v` with respect to time,
-   !> first (`order` 1) or second (2).
-   pure subroutine set_derivatives(order, first, last, unknown, v, u)
-      integer, intent(in) :: order, first, last, unknown(*)
-      real(wp), intent(in) :: v(*)
-      type(unknown_t), intent(inout) :: u(0:*)
-      integer :: k
-
-      do k = first, last
-         if (order == 1) u(unknown(k))%rate = v(k - first + 1)
-         if (order == 2) u(unknown(k))%acceleration = v(k - first + 1)
-      end do
-   end subroutine set_derivatives
 
    !> (n) The values of the unknowns of block `i`.
    pure function values_of(b, i, s) result(x)

@@ -23,16 +23,15 @@ module link_motion
       integer :: root = 0                               !< the unknown that is its x; y is the next
       real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
       logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
-      logical :: is_plain = .false.                     !< no body vector, no slide, no root
       real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
       type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
    end type chain_link_t
 
-   !> The links to be moved and those that stay: the wanted ones first, parents before their children.
+   !> The links to be moved, the wanted ones first, parents before their children; and those that stay.
    type :: chain_t
       type(chain_link_t), allocatable :: links(:)
       integer, allocatable :: ground(:)                 !< numbers of the ground links
-      integer :: wanted = 0, wanted_ground = 0          !< so many of them are wanted, or parents of wanted ones
+      integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t
@@ -59,12 +58,11 @@ contains
       do i = size(t%order), 1, -1
          if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
-      associate (moves => .not. m%links(t%order)%ground, numbers => [(i, i=1, size(wanted))])
+      associate (moves => .not. m%links(t%order)%ground)
          links = [pack(t%order, moves .and. needed(t%order)), pack(t%order, moves .and. .not. needed(t%order))]
          c%wanted = count(moves .and. needed(t%order))
-         c%ground = [pack(numbers, m%links%ground .and. wanted), pack(numbers, m%links%ground .and. .not. wanted)]
-         c%wanted_ground = count(m%links%ground .and. wanted)
       end associate
+      c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
       call put_chain(m, t, a, unit, c)
@@ -96,7 +94,6 @@ contains
                h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
             end if
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
-            h%is_plain = h%slide == 0 .and. .not. h%has_body_vector
          end associate
       end do
       do i = 1, size(c%ground)
@@ -114,17 +111,13 @@ contains
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
       logical, intent(in), optional :: all_links
-      integer :: links, ground, i, k
+      integer :: links, i, k
 
       links = c%wanted
-      ground = c%wanted_ground
-      if (present(all_links)) then
-         if (all_links) links = size(c%links)
-         if (all_links) ground = size(c%ground)
-      end if
+      if (present(all_links)) links = merge(size(c%links), links, all_links)
       q%origin = c%origin
       ! One by one, since a column at once would be a call of its own.
-      do i = 1, ground
+      do i = 1, size(c%ground)
          k = c%ground(i)
          q%position(1, k) = c%ground_position(1, i)
          q%position(2, k) = c%ground_position(2, i)
@@ -141,26 +134,42 @@ contains
       real(wp), intent(in) :: length
       real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
       logical, intent(out) :: finite
-      real(wp) :: x(2), x_t(2), x_tt(2), check
+      real(wp), dimension(2) :: x, x_t, x_tt, e, e_t
+      real(wp) :: check
       integer :: i, k
 
       check = 0.0_wp
       do i = 1, n
          associate (h => links(i), f => u(links(i)%orientation))
-            call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), x, x_t, x_tt)
-            if (.not. h%is_plain) then
-               associate (d => h%place%body_vector)
-                  if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
-                     f%acceleration, x, x_t, x_tt)
-               end associate
-               if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
-                  x, x_t, x_tt)
-               ! A link that no pair joins to the ground has unknowns of its own for x and y.
-               if (h%root > 0) then
-                  x = length*h%root_unit*u(h%root:h%root + 1)%value
-                  x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
-                  x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+            associate (p => u(h%parent_orientation), r => h%place%reach, d => h%place%body_vector)
+               if (h%parent_orientation == 0) then
+                  x = r
+                  x_t = 0.0_wp
+                  x_tt = 0.0_wp
+               else
+                  x = rotated(r, [p%c, p%s])
+                  x_t = p%rate*quarter_turn(x)
+                  x_tt = p%acceleration*quarter_turn(x) - p%rate**2*x
                end if
+               if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
+                  f%acceleration, x, x_t, x_tt)
+               if (h%slide > 0) then
+                  ! s R e with its derivatives.
+                  e = length*rotated(h%place%slide_body_vector, [p%c, p%s])
+                  e_t = quarter_turn(e)
+                  associate (slide => u(h%slide))
+                     x = x + slide%value*e
+                     x_t = x_t + slide%rate*e + slide%value*p%rate*e_t
+                     x_tt = x_tt + slide%acceleration*e + 2.0_wp*slide%rate*p%rate*e_t &
+                        + slide%value*(p%acceleration*e_t - p%rate**2*e)
+                  end associate
+               end if
+            end associate
+            ! A link that no pair joins to the ground has unknowns of its own for x and y.
+            if (h%root > 0) then
+               x = length*h%root_unit*u(h%root:h%root + 1)%value
+               x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
+               x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
             end if
             if (h%parent > 0) then
                x = x + p(:2, h%parent)
@@ -176,49 +185,6 @@ contains
       end do
       finite = abs(check) <= huge(check)
    end subroutine move_chain
-
-   !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
-   pure subroutine follow_parent(d, orientation, f, p, v, a)
-      real(wp), intent(in) :: d(2)
-      integer, intent(in) :: orientation
-      type(unknown_t), intent(in) :: f
-      real(wp), intent(inout) :: p(2), v(2), a(2)
-      real(wp) :: x, y, square
-
-      if (orientation == 0) then
-         p(1) = d(1)
-         p(2) = d(2)
-         v(1) = 0.0_wp
-         v(2) = 0.0_wp
-         a(1) = 0.0_wp
-         a(2) = 0.0_wp
-         return
-      end if
-      x = f%c*d(1) - f%s*d(2)
-      y = f%s*d(1) + f%c*d(2)
-      square = f%rate*f%rate
-      p(1) = x
-      p(2) = y
-      v(1) = -f%rate*y
-      v(2) = f%rate*x
-      a(1) = -f%acceleration*y - square*x
-      a(2) = f%acceleration*x - square*y
-   end subroutine follow_parent
-
-   !> Adds s R e with its derivatives, of slide `u` along `d` = e in the axes that `f` rotates.
-   pure subroutine add_slide(d, f, u, length, p, v, a)
-      real(wp), intent(in) :: d(2)
-      type(unknown_t), intent(in) :: f, u
-      real(wp), intent(in) :: length
-      real(wp), intent(inout) :: p(2), v(2), a(2)
-      real(wp) :: e(2), e_t(2)
-
-      e = length*rotated(d, [f%c, f%s])
-      e_t = quarter_turn(e)
-      p = p + u%value*e
-      v = v + u%rate*e + u%value*f%rate*e_t
-      a = a + u%acceleration*e + 2.0_wp*u%rate*f%rate*e_t + u%value*(f%acceleration*e_t - f%rate**2*e)
-   end subroutine add_slide
 
    !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
    !> unknowns by which it and its parents move; links that are not wanted count as known.

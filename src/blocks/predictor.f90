@@ -20,7 +20,7 @@ module predictor
    use block_state, only: unknown_t, state_t, largest_drive_rate
    implicit none
    private
-   public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights, uncertain_part
+   public :: history_t, remember, predict, is_even, largest_change, order_weights, uncertain_part
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.
@@ -53,15 +53,6 @@ module predictor
    end type history_t
 
 contains
-
-   !> Room for `n` unknowns, of which those in the list `predicted` are predicted.
-   pure function new_history(n, predicted) result(h)
-      integer, intent(in) :: n, predicted(:)
-      type(history_t) :: h
-
-      h%predicted = predicted
-      allocate (h%past(0:n))
-   end function new_history
 
    !> Makes the motion `u` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities in a
    !> unit of time.
@@ -104,7 +95,14 @@ contains
       if (max(h%uncertain(0), h%uncertain(1), h%uncertain(2))*abs(step) > largest_part) then
          known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
       else if (is_even(h, step)) then
-         call predict_evenly(size(h%predicted), h%predicted, h%past, step, u, change)
+         do k = 1, size(h%predicted)
+            associate (p => h%past(h%predicted(k)))
+               d = step*(weight(0)*p%rate(0) + weight(1)*p%rate(1) + weight(2)*p%rate(2) + step*(weight2(0) &
+                  *p%acceleration(0) + weight2(1)*p%acceleration(1) + weight2(2)*p%acceleration(2)))
+               u(h%predicted(k))%value = p%value + d
+            end associate
+            change = max(change, abs(d))
+         end do
          return
       end if
       if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
@@ -122,26 +120,6 @@ contains
          change = max(change, abs(d))
       end do
    end subroutine predict
-
-   !> Predicts the `n` unknowns `predicted` from three motions in equal steps, as the `past` (0:unknowns) has them.
-   pure subroutine predict_evenly(n, predicted, past, step, u, change)
-      integer, intent(in) :: n, predicted(n)
-      type(past_t), intent(in) :: past(0:*)
-      real(wp), intent(in) :: step
-      type(unknown_t), intent(inout) :: u(0:*)
-      real(wp), intent(inout) :: change
-      real(wp) :: d
-      integer :: k
-
-      do k = 1, n
-         associate (p => past(predicted(k)))
-            d = step*(weight(0)*p%rate(0) + weight(1)*p%rate(1) + weight(2)*p%rate(2) + step*(weight2(0) &
-               *p%acceleration(0) + weight2(1)*p%acceleration(1) + weight2(2)*p%acceleration(2)))
-            u(predicted(k))%value = p%value + d
-            change = max(change, abs(d))
-         end associate
-      end do
-   end subroutine predict_evenly
 
    !> How uncertain the accelerations of block `i` in the motion `s` are, as a part of its velocities in a unit of
    !> time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the other

@@ -10,7 +10,6 @@ module analysis
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
-   use branch_certificate, only: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
       get_driven_links, stay
@@ -19,7 +18,8 @@ module analysis
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use at_bifurcation, only: go_by_value, leave, time_beside
    use following, only: following_t, step_record_t, begin_following, continue_to, go_on_from, &
-      go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before
+      go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before, branch_t, certificate_counts_t, &
+      branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error

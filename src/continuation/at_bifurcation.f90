@@ -9,9 +9,8 @@ module at_bifurcation
    use convergence, only: is_solved
    use block_engine, only: block_engine_t
    use first_instant, only: solve_instant
-   use block_branches, only: take_other_branch
+   use block_branches, only: take_other_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
-   use branch_requests, only: decide
    use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to, &
       passed_of
    implicit none
@@ -142,12 +141,11 @@ contains
       logical, intent(out) :: arrived, stands
       type(step_record_t) :: one
       type(place_t) :: first
-      real(wp) :: f1(3), turn, next
+      real(wp) :: turn, next
       integer :: i
 
       do i = 1, size(f%engine%laws)
-         f1 = drive_motion(f%engine%timed(i), f%t)
-         f%engine%laws(i) = straight_law(f%engine%timed(i), f1(1), 0.0_wp)
+         f%engine%laws(i) = straight_law(f%engine%timed(i), value_at(f%engine%timed(i), f%t), 0.0_wp)
       end do
       call note_place(f, first)
       allocate (passed(0))
@@ -175,11 +173,11 @@ contains
       !> Follows the motion to this `value` of the drive, in as much time as from `turn` to the time `to`.
       subroutine go_to(to, value)
          real(wp), intent(in) :: to, value
-         real(wp) :: rate
+         real(wp) :: before, rate
 
-         f1 = drive_motion(f%engine%laws(drive), f%t)
-         rate = (value - f1(1))/(to - turn)
-         f%engine%laws(drive) = straight_law(f%engine%timed(drive), f1(1) - rate*turn, rate)
+         before = value_at(f%engine%laws(drive), f%t)
+         rate = (value - before)/(to - turn)
+         f%engine%laws(drive) = straight_law(f%engine%timed(drive), before - rate*turn, rate)
          f%drives%laws = f%engine%laws
          f%engine%timed_span = [turn, to]
          call take_up(f, turn, arrived)

@@ -38,16 +38,11 @@ contains
       logical, intent(in) :: depends
       type(drive_excursion_t) :: p
       real(wp) :: length, rate
-      integer :: i, n
 
-      n = merge(size(m%drives), 0, depends)
+      p%laws = m%drives(:merge(size(m%drives), 0, depends))
       length = 1.0_wp
-      if (any(is_length(m%drives(:n)))) length = solver_length(m)
-      p%laws = m%drives(:n)
-      allocate (p%unit(n), source=1.0_wp)
-      do i = 1, n
-         if (is_length(m%drives(i))) p%unit(i) = 1.0_wp/length
-      end do
+      if (any(is_length(p%laws))) length = solver_length(m)
+      p%unit = merge(1.0_wp/length, 1.0_wp, is_length(p%laws))
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
       rate = largest_derivative(p, 1, p%first, p%last)

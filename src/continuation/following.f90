@@ -1,23 +1,27 @@
 !> The motion that is followed, and its continuation to another instant, in as many substeps as that takes: an
 !> assembly is never changed in silence. And its limits on either side: an instant beyond one is not reached by
 !> continuity, whatever is asked for in between, and need not be searched for again.
+!>
+!> The branch of an instant is what has been verified on the step to it. SAME: on every substep the prediction was off
+!> by less than a tenth of the distance within which there is one root only (Newton and Kantorovich), and the
+!> determinants of all blocks have kept their signs. CROSSED: as SAME, but for change points that were passed, each
+!> within a short substep, and listed.
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
-   use branch_certificate, only: branch_t
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, excursion
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
-   use branch_requests, only: branch_requests_t, new_branch_requests
    use block_engine, only: block_engine_t, engine_state_t, accept
    use first_instant, only: solve_instant
-   use block_branches, only: pass
+   use block_branches, only: pass, branch_requests_t, new_branch_requests
    implicit none
    private
    public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, &
       place_t, note_place, return_to, passed_of
    public :: limit_t, limit_before, largest_correction
+   public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.
@@ -33,6 +37,25 @@ module following
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
    integer, parameter :: max_longer = 8
+
+   integer, parameter :: branch_none = 0      !< nothing is verified
+   integer, parameter :: branch_first = 1     !< chosen by the deck's estimated position
+   integer, parameter :: branch_same = 2      !< that of the motion that is followed
+   integer, parameter :: branch_crossed = 3   !< the same, through change points
+
+   !> What is certified of one step.
+   type :: branch_t
+      integer :: kind = branch_none              !< branch_first, ...
+      integer :: substeps = 0                    !< made on the step
+      real(wp) :: kantorovich_ratio = 0.0_wp     !< their largest correction over the distance of the next root
+   end type branch_t
+
+   !> Sums over the instants of a set, for the listing's line CONTINUATION.
+   type :: certificate_counts_t
+      integer :: followed = 0    !< instants with a certificate
+      integer :: passed = 0      !< change points
+      integer :: uncertain = 0   !< instants with a position but without a certificate, the first apart
+   end type certificate_counts_t
 
    !> A place of the motion that is followed: all that its continuation depends on.
    type :: place_t

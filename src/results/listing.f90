@@ -9,7 +9,7 @@ module listing
    use names, only: drive_name, listed, more
    use motion
    use structure, only: findings_t
-   use branch_certificate, only: certificate_counts_t
+   use following, only: certificate_counts_t
    use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use independent, only: set_t, request_of

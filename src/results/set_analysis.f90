@@ -4,7 +4,7 @@ module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, request_pole, instant
    use structure, only: findings_t
-   use branch_certificate, only: certificate_counts_t, branch_none, branch_first
+   use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion

@@ -4,7 +4,7 @@ module solver_log
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_words
    use convergence, only: convergence_t, ending
-   use branch_certificate, only: branch_t, branch_none, branch_crossed
+   use following, only: branch_t, branch_none, branch_crossed
    use text_output, only: output_t, put
    use numerals, only: whole
    implicit none

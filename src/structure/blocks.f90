@@ -19,7 +19,7 @@ module blocks
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
       loop_projection, loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
-   public :: needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
+   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -108,32 +108,6 @@ module blocks
    end type blocks_t
 
 contains
-
-   !> The blocks, in solving order, that the links `wanted` (links) need, for their angles and slides and for those of
-   !> the links between them and the ground; equations that are too many are always looked at.
-   function needed_blocks(b, t, wanted) result(list)
-      type(blocks_t), intent(in) :: b
-      type(tree_t), intent(in) :: t
-      logical, intent(in) :: wanted(:)
-      integer, allocatable :: list(:)
-      logical :: need(0:b%unknowns), chain(size(wanted))
-      integer :: i, link
-
-      need = .false.
-      chain = wanted
-      do i = size(t%order), 1, -1
-         link = t%order(i)
-         if (.not. chain(link)) cycle
-         need(t%orientation(link)) = .true.
-         if (t%parent(link) > 0) then
-            chain(t%parent(link)) = .true.
-            if (t%slide(t%parent_joint(link)) > 0) need(b%orientations + t%slide(t%parent_joint(link))) = .true.
-         else if (t%root(link) > 0) then
-            need(b%orientations + t%slides + 2*t%root(link) - 1:b%orientations + t%slides + 2*t%root(link)) = .true.
-         end if
-      end do
-      list = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
-   end function needed_blocks
 
    !> Block `i` and those that it builds on, in solving order.
    function blocks_below(b, i) result(list)

@@ -6,7 +6,7 @@ program proof_bounds
    use failures, only: failure_t
    use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
    use motion, only: motion_t, mark_none, mark_singular, singular_change
-   use branch_certificate, only: branch_crossed
+   use following, only: branch_crossed
    use deck, only: read_deck
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
