@@ -21,9 +21,7 @@ module answers
 
    type :: answers_t
       logical :: extremes_asked = .false.
-      logical :: ranges_asked = .false.
       logical :: shares_asked = .false.
-      logical :: proofs_asked = .false.
       type(extremes_t) :: extremes
       type(shares_t) :: shares
       type(proof_table_t) :: proofs
@@ -43,8 +41,6 @@ contains
       integer :: c
 
       a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=1, s%now%count)])
-      a%ranges_asked = s%now%ranges
-      a%proofs_asked = s%now%proves
       a%shares_asked = lists .and. s%now%largest_tolerance > 0.0_wp
       if (s%now%assemblies) then
          if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])
@@ -61,8 +57,8 @@ contains
       integer, intent(in) :: k
       logical, intent(in) :: due
 
-      if (a%proofs_asked) call note_proof(a%proofs, s, k, due)
-      if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
+      if (s%now%proves) call note_proof(a%proofs, s, k, due)
+      if (s%now%ranges .and. k == 0) call find_ranges(s, a%ranges)
       if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, s%now, k)
       if (a%extremes_asked) call note_instant(a%extremes, s, k)
@@ -80,10 +76,10 @@ contains
          call find_dwells(a%extremes, s, dwells)
          call put_extremes(o, l, s%now, a%extremes, dwells)
       end if
-      if (a%ranges_asked) call put_ranges(o, s%now, a%ranges)
+      if (s%now%ranges) call put_ranges(o, s%now, a%ranges)
       if (s%now%assemblies) call put_assemblies(o, l, s)
       if (allocated(a%circuits)) call put_circuits(o, s%now, a%circuits)
       if (a%shares_asked) call put_shares(o, l, a%shares, s%now)
-      if (a%proofs_asked) call put_proofs(o, l, a%proofs, s%now)
+      if (s%now%proves) call put_proofs(o, l, a%proofs, s%now)
    end subroutine put_answers
 end module answers

@@ -11,224 +11,249 @@ module column_search
    use kinds, only: wp
    use digits_in_doubt, only: safe_growth
    use known_digits, only: nothing_known
-   use points, only: find_row
+   use set_motion, only: find_row_in_set
    use set_analysis, only: set_analysis_t, rows_at
-   use nodes, only: node_t, sample_t, sample_of, rows_asked_t, beside_joint
-   use zero_search, only: column_t, find_zero, find_turn, look_at_column, differ_in_sign, noise_part
-   use extremes, only: extremes_t, coordinate_t, offer_sample, note_velocity, note_interval, alike
+   use nodes, only: node_t, sample_t, sample_of, beside_joint
+   use zero_search, only: column_t, find_zero, find_turn, differ_in_sign, noise_part
+   use extremes, only: extremes_t, track_t, offer_sample, note_velocity, note_interval, alike
    implicit none
    private
-   public :: find_node, add_node, search_passed, search_waiting, jerk_at_first, misses_by, overlooked
+   public :: find_node, find_next, add_node, search_waiting
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
    real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 1.0e-3_wp, max_part = 1.0_wp/8.0_wp
-   !> The third derivative, at the first of three places a half apart, of the polynomial of degree 8 that has values,
-   !> rates and accelerations at them (Hermite), in this order, and of that of degree 5 by rates and accelerations; the
-   !> errors of the second, in those of a rate over the length or of an acceleration.
-   real(wp), parameter :: by_all(3, 0:2) = reshape([-1188.0_wp, 1536.0_wp, -348.0_wp, -288.0_wp, -192.0_wp, 60.0_wp, &
-      -27.0_wp, 48.0_wp, -3.0_wp], [3, 3]), &
-      by_rates(3, 2) = reshape([-46.0_wp, 32.0_wp, 14.0_wp, -12.0_wp, -16.0_wp, -2.0_wp], [3, 2])
-   real(wp), parameter :: errors_by_rates = sum(abs(by_rates))
+   !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
+   real(wp), parameter :: errors_by_rates = 122.0_wp
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
    !> monotonic cubic may be at its ends than on average (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
    real(wp), parameter :: misses_by = 1.0_wp/8.0_wp, steeper_by = 3.0_wp
    !> Smaller features of an acceleration, in characteristic ones, are passed over: no table shows them.
    real(wp), parameter :: overlooked = sqrt(epsilon(1.0_wp))
-   !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes 40.
+   !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes
+   !> 40.
    real(wp), parameter :: shortest_part = 2.0_wp**(-20)
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
    !> Lengths that differ by this part are one.
    real(wp), parameter :: alike_part = 1.0e-9_wp
-   !> Part of an interval that no table shows.
-   real(wp), parameter :: beside_end = 1.0e-6_wp
 
 contains
 
-   !> Finds the `node` of the coordinates in the `list`, those of the rows that are `asked` for, at the last instant of
-   !> `s` or a time `t` between the instants. `always`: their errors too where no digit of a table is in doubt. Without
-   !> it that of the motion which `s` has now, whose digits are safe: the engine need not have found it.
-   subroutine find_node(s, asked, list, t, node, always)
+   !> Finds the `node` of the `track` at the last instant of `s` or a time `t` between the instants. `always`: its
+   !> errors too where no digit of a table is in doubt. With `growth` instead, by how much roundings grow, that of the
+   !> motion which `s` has now, whose digits are safe: the engine need not have found it.
+   subroutine find_node(s, track, t, node, always, growth)
       type(set_analysis_t), intent(inout) :: s
-      type(rows_asked_t), intent(inout) :: asked
-      type(coordinate_t), intent(in) :: list(:)
+      type(track_t), intent(inout) :: track
       real(wp), intent(in) :: t
       type(node_t), intent(inout) :: node
       logical, intent(in), optional :: always
+      real(wp), intent(in), optional :: growth
       logical :: has_errors
       integer :: i
 
       if (.not. allocated(node%f)) then
-         allocate (node%known(size(list)), node%f(0:2, size(list)))
-         allocate (node%error(0:2, size(list)), source=0.0_wp)
+         associate (n => size(track%coordinates))
+            allocate (node%known(n), node%f(0:2, n))
+            allocate (node%error(0:2, n), source=0.0_wp)
+         end associate
       end if
       node%t = t
       has_errors = .false.
-      associate (rows => asked%rows, error => asked%error, c => s%now%rows(asked%requests(1))%part)
+      associate (rows => track%rows, error => track%error, c => s%now%rows(track%requests(1))%part)
          if (present(always)) then
-            call rows_at(s, c, asked%requests, t, rows, always, error, node%growth)
+            call rows_at(s, c, track%requests, t, rows, always, error, node%growth)
             has_errors = always .or. node%growth >= safe_growth
          else
+            node%growth = growth
             do i = 1, size(rows)
-               associate (own => s%now%parts(c), number => s%now%rows(asked%requests(i))%number)
-                  call find_row(own, s%now%motions(c), own%requests(number), rows(i))
-               end associate
+               call find_row_in_set(s%now, track%requests(i), rows(i))
             end do
          end if
-         do i = 1, size(list)
-            node%f(:, i) = rows(list(i)%row)%value(list(i)%column, :)
-            node%known(i) = rows(list(i)%row)%known
+         do i = 1, size(track%coordinates)
+            associate (one => track%coordinates(i))
+               node%f(:, i) = rows(one%row)%value(one%column, :)
+               node%known(i) = rows(one%row)%known
+               if (has_errors .or. node%has_errors) node%error(:, i) = error(one%column, :, one%row)
+            end associate
          end do
-         if (has_errors .or. node%has_errors) then
-            do i = 1, size(list)
-               node%error(:, i) = error(list(i)%column, :, list(i)%row)
-            end do
-         end if
       end associate
       node%has_errors = has_errors
       node%is_known = all(node%known == 2)
       if (has_errors) node%is_known = node%is_known .and. all(node%error < nothing_known)
    end subroutine find_node
 
+   !> Finds the node of mechanism `c` that comes next, at the time `t`, and whether something turns between the last
+   !> three: `always` and `growth` as in `find_node`.
+   subroutine find_next(x, s, c, t, always, growth)
+      type(extremes_t), intent(inout) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      real(wp), intent(in) :: t
+      logical, intent(in), optional :: always
+      real(wp), intent(in), optional :: growth
+
+      associate (track => x%tracks(c))
+         call find_node(s, track, t, track%nodes(track%filled + 1), always, growth)
+         if (track%filled == 2) call look_for_turns(track)
+      end associate
+   end subroutine find_next
+
+   !> Finds whether a number of the `track` may have an extreme between its first and its third node: a rate, an
+   !> acceleration or a jerk has another sign there, or than when it had a clear one last, or an acceleration is not
+   !> simple.
+   subroutine look_for_turns(track)
+      type(track_t), intent(inout) :: track
+      real(wp) :: jerk(2), noise(2), f(3)
+      integer :: i, k
+      logical :: simple
+
+      associate (a => track%nodes(1), middle => track%nodes(2), b => track%nodes(3))
+         track%turns = .not. (b%is_known .and. is_pair(track, a, middle, b))
+         if (track%turns) return
+         do i = 1, size(track%coordinates)
+            associate (one => track%coordinates(i))
+               call find_jerk(a, middle, b, i, one%size_of, jerk, noise, simple)
+               track%turns = track%turns .or. .not. simple
+               do k = 1, 2
+                  f = [a%f(k, i), middle%f(k, i), b%f(k, i)]
+                  call compare(merge(f, one%last(k), abs(f) > noise(k)), one%last(k))
+               end do
+               ! Where accelerations are alike it is that of rounding.
+               if (max(f(1), f(2), f(3)) - min(f(1), f(2), f(3)) > 2.0_wp*max(alike*one%size_of(2), noise(2))) &
+                  call compare([jerk, jerk(2)], one%last(3))
+            end associate
+         end do
+      end associate
+
+   contains
+
+      !> Takes three values after the `last` one.
+      subroutine compare(v, last)
+         real(wp), intent(in) :: v(3)
+         real(wp), intent(inout) :: last
+
+         track%turns = track%turns .or. differ_in_sign(min(last, v(1), v(2), v(3)), max(last, v(1), v(2), v(3)))
+         last = v(3)
+      end subroutine compare
+   end subroutine look_for_turns
+
+   !> The parts between three nodes have one length, and are searched together.
+   pure logical function is_pair(track, a, middle, b)
+      type(track_t), intent(in) :: track
+      type(node_t), intent(in) :: a, middle, b
+
+      associate (length => abs(b%t - a%t))
+         is_pair = length <= track%longest .and. abs(b%t - 2.0_wp*middle%t + a%t) <= alike_part*length
+      end associate
+   end function is_pair
+
    !> Takes the node of mechanism `c` that comes next, and searches between it and the last one of which all is known.
-   !> Two parts of one length, from an instant with an even number on, are searched together, if accelerations are
-   !> simple there: the node between them is the one in the middle, and no motion is looked for. They are passed over,
-   !> if nothing has turned there.
+   !> Two parts of one length are searched together: the node between them is the one in the middle, and no motion is
+   !> looked for. They are passed over if nothing turns there.
    subroutine add_node(x, s, c)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
+      integer :: n
 
-      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes, place => x%tracks(c)%place)
-         if (.not. nodes(place(6))%is_known) then
+      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
+         n = track%filled + 1
+         if (.not. nodes(n)%is_known) then
             call search_waiting(x, s, c)
-            call take_node(x, c, nodes(place(6)), .true.)
+            call take_node(x, c, nodes(n), .true.)
             ! Nothing is searched across it.
             track%filled = 0
             return
          end if
-         track%filled = track%filled + 1
-         place([track%filled, 6]) = place([6, track%filled])
-         if (track%filled == 1) call take_node(x, c, nodes(place(1)), .true.)
-         if (track%filled == 2 .and. .not. nodes(place(1))%begins_pair) call search_waiting(x, s, c)
-         if (track%filled < 3) return
-
-         track%has_passed = .not. track%has_turned
-         if (track%has_turned) call search_pair(x, s, c, nodes(place(1)), nodes(place(2)), nodes(place(3)))
-         track%has_turned = .false.
-         place(:5) = place([3, 4, 5, 1, 2])
+         track%filled = n
+         if (n == 1) call take_node(x, c, nodes(1), .true.)
+         if (n < 3) return
+         if (track%turns) then
+            call take_node(x, c, nodes(1), .true.)
+            if (is_pair(track, nodes(1), nodes(2), nodes(3))) then
+               call search_part(x, s, c, nodes(1), nodes(3), nodes(2))
+            else
+               call search_part(x, s, c, nodes(1), nodes(2))
+               call take_node(x, c, nodes(2), .true.)
+               call search_part(x, s, c, nodes(2), nodes(3))
+            end if
+            call take_node(x, c, nodes(3), .true.)
+         end if
+         nodes(1) = nodes(3)
          track%filled = 1
       end associate
    end subroutine add_node
 
-   !> Extremes of mechanism `c` may be in its last steps, as `turned_in` says: parts that were passed over there are
-   !> searched, and the next ones will be.
-   subroutine search_passed(x, s, c)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-
-      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes, place => x%tracks(c)%place)
-         track%has_turned = .true.
-         if (.not. track%has_passed) return
-         track%has_passed = .false.
-         if (track%turned_in > track%filled) then
-            call take_node(x, c, nodes(place(4)), .true.)
-            call search_pair(x, s, c, nodes(place(4)), nodes(place(5)), nodes(place(1)))
-         else
-            call take_node(x, c, nodes(place(1)), .true.)
-         end if
-      end associate
-   end subroutine search_passed
-
-   !> Searches between the last node of mechanism `c` and the one that waits, if there is one; that is the last then.
+   !> Searches between the last node of mechanism `c` and the one that waits, if there is one: the last one ends a
+   !> piece.
    subroutine search_waiting(x, s, c)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
 
-      associate (track => x%tracks(c), place => x%tracks(c)%place)
-         if (track%filled < 2) return
-         call search_part(x, s, c, track%nodes(place(1)), track%nodes(place(2)))
-         call take_node(x, c, track%nodes(place(2)), .true.)
-         place([1, 2]) = place([2, 1])
+      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
+         if (track%filled == 0) return
+         call take_node(x, c, nodes(1), .true.)
+         if (track%filled == 1) return
+         call search_part(x, s, c, nodes(1), nodes(2))
+         call take_node(x, c, nodes(2), .true.)
+         nodes(1) = nodes(2)
          track%filled = 1
       end associate
    end subroutine search_waiting
 
-   !> Searches the two parts from the node `a` of mechanism `c` to the `middle` and to `b`: together, if they have one
-   !> length and accelerations are simple there.
-   subroutine search_pair(x, s, c, a, middle, b)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+   !> Finds the derivatives `jerk` of the acceleration of coordinate `i` at the ends of a part with the nodes `a`,
+   !> `middle` and `b`; `size_of`: its characteristic values. They are those of the polynomial of degree 8 with the
+   !> values, rates and accelerations (Hermite), which has an error of 2E-6 of the ninth derivative, but where rounding
+   !> explains the difference from rates and accelerations alone, with an error of 7E-4 of the seventh. `noise`: what
+   !> rounding may leave open, at most, of rate and acceleration. `simple`: the cubic with the accelerations and jerks
+   !> at the ends has about the acceleration in the middle, and one extreme inside at most.
+   pure subroutine find_jerk(a, middle, b, i, size_of, jerk, noise, simple)
       type(node_t), intent(in) :: a, middle, b
-      real(wp) :: length
-      logical :: is_searched
-
-      length = abs(b%t - a%t)
-      is_searched = length <= x%tracks(c)%longest .and. 0.5_wp*length > shortest_of(x, c, a%t, b%t) &
-         .and. abs(b%t - 2.0_wp*middle%t + a%t) <= alike_part*length
-      if (is_searched) call search_three(x, s, c, a, middle, b, .false., is_searched)
-      if (.not. is_searched) then
-         call search_part(x, s, c, a, middle)
-         call take_node(x, c, middle, .true.)
-         call search_part(x, s, c, middle, b)
-      end if
-      call take_node(x, c, b, .true.)
-   end subroutine search_pair
-
-   !> Searches between the nodes `a` and `b` of mechanism `c`, the ends of a part with the node `middle`, if its
-   !> accelerations and their derivatives at the ends are those of simple curves, or `anyway`.
-   subroutine search_three(x, s, c, a, middle, b, anyway, simple)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: a, middle, b
-      logical, intent(in) :: anyway
+      integer, intent(in) :: i
+      real(wp), intent(in) :: size_of(0:2)
+      real(wp), intent(out) :: jerk(2), noise(2)
       logical, intent(out) :: simple
-      real(wp) :: jerk(2, size(x%tracks(c)%coordinates)), f(3, 0:2), noise(0:2), open, h, growth
-      integer :: i, k
+      real(wp), dimension(0:2) :: first, half, last, left
+      real(wp) :: mean, change, by_values, open, h, most, step
 
       h = b%t - a%t
-      growth = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))
-      simple = .true.
-      do i = 1, size(x%tracks(c)%coordinates)
-         associate (size_of => x%tracks(c)%coordinates(i)%size_of)
-            ! What rounding may leave open, at most.
-            noise = max(a%error(:, i), middle%error(:, i), b%error(:, i), growth*size_of)
-            do k = 0, 2
-               f(:, k) = [a%f(k, i), middle%f(k, i), b%f(k, i)]
-            end do
-            f(:, 1) = f(:, 1)*h
-            f(:, 2) = f(:, 2)*h**2
-            open = max(noise(0), noise_part*maxval(abs(f(:, 0))))
-            jerk(1, i) = jerk_at_first(f, open)/h**3
-            ! From the last to the first the rates have the other sign, and so has their second derivative.
-            f = f(3:1:-1, :)
-            f(:, 1) = -f(:, 1)
-            jerk(2, i) = -jerk_at_first(f, open)/h**3
-            ! What rounding may leave open of the change of an acceleration, by its derivative at an end.
-            open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
-            simple = simple .and. is_simple([a%f(2, i), middle%f(2, i), b%f(2, i)], jerk(:, i)*h, open)
-         end associate
-      end do
-      if (.not. (simple .or. anyway)) return
-      call take_node(x, c, middle, .false.)
-      call search_columns(x, s, c, a, middle, b, jerk)
-   end subroutine search_three
+      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*size_of
+      if (a%has_errors .or. middle%has_errors .or. b%has_errors) &
+         left = max(a%error(:, i), middle%error(:, i), b%error(:, i), left)
+      noise = left(1:)
+      first = a%f(:, i)*[1.0_wp, h, h*h]
+      half = middle%f(:, i)*[1.0_wp, h, h*h]
+      last = b%f(:, i)*[1.0_wp, h, h*h]
+      open = max(left(0), noise_part*max(abs(first(0)), abs(half(0)), abs(last(0))))
 
-   !> A part of mechanism `c` from the time `a` to `b` that is no longer is not searched.
-   pure real(wp) function shortest_of(x, c, a, b) result(shortest)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: c
-      real(wp), intent(in) :: a, b
+      ! The mean of both jerks and half their change, times h^3.
+      mean = 32.0_wp*half(1) - 16.0_wp*(first(1) + last(1)) + 5.0_wp*(last(2) - first(2))
+      by_values = 420.0_wp*(last(0) - first(0)) - 114.0_wp*(first(1) + last(1)) - 192.0_wp*half(1) &
+         + 12.0_wp*(last(2) - first(2))
+      if (abs(by_values - mean) > 840.0_wp*open) mean = by_values
+      change = 30.0_wp*(first(1) - last(1)) + 7.0_wp*(first(2) + last(2)) + 16.0_wp*half(2)
+      by_values = 768.0_wp*(first(0) - 2.0_wp*half(0) + last(0)) - 174.0_wp*(last(1) - first(1)) &
+         + 15.0_wp*(first(2) + last(2)) - 48.0_wp*half(2)
+      if (abs(by_values - change) > 3072.0_wp*open) change = by_values
+      jerk = [mean - change, mean + change]/h**3
 
-      shortest = max(shortest_part*x%step, time_part*max(abs(a), abs(b)))
-      if (size(x%tracks(c)%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a))
-   end function shortest_of
+      ! In accelerations; what is less than `open` counts for nothing.
+      open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
+      first(2) = a%f(2, i)
+      last(2) = b%f(2, i)
+      mean = mean/(h*h)
+      change = change/(h*h)
+      step = last(2) - first(2)
+      simple = abs(middle%f(2, i) - 0.5_wp*(first(2) + last(2)) + 0.25_wp*change) <= misses_by &
+         *(max(first(2), middle%f(2, i), last(2)) - min(first(2), middle%f(2, i), last(2))) + open
+      most = abs(mean) + abs(change)
+      if (abs(change) > abs(mean) .or. most <= open) return
+      simple = simple .and. mean*sign(1.0_wp, step) > 0.0_wp .and. most <= steeper_by*abs(step) + open
+   end subroutine find_jerk
 
    !> The values of `node` of mechanism `c` may be extremes; its velocities are the `next` along the run.
    subroutine take_node(x, c, node, next)
@@ -248,33 +273,44 @@ contains
       end do
    end subroutine take_node
 
-   !> Searches between the nodes `a` and `b` of mechanism `c`, in halves where accelerations are not simple.
-   recursive subroutine search_part(x, s, c, a, b)
+   !> Searches between the nodes `a` and `b` of mechanism `c`, in halves where accelerations are not simple; `between`:
+   !> a node in the middle.
+   recursive subroutine search_part(x, s, c, a, b, between)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
+      type(node_t), intent(in), optional :: between
       type(node_t) :: middle
-      real(wp) :: shortest
-      logical :: simple, is_last
+      real(wp) :: shortest, jerk(2, size(x%tracks(c)%coordinates)), noise(2)
+      logical :: simple(size(x%tracks(c)%coordinates)), is_last
+      integer :: i
 
       associate (track => x%tracks(c), length => abs(b%t - a%t))
-         shortest = shortest_of(x, c, a%t, b%t)
+         shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
+         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
          if (length <= shortest) then
             ! Beside a joint there is nothing to be missed.
             if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         call find_node(s, track%asked, track%coordinates, a%t + 0.5_wp*(b%t - a%t), middle, .false.)
+         if (present(between)) then
+            middle = between
+         else
+            call find_node(s, track, a%t + 0.5_wp*(b%t - a%t), middle, .false.)
+         end if
          if (.not. middle%is_known) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
+         do i = 1, size(simple)
+            call find_jerk(a, middle, b, i, track%coordinates(i)%size_of, jerk(:, i), noise, simple(i))
+         end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
-         call search_three(x, s, c, a, middle, b, is_last, simple)
-         if (simple) return
-         if (is_last) then
-            call note_interval(x%open, x%way, a%t, b%t, shortest)
+         if (all(simple) .or. is_last) then
+            if (.not. all(simple)) call note_interval(x%open, x%way, a%t, b%t, shortest)
+            call take_node(x, c, middle, .false.)
+            call search_columns(x, s, c, a, middle, b, jerk)
          else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, middle)
@@ -284,151 +320,68 @@ contains
       end associate
    end subroutine search_part
 
-   !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`. Their
-   !> accelerations have the derivatives `jerk` (2, coordinates) at the ends.
+   !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`.
+   !> Their accelerations have the derivatives `jerk` (2, coordinates) at the ends.
    subroutine search_columns(x, s, c, a, middle, b, jerk)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: jerk(:, :)
-      type(sample_t) :: points(3)
-      type(sample_t), allocatable :: path(:), found(:)
+      type(sample_t), allocatable :: path(:), known(:)
+      type(sample_t) :: found
       type(column_t) :: column
-      integer :: i, k
-      logical :: turns
+      integer :: i, k, order, last
 
       do i = 1, size(x%tracks(c)%coordinates)
          associate (one => x%tracks(c)%coordinates(i))
-            points = [sample_of(a, i), sample_of(middle, i), sample_of(b, i)]
-            ! A velocity, an acceleration or its derivative at both ends has different signs.
-            turns = differ_in_sign(jerk(1, i), jerk(2, i)) .or. any([(differ_in_sign(minval(points%f(k)), &
-               maxval(points%f(k))), k=1, 2)])
-            if (turns) then
-               column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
-                  max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
-               do k = 0, 2
-                  column%noise(k) = max(noise_part*one%size_of(k), maxval(points%error(k)))
-               end do
-               column%flat = 2.0_wp*max(alike*one%size_of(2), column%noise(2))
-               call search_column(s, column, points, jerk(:, i), path, found)
-               do k = 1, size(found)
-                  call offer_sample(one, found(k)%order, found(k), .true., x%step)
-               end do
-            else
-               path = points
+            path = [sample_of(a, i), sample_of(middle, i), sample_of(b, i)]
+            column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
+               max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
+            do k = 0, 2
+               column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
+            end do
+            ! An extreme of the acceleration; of the velocity, one on either side of that at most; of the coordinate,
+            ! one on either side of each of these. Where accelerations are alike, none is told.
+            if (differ_in_sign(jerk(1, i), jerk(2, i)) .and. maxval(path%f(2)) - minval(path%f(2)) &
+               > 2.0_wp*max(alike*one%size_of(2), column%noise(2))) then
+               call find_turn(s, column, path, jerk(:, i), found)
+               found%error = max(found%error, path(1)%error, path(3)%error)
+               call take_found(2)
             end if
+            do order = 2, 1, -1
+               known = path
+               last = 0
+               do k = 1, size(known)
+                  ! Of a derivative that is no more than rounding no sign is known.
+                  if (abs(known(k)%f(order)) <= column%noise(order)) cycle
+                  if (last > 0) then
+                     if (differ_in_sign(known(last)%f(order), known(k)%f(order))) then
+                        call find_zero(s, column, order, 0.0_wp, known(last), known(k), found)
+                        call take_found(order - 1)
+                     end if
+                  end if
+                  last = k
+               end do
+            end do
             do k = 1, size(path)
                call note_velocity(one, path(k))
             end do
          end associate
       end do
+
+   contains
+
+      !> Derivative number `k` of the coordinate has an extreme where it is `found`: that is put in its place on the
+      !> path.
+      subroutine take_found(k)
+         integer, intent(in) :: k
+         integer :: n
+
+         if (found%known < 2) return
+         call offer_sample(x%tracks(c)%coordinates(i), k, found, .true., x%step)
+         n = count((path%t - found%t)*(b%t - a%t) < 0.0_wp)
+         path = [path(:n), found, path(n + 1:)]
+      end subroutine take_found
    end subroutine search_columns
-
-   !> Finds extremes of column `c` between the first and the last of three `points`: an extreme of the acceleration,
-   !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at
-   !> most; of the coordinate, one on either side of each of these. `path`: all points that are known then.
-   subroutine search_column(s, c, points, jerk, path, found)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
-      type(sample_t), intent(in) :: points(3)
-      real(wp), intent(in) :: jerk(2)
-      type(sample_t), allocatable, intent(out) :: path(:)
-      type(sample_t), allocatable, intent(out) :: found(:)
-      type(sample_t) :: turn, zero
-      real(wp) :: length, open
-      integer :: order, i, n, last
-
-      allocate (found(0))
-      path = points
-      length = abs(points(3)%t - points(1)%t)
-      open = errors_by_rates*(c%noise(1)/length + c%noise(2))/length
-      if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk)) > open) &
-         call find_turn(s, c, points, jerk, turn)
-      if (turn%known < 2) call turn_by_ends(s, c, points, jerk, open, turn)
-      if (turn%known == 2) then
-         turn%error = max(turn%error, points(1)%error, points(3)%error)
-         turn%order = 2
-         found = [turn]
-         call insert(turn, path)
-      end if
-      do order = 2, 1, -1
-         n = size(found)
-         last = 0
-         do i = 1, size(path)
-            ! Of a derivative that is no more than rounding no sign is known.
-            if (abs(path(i)%f(order)) <= c%noise(order)) cycle
-            if (last > 0) then
-               if (differ_in_sign(path(last)%f(order), path(i)%f(order))) then
-                  call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
-                  zero%order = order - 1
-                  if (zero%known == 2) found = [found, zero]
-               end if
-            end if
-            last = i
-         end do
-         do i = n + 1, size(found)
-            call insert(found(i), path)
-         end do
-      end do
-   end subroutine search_column
-
-   !> An extreme `turn` of the acceleration between the first and the last of three `points` of column `c`, by its
-   !> derivatives `jerk` at both ends alone, of which rounding leaves so much `open` that one may be zero: where the
-   !> line between them is zero. Where accelerations are alike, none is told.
-   subroutine turn_by_ends(s, c, points, jerk, open, turn)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
-      type(sample_t), intent(in) :: points(3)
-      real(wp), intent(in) :: jerk(2), open
-      type(sample_t), intent(out) :: turn
-      real(wp) :: change, part, length
-
-      change = abs(jerk(2) - jerk(1))
-      ! What is so near an end is as good as there.
-      if (.not. differ_in_sign(jerk(1), jerk(2)) .or. open <= beside_end*change) return
-      if (maxval(points%f(2)) - minval(points%f(2)) <= c%flat) return
-      part = jerk(1)/(jerk(1) - jerk(2))
-      length = points(3)%t - points(1)%t
-      call look_at_column(s, c, points(1)%t + part*length, turn, .false.)
-      turn%t_error = abs(length)*min(2.0_wp, open/change)
-      ! No parabola through values at equal distances gets above them by more than an eighth of their second difference.
-      ! These are bounds, and masks allow for a hundred errors: a tenth of a bound is enough.
-      turn%error(2) = turn%error(2) + 0.1_wp*min(0.5_wp*open*turn%t_error, &
-         0.25_wp*abs(points(1)%f(2) - 2.0_wp*points(2)%f(2) + points(3)%f(2)) + c%noise(2))
-   end subroutine turn_by_ends
-
-   !> Adds `point`, which is between the ends of the `path`, in its order.
-   pure subroutine insert(point, path)
-      type(sample_t), intent(in) :: point
-      type(sample_t), allocatable, intent(inout) :: path(:)
-      integer :: n
-
-      n = count((path%t - point%t)*(path(size(path))%t - path(1)%t) < 0.0_wp)
-      path = [path(:n), point, path(n + 1:)]
-   end subroutine insert
-
-   !> The third derivative at the first of three places of an interval of the length 1, its ends and its middle, by
-   !> values, rates and accelerations `f` (3, 0:2) at them: from all, which has an error of 2E-6 of the ninth
-   !> derivative, but where rounding explains the difference from rates and accelerations alone, with an error of 7E-4
-   !> of the seventh. So much is `open` of values.
-   pure real(wp) function jerk_at_first(f, open) result(jerk)
-      real(wp), intent(in) :: f(3, 0:2), open
-      real(wp) :: by_values
-
-      by_values = sum(by_all*f)
-      jerk = sum(by_rates*f(:, 1:))
-      if (abs(by_values - jerk) > sum(abs(by_all(:, 0)))*open) jerk = by_values
-   end function jerk_at_first
-
-   !> The cubic with the values `f`(1) and `f`(3) and the derivatives `d` at the ends of an interval of the length 1 has
-   !> about the value `f`(2) in the middle, and one extreme inside at most; what is less than `open` counts for nothing.
-   pure logical function is_simple(f, d, open)
-      real(wp), intent(in) :: f(3), d(2), open
-
-      is_simple = abs(f(2) - 0.5_wp*(f(1) + f(3)) - 0.125_wp*(d(1) - d(2))) <= misses_by*(maxval(f) - minval(f)) + open
-      if (differ_in_sign(d(1), d(2)) .or. maxval(abs(d)) <= open) return
-      is_simple = is_simple .and. maxval(d*sign(1.0_wp, f(3) - f(1))) > 0.0_wp &
-         .and. maxval(abs(d)) <= steeper_by*abs(f(3) - f(1)) + open
-   end function is_simple
 end module column_search

@@ -43,8 +43,7 @@ contains
                stroke = moved%found(greatest, 0)%value - moved%found(least, 0)%value
                if (one%distance <= 0.0_wp .or. stroke <= one%distance) cycle
                ! They are in order but for extremes beside the middle of a part.
-               path = moved%places%list(:moved%places%n)
-               path = path(order_along(path%t, x%way))
+               path = moved%places(order_along(moved%places%t, x%way))
                ! A crank that has made whole turns is not where it was.
                is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, c)
 
@@ -95,7 +94,8 @@ contains
          if (passed > size(path)) return
          associate (moved => x%tracks(c)%coordinates(i))
             call find_zero(s, column_t(moved%request, moved%column, noise=noise_part*moved%size_of), 0, level, &
-               sample_at(path(from)), sample_at(path(to)), zero)
+               sample_t(path(from)%t, [path(from)%value, 0.0_wp, 0.0_wp], known=2), &
+               sample_t(path(to)%t, [path(to)%value, 0.0_wp, 0.0_wp], known=2), zero)
             ! The level is known as far as the extreme.
             error = zero%t_error
             if (zero%error(0) > 0.0_wp) error = error*(1.0_wp + moved%found(one%which, 0)%error/zero%error(0))
@@ -103,12 +103,5 @@ contains
          t = zero%t
          found = zero%known == 2
       end subroutine find_end
-
-      !> The coordinate at `place`.
-      pure type(sample_t) function sample_at(place)
-         type(value_at_t), intent(in) :: place
-
-         sample_at = sample_t(place%t, [place%value, 0.0_wp, 0.0_wp], known=2)
-      end function sample_at
    end subroutine find_dwells
 end module dwells

@@ -1,9 +1,9 @@
 !> How extremes are found, instant by instant. The instants, and the joints of the drives' laws, are nodes, between
 !> which `column_search` searches.
 !>
-!> In short steps that is done where a number has turned: a velocity or an acceleration has changed its sign, or an
-!> acceleration has begun to fall or to rise, or its values at five instants are not those of a simple curve. Where
-!> nothing of that has happened no number has an extreme. The engine and the lanes of `lane_runs` are watched alike.
+!> Between three instants that is done where a number turns: a velocity, an acceleration or its derivative has changed
+!> its sign, or an acceleration is not a simple curve. Where nothing of that has happened no number has an extreme. The
+!> engine and the lanes of `lane_runs` are watched alike.
 !>
 !> A step is divided where not all of the motion exists: at change points and at a limit of the motion, and it has such
 !> an end at an instant without all of its motion. Each piece has nodes up to beside that place, and the one-sided
@@ -12,20 +12,14 @@ module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use predictor, only: is_even
-   use digits_in_doubt, only: safe_growth
-   use zero_search, only: noise_part
    use nodes, only: node_t, sample_of, extreme_t, times_between, beside_joint, limits_of, places, &
       places_beside
-   use extremes, only: extremes_t, coordinate_t, watch_t, end_t, alike, offer, badly_known, note_end, note_interval
-   use column_search, only: find_node, add_node, search_passed, search_waiting, misses_by, overlooked
+   use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
+   use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
    private
-   public :: note_instant, watch_instant, search_instant, fine_prediction
+   public :: note_instant, is_searched, search_instant
 
-   !> Steps are short where the prediction from three motions is off by less, in rad or the unit of length: its error is
-   !> that of the seventh order. Longer ones are always searched.
-   real(wp), parameter :: fine_prediction = 1.0e-7_wp
    !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
    !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
    !> times at most.
@@ -39,116 +33,61 @@ contains
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
-      logical :: is_fine
       integer :: c
 
       if (k > s%now%steps) return
       do c = 1, size(x%tracks)
-         associate (track => x%tracks(c), a => s%list(c), e => s%list(c)%engine)
-            if (size(track%coordinates) == 0) cycle
-            call find_node(s, track%asked, track%coordinates, s%now%motions(c)%t, track%nodes(track%place(7)), .false.)
-            is_fine = a%follows .and. a%convergence%change <= fine_prediction .and. .not. e%tolerance > 0.0_wp
-            if (is_fine) is_fine = size(e%history%predicted) > 0 &
-               .and. is_even(e%history, s%now%motions(c)%t - track%last%t)
-         end associate
-         call watch_instant(x, s, c, k, is_fine)
+         if (size(x%tracks(c)%coordinates) == 0) cycle
+         call find_next(x, s, c, s%now%motions(c)%t, .false.)
          call search_instant(x, s, c, k)
       end do
    end subroutine note_instant
 
-   !> Takes the node at instant number `k` of mechanism `c`. `turned_in` of its track: in so many of the last steps
-   !> something may have turned; in both of the last two, if the step was divided, or if it is not known to be a short
-   !> one (`is_fine`).
-   subroutine watch_instant(x, s, c, k, is_fine)
-      type(extremes_t), intent(inout) :: x
+   !> Between the last instant of mechanism `c` and the one whose node is found something is searched for: a number may
+   !> turn, or the step is divided.
+   pure logical function is_searched(x, s, c)
+      type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: c, k
-      logical, intent(in) :: is_fine
-      logical :: is_plain
+      integer, intent(in) :: c
 
-      associate (track => x%tracks(c), now => x%tracks(c)%nodes(x%tracks(c)%place(7)), t1 => x%tracks(c)%last%t, &
-         q => s%now%motions(c))
-         now%begins_pair = mod(k, 2) == 0
-         if (now%is_known) then
-            call look_on(track%coordinates, now, track%turned_in)
-         else
-            track%coordinates%watch = watch_t()
-         end if
-         ! At its ends a run is searched.
-         is_plain = now%is_known .and. is_fine .and. k > 0 .and. k < s%now%steps .and. now%growth < safe_growth &
-            .and. .not. (track%last%is_open .or. q%rests .or. allocated(q%diagnostics)) &
-            .and. 2.0_wp*abs(now%t - t1) <= track%longest
-         if (is_plain .and. size(track%joints) > 0) is_plain = .not. any((track%joints - t1)*(now%t - track%joints) &
-            >= 0.0_wp) .and. size(times_between(track%joints, track%longest, x%run, t1, now%t)) == 0
-         if (.not. is_plain) track%turned_in = 2
+      associate (track => x%tracks(c), q => s%now%motions(c))
+         is_searched = (track%filled == 2 .and. track%turns) .or. track%last%is_open .or. allocated(q%diagnostics) &
+            .or. .not. track%nodes(track%filled + 1)%is_known .or. abs(q%t - track%last%t) > track%longest
+         if (.not. is_searched .and. size(track%joints) > 0) &
+            is_searched = size(times_between(track%joints, track%longest, x%run, track%last%t, q%t)) > 0
       end associate
-   end subroutine watch_instant
+   end function is_searched
 
-   !> Takes the `node` of the next instant of the coordinates in the `list`. `turned_in`: in so many of the last steps
-   !> one of them may have turned: a sign changes in the last one, an acceleration that begins to rise may have been at
-   !> its least before that.
-   pure subroutine look_on(list, node, turned_in)
-      type(coordinate_t), intent(inout) :: list(:)
-      type(node_t), intent(in) :: node
-      integer, intent(out) :: turned_in
-      real(wp) :: f(0:2), change, next(0:3)
-      integer :: i, k, now
-
-      turned_in = 0
-      do i = 1, size(list)
-         f = node%f(:, i)
-         associate (one => list(i)%watch, size_of => list(i)%size_of)
-            do k = 1, 2
-               now = 0
-               if (abs(f(k)) > noise_part*size_of(k)) now = merge(1, -1, f(k) > 0.0_wp)
-               if (now /= one%signs(k)) turned_in = max(1, turned_in)
-               one%signs(k) = now
-            end do
-
-            ! It goes on as a cubic does, but for a part of its last change.
-            next(0) = f(2)
-            do k = 1, 3
-               next(k) = next(k - 1) - one%differences(k - 1)
-            end do
-            if (abs(next(3) - one%differences(3)) > misses_by*abs(next(1)) + overlooked*size_of(2)) turned_in = 2
-            one%differences = next
-
-            change = f(2) - one%acceleration
-            if (.not. abs(change) > alike*size_of(2)) cycle
-            now = merge(1, -1, change > 0.0_wp)
-            if (now /= one%trend) turned_in = 2
-            one%trend = now
-            one%acceleration = f(2)
-         end associate
-      end do
-   end subroutine look_on
-
-   !> Searches up to instant number `k` of mechanism `c`, where `watch_instant` says so, and goes on from there.
+   !> Searches up to instant number `k` of mechanism `c`, whose node is found, and goes on from there.
    subroutine search_instant(x, s, c, k)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, k
+      type(node_t) :: now
       real(wp) :: t
-      logical :: known, is_lost
+      logical :: known
 
-      associate (track => x%tracks(c), now => x%tracks(c)%nodes(x%tracks(c)%place(7)))
-         t = now%t
-         known = now%is_known
-         is_lost = any(now%known < 0)
+      associate (track => x%tracks(c), q => s%now%motions(c))
+         t = q%t
          track%halvings = 0
-         if (track%turned_in > 0) call search_passed(x, s, c)
          if (k == 0) then
-            track%start = s%now%motions(c)
-         else if (track%turned_in > 0) then
+            track%start = q
+         else if (is_searched(x, s, c)) then
+            now = track%nodes(track%filled + 1)
+            known = now%is_known
             call search_step()
+            track%nodes(track%filled + 1) = now
+            track%turns = .true.
          end if
-         track%place([6, 7]) = track%place([7, 6])
+         associate (node => track%nodes(track%filled + 1))
+            known = node%is_known
+            track%is_lost = any(node%known < 0)
+         end associate
          call add_node(x, s, c)
          if (k == s%now%steps) call search_waiting(x, s, c)
-         if (k == s%now%steps) call note_end(x, s%now%parts(c), c, s%now%motions(c))
+         if (k == s%now%steps) call note_end(x, s%now%parts(c), c, q)
          if (.not. known) call note_interval(x%gaps, x%way, t, t, 0.0_wp)
-         track%last = end_t(t, .not. known, s%now%motions(c)%singularity == singular_change)
-         track%is_lost = is_lost
+         track%last = end_t(t, .not. known, q%singularity == singular_change)
       end associate
 
    contains
@@ -234,7 +173,7 @@ contains
          call look_at(beside(1), .true.)
          call search_waiting(x, s, c)
          low = from%t
-         if (x%tracks(c)%filled > 0) low = x%tracks(c)%nodes(x%tracks(c)%place(1))%t
+         if (x%tracks(c)%filled > 0) low = x%tracks(c)%nodes(1)%t
          call note_interval(x%open, x%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
@@ -253,7 +192,7 @@ contains
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
             do i = 1, places
-               call find_node(s, x%tracks(c)%asked, x%tracks(c)%coordinates, times(i), near(i), .true.)
+               call find_node(s, x%tracks(c), times(i), near(i), .true.)
                if (.not. near(i)%is_known) exit
             end do
             if (i <= places) cycle
@@ -284,15 +223,14 @@ contains
          end do
       end subroutine take_limits
 
-      !> Takes a node at the time `t`; `always`: see `look`.
+      !> Takes a node at the time `t`; `always`: with its errors.
       subroutine look_at(t, always)
          real(wp), intent(in) :: t
          logical, intent(in) :: always
 
-         associate (track => x%tracks(c), node => x%tracks(c)%nodes(x%tracks(c)%place(6)))
-            node%begins_pair = .false.
-            call find_node(s, track%asked, track%coordinates, t, node, always)
-            if (node%is_known) then
+         associate (track => x%tracks(c))
+            call find_next(x, s, c, t, always)
+            if (track%nodes(track%filled + 1)%is_known) then
                call add_node(x, s, c)
             else
                call note_interval(x%gaps, x%way, t, t, 0.0_wp)

@@ -7,14 +7,14 @@ module extremes
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
    use drives, only: joints_of
-   use points, only: is_fixed, coordinates_of
+   use points, only: row_t, is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
-   use nodes, only: node_t, sample_t, extreme_t, rows_asked_t, order_along
+   use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, watch_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
+   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
       rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
       is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
 
@@ -47,20 +47,6 @@ module extremes
       real(wp) :: t = 0.0_wp, value = 0.0_wp
    end type value_at_t
 
-   !> Places (1:n and room).
-   type :: place_list_t
-      type(value_at_t), allocatable :: list(:)
-      integer :: n = 0
-   end type place_list_t
-
-   !> What is known of a coordinate at the last instant: signs are -1, 0 or 1.
-   type :: watch_t
-      integer :: signs(2) = 0                          !< of velocity and acceleration
-      integer :: trend = 0                             !< of the change of the acceleration
-      real(wp) :: acceleration = 0.0_wp                !< from which the next change counts
-      real(wp) :: differences(0:3) = 0.0_wp            !< of accelerations at the last instants: the value, ...
-   end type watch_t
-
    !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
    type :: coordinate_t
       integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
@@ -69,14 +55,14 @@ module extremes
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
-      type(watch_t) :: watch                           !< whether it has turned
-      type(place_list_t) :: places                     !< nodes and extremes, if it may dwell
+      real(wp) :: last(3) = 0.0_wp                     !< its latest rate, acceleration and jerk with a clear sign
+      type(value_at_t), allocatable :: places(:)       !< nodes and extremes, if it may dwell
       !> How it has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest` since that,
       !> at this `speed`, where it was before the first, and where it has reversed.
       integer :: first_sign = 0, last_sign = 0
       type(value_at_t) :: start, slowest
       real(wp) :: speed = huge(1.0_wp)
-      type(place_list_t) :: reversals
+      type(value_at_t), allocatable :: reversals(:)
    end type coordinate_t
 
    !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
@@ -87,7 +73,9 @@ module extremes
 
    !> The way that the coordinates of one independent mechanism have come.
    type :: track_t
-      type(rows_asked_t) :: asked                      !< those asked for
+      integer, allocatable :: requests(:)              !< of the set, that are asked for,
+      type(row_t), allocatable :: rows(:)              !< room for their rows,
+      real(wp), allocatable :: error(:, :, :)          !< and for (3, 0:2, rows) errors of these
       type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
@@ -96,15 +84,11 @@ module extremes
       real(wp) :: closure(3) = huge(1.0_wp)
       type(end_t) :: last                              !< the last instant
       logical :: is_lost = .false.                     !< of some row nothing is known there
-      !> Nodes in their order by `place`: (1) the last one up to which this piece is searched, (2) the next, and (3) one
-      !> more while both parts are searched; so many are `filled`, and `has_turned`: an extreme may be between them.
-      !> (4:5) the two before these, if no extreme seemed to be there and the parts were not searched (`has_passed`).
-      !> (6) the one that comes next. (7) The instant at hand.
-      type(node_t) :: nodes(7)
-      integer :: place(7) = [1, 2, 3, 4, 5, 6, 7]
+      !> The last one up to which this piece is searched, and those after it: so many are `filled`, and the next one is
+      !> found where it belongs. Between three a number has an extreme only if it `turns`.
+      type(node_t) :: nodes(3)
       integer :: filled = 0
-      logical :: has_turned = .false., has_passed = .false.
-      integer :: turned_in = 0                         !< so many of the last steps may have extremes, as `watch` says
+      logical :: turns = .false.
       integer :: halvings = 0                          !< of parts of this step
    end type track_t
 
@@ -166,8 +150,8 @@ contains
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%parts(c))
             asked = pack(x%asked, s%rows(x%asked)%part == c)
-            track%asked%requests = asked
-            allocate (track%asked%rows(size(asked)), track%asked%error(3, 0:2, size(asked)))
+            track%requests = asked
+            allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
             allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(asked(q))%number)%kind), &
@@ -185,6 +169,7 @@ contains
                         one%is_angle = is_angle(own, request, i)
                         one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
+                        allocate (one%places(0), one%reversals(0))
                      end associate
                   end do
                end associate
@@ -234,7 +219,7 @@ contains
       real(wp), intent(in) :: step
 
       call offer(c, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, sample%error(k)), step)
-      if (k == 0 .and. c%dwell > 0.0_wp) call add_place(c%places, value_at_t(sample%t, sample%f(0)))
+      if (k == 0 .and. c%dwell > 0.0_wp) c%places = [c%places, value_at_t(sample%t, sample%f(0))]
    end subroutine offer_sample
 
    !> The value `e` of derivative number `k` of the coordinate `c` may be the least or the greatest. One that is located
@@ -267,17 +252,6 @@ contains
       end do
    end subroutine offer
 
-   !> Adds `place` to `p`.
-   pure subroutine add_place(p, place)
-      type(place_list_t), intent(inout) :: p
-      type(value_at_t), intent(in) :: place
-
-      if (.not. allocated(p%list)) allocate (p%list(8))
-      if (p%n == size(p%list)) p%list = [p%list, p%list]
-      p%n = p%n + 1
-      p%list(p%n) = place
-   end subroutine add_place
-
    !> Takes the velocity of the coordinate `c` in the next `sample` along the run: where its sign has changed the
    !> coordinate has reversed, at its slowest place between.
    pure subroutine note_velocity(c, sample)
@@ -298,7 +272,7 @@ contains
          c%first_sign = this
          c%start = c%slowest
       end if
-      if (c%last_sign == -this) call add_place(c%reversals, c%slowest)
+      if (c%last_sign == -this) c%reversals = [c%reversals, c%slowest]
       c%last_sign = this
       c%slowest = value_at_t(sample%t, sample%f(0))
       c%speed = speed
@@ -389,9 +363,8 @@ contains
       associate (e => c%found(:, 0))
          strokes%length = extreme_t(value=e(greatest)%value - e(least)%value, error=sum(e%error), &
             exists=all(e%exists .and. e%has_bound) .and. varies(c, 0))
-         allocate (all_of(0))
-         if (c%first_sign /= c%last_sign) all_of = [c%start]
-         if (c%reversals%n > 0) all_of = [all_of, c%reversals%list(:c%reversals%n)]
+         all_of = c%reversals
+         if (c%first_sign /= c%last_sign) all_of = [c%start, all_of]
          n = size(all_of)
          strokes%in_run = n
          strokes%reversals = all_of(:0)

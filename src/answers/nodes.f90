@@ -7,10 +7,9 @@
 !> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module nodes
    use kinds, only: wp
-   use points, only: row_t
    implicit none
    private
-   public :: sample_t, sample_of, node_t, extreme_t, rows_asked_t, times_between, beside_joint, order_along, &
+   public :: sample_t, sample_of, node_t, extreme_t, times_between, beside_joint, order_along, &
       limits_of, places, places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
@@ -40,13 +39,11 @@ module nodes
       integer :: known = -1             !< as in `row_t`; 2: all of `f`
       real(wp) :: growth = 0.0_wp       !< by which roundings grow where no digits could be in doubt
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
-      integer :: order = 0              !< of the derivative that has an extreme there
    end type sample_t
 
    !> The coordinates of one independent mechanism at one time. Small, since lanes have many of them.
    type :: node_t
       real(wp) :: t = 0.0_wp                   !< time
-      logical :: begins_pair = .false.         !< it is an instant of TIME with an even number
       !> All of the motion is known, and of no number all digits are open: such a one cannot be told to be an extreme,
       !> nor to be none.
       logical :: is_known = .false.
@@ -55,13 +52,6 @@ module nodes
       integer, allocatable :: known(:)         !< (coordinates) likewise
       real(wp), allocatable, dimension(:, :) :: f, error   !< (0:2, coordinates) likewise
    end type node_t
-
-   !> Requests of one mechanism, with room for their rows.
-   type :: rows_asked_t
-      integer, allocatable :: requests(:)              !< of the set
-      type(row_t), allocatable :: rows(:)
-      real(wp), allocatable :: error(:, :, :)          !< (3, 0:2, rows)
-   end type rows_asked_t
 
    !> The least or the greatest value of a number, or what may be that. In the deck's unit or rad.
    type :: extreme_t

@@ -7,7 +7,7 @@ module zero_search
    use nodes, only: sample_t
    implicit none
    private
-   public :: column_t, look_at_column, find_zero, find_turn, differ_in_sign, noise_part
+   public :: column_t, find_zero, find_turn, differ_in_sign, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
@@ -16,17 +16,17 @@ module zero_search
    !> so many of them at most.
    real(wp), parameter :: fine = 1.0e-5_wp, shorter = 0.5_wp
    integer, parameter :: max_stencils = 16
-   !> Steps of Newton's method on their polynomial.
-   integer, parameter :: newton_steps = 6
+   !> Steps of the iteration for the extreme of their polynomial.
+   integer, parameter :: turn_steps = 6
    !> A bracket as narrow as so many roundings of the time is closed.
    real(wp), parameter :: closed = 4.0_wp
-   !> The slope at a zero is that to the nearest value that is so many times the noise.
+   !> The slope at a zero is that to the last value that is so many times the noise.
    real(wp), parameter :: above_noise = 3.0_wp
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
    !> A time that is known to this part of the largest of the run, by a bound of what rounding leaves open, needs no
-   !> estimate of errors.
-   real(wp), parameter :: well_known = 65536.0_wp*epsilon(1.0_wp)
+   !> estimate of errors: a hundred times as much is no digit of a table.
+   real(wp), parameter :: well_known = 2.0_wp**20*epsilon(1.0_wp)
 
    !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
    !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives.
@@ -34,7 +34,6 @@ module zero_search
       integer :: request = 0, column = 0
       real(wp) :: step = 0.0_wp
       real(wp) :: noise(0:2) = 0.0_wp
-      real(wp) :: flat = 0.0_wp       !< accelerations that differ by no more are alike
    end type column_t
 
 contains
@@ -65,9 +64,8 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
       type(sample_t) :: at
-      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope
-      real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
-      integer :: n, i
+      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope, clear(2)
+      integer :: n
 
       if (min(a%known, b%known) < 2) return
       t1 = a%t
@@ -76,10 +74,9 @@ contains
       g2 = b%f(order) - level
       if (.not. differ_in_sign(g1, g2)) return
       width = 0.0_wp
-      times(:2) = [t1, t2]
-      values(:2) = [g1, g2]
+      clear = merge([t1, g1], [t2, g2], abs(g1) > abs(g2))
       last = t2
-      do n = 2, max_iterations + 1
+      do n = 1, max_iterations
          t = t2 - g2*((t2 - t1)/(g2 - g1))
          if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
          if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
@@ -93,8 +90,7 @@ contains
          g = at%f(order) - level
          ! What is left is rounding: further steps only follow it.
          if (abs(g) <= rounding_part*c%noise(order)) exit
-         times(n + 1) = t
-         values(n + 1) = g
+         if (abs(g) > above_noise*c%noise(order)) clear = [t, g]
          if (differ_in_sign(g, g2)) then
             t1 = t2
             g1 = g2
@@ -104,12 +100,10 @@ contains
          t2 = t
          g2 = g
       end do
-      n = min(n, size(times))
-      ! The slope from the zero to the nearest value that is more than noise.
-      i = minloc(abs(times(:n) - t), dim=1, mask=abs(values(:n)) > above_noise*c%noise(order) &
-         .and. abs(times(:n) - t) > 0.0_wp)
+      ! The slope from the zero to the last value that is more than noise.
       slope = 0.0_wp
-      if (i > 0) slope = abs(values(i)/(times(i) - t))
+      if (abs(clear(2)) > above_noise*c%noise(order) .and. abs(clear(1) - t) > 0.0_wp) &
+         slope = abs(clear(2)/(clear(1) - t))
       call settle(s, c, order, [a%t, b%t], t, slope, 1.0_wp, c%noise(order), width, zero)
    end subroutine find_zero
 
@@ -120,46 +114,42 @@ contains
    subroutine find_turn(s, c, points, jerk, turn)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
-      type(sample_t), intent(in) :: points(3)
+      type(sample_t), intent(in) :: points(:)
       real(wp), intent(in) :: jerk(2)
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
-      real(wp) :: f(0:4), d(4), t, before, step, first, length, bend, steep, u, slope, noise
+      real(wp) :: f(-2:2), d(4), t, step, length, bend, steep, u, noise
       integer :: i, k
 
       associate (a => points(1), b => points(3))
          length = b%t - a%t
          bend = 3.0_wp*(2.0_wp*(b%f(2) - a%f(2))/length - jerk(1) - jerk(2))
          steep = jerk(2) - jerk(1) + bend
-         t = a%t - 2.0_wp*length*jerk(1)/(steep + sign(sqrt(max(0.0_wp, steep**2 + 4.0_wp*bend*jerk(1))), jerk(2)))
+         t = -2.0_wp*length*jerk(1)/(steep + sign(sqrt(max(0.0_wp, steep**2 + 4.0_wp*bend*jerk(1))), jerk(2)))
          step = sign(c%step, length)
          do i = 1, max_stencils
-            first = t - 2.0_wp*step
-            if ((first - a%t)*step < 0.0_wp) first = a%t
-            if ((b%t - 4.0_wp*step - first)*step < 0.0_wp) first = b%t - 4.0_wp*step
-            do k = 0, 4
-               call look_at_column(s, c, first + k*step, at)
+            ! From `a`, at five times that are all between the ends.
+            t = step*min(max(t/step, 2.0_wp), length/step - 2.0_wp)
+            do k = -2, 2
+               call look_at_column(s, c, a%t + (t + k*step), at)
                if (at%known < 2) return
                f(k) = at%f(2)
             end do
-            ! Newton's formula of forward differences.
-            d = [f(1) - f(0), f(2) - 2.0_wp*f(1) + f(0), f(3) - 3.0_wp*(f(2) - f(1)) - f(0), &
-               f(4) - 4.0_wp*(f(3) + f(1)) + 6.0_wp*f(2) + f(0)]
-            if (.not. maxval(abs(d(2:))) > 0.0_wp) return
+            d = [(8.0_wp*(f(1) - f(-1)) - f(2) + f(-2))/12.0_wp, &
+               (16.0_wp*(f(1) + f(-1)) - 30.0_wp*f(0) - f(2) - f(-2))/12.0_wp, &
+               0.5_wp*(f(2) - f(-2)) - f(1) + f(-1), f(2) + f(-2) - 4.0_wp*(f(1) + f(-1)) + 6.0_wp*f(0)]
+            if (.not. abs(d(2)) > 0.0_wp) return
             noise = max(c%noise(2), noise_part*maxval(abs(f)))
-            before = t
-            u = (t - first)/step
-            do k = 1, newton_steps
-               slope = d(1) + (u - 0.5_wp)*d(2) + (0.5_wp*u**2 - u + 1.0_wp/3.0_wp)*d(3) &
-                  + (u**3/6.0_wp - 0.75_wp*u**2 + 11.0_wp*u/12.0_wp - 0.25_wp)*d(4)
-               u = u - slope/(d(2) + (u - 1.0_wp)*d(3) + (0.5_wp*u**2 - 1.5_wp*u + 11.0_wp/12.0_wp)*d(4))
-               u = min(max(u, (a%t - first)/step), (b%t - first)/step)
+            u = 0.0_wp
+            do k = 1, turn_steps
+               u = -(d(1) + u**2*(0.5_wp*d(3) + u*d(4)/6.0_wp))/d(2)
+               u = min(max(u, -t/step), (length - t)/step)
             end do
-            t = first + u*step
+            t = t + u*step
             if (abs(d(4)) > max(fine*abs(d(2)), noise)) then
                step = shorter*step
-            else if (abs(t - before) <= abs(step)) then
-               call settle(s, c, 2, [a%t, b%t], t, abs(d(2))/step**2, abs(step), noise/abs(step), 0.0_wp, turn)
+            else if (abs(u) <= 2.0_wp) then
+               call settle(s, c, 2, [a%t, b%t], a%t + t, abs(d(2))/step**2, abs(step), noise/abs(step), 0.0_wp, turn)
                return
             end if
          end do
@@ -176,18 +166,16 @@ contains
       type(sample_t), intent(out) :: zero
       real(wp) :: open
       integer :: i
-      logical :: estimated
 
       do i = 1, 2
-         ! An estimate takes nine solutions. A level that a coordinate passes has its error.
-         estimated = order == 0 .or. i == 2
-         call look_at_column(s, c, t, zero, estimated)
+         ! An estimate of errors takes nine solutions.
+         call look_at_column(s, c, t, zero, i == 2)
          open = zero%error(order)
          if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(order)
          zero%t_error = abs(ends(2) - ends(1))
          if (slope > 0.0_wp) zero%t_error = width + epsilon(1.0_wp)*maxval(abs(ends)) &
             + (open/step + rounding_part*noise)/slope
-         if (estimated .or. zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
+         if (zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
       end do
    end subroutine settle
 

@@ -1,7 +1,7 @@
-!> Several variants of a set, whose rows alone are asked for, solved together. Each begins by the ordinary engine; lanes
-!> take over after three instants, and go on as long as they can certify each step. The ordinary engine comes in again
-!> where a lane is refused; and where a number of EXTREMES may have an extreme, it looks for that between the instants
-!> that the lane has found. What happens in one lane depends on that lane alone.
+!> Several variants of a set, whose rows alone are asked for, solved together. Each begins by the ordinary engine;
+!> lanes take over after three instants, and go on as long as they can certify each step. The ordinary engine comes in
+!> again where a lane is refused; and where a number of EXTREMES may have an extreme, it looks for that between the
+!> instants that the lane has found. What happens in one lane depends on that lane alone.
 module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
@@ -13,8 +13,8 @@ module lane_runs
    use block_engine, only: get_motion
    use digits_in_doubt, only: find_growth
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
-   use column_search, only: find_node
-   use extreme_search, only: watch_instant, search_instant, fine_prediction
+   use column_search, only: find_next
+   use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
    use variant_rows, only: variant_row_t, note_flag
    use system_calls, only: signal_received
@@ -131,7 +131,7 @@ contains
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
                if (r%is_laned .and. r%asked%extremes_asked) then
-                  if (x%tracks(1)%turned_in > 0 .or. x%tracks(1)%has_turned) call give_back(r, l, i)
+                  if (is_searched(x, r%s, 1)) call give_back(r, l, i)
                   call search_instant(x, r%s, 1, r%at)
                end if
             end associate
@@ -141,8 +141,8 @@ contains
    end subroutine run_lanes
 
    !> Lane `i` has made a step of `r`, to the time `t`: it counts, unless the engine must make it. That is so if it is
-   !> refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the last
-   !> instant, of which they take more.
+   !> refused; at the last instant if others follow it, those of AT; with EXTREMES also at the last instant, of which
+   !> they take more.
    subroutine look_at_step(r, l, i, j, t)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
@@ -155,7 +155,7 @@ contains
       if (is_refused) r%patience = 2*r%patience
       counts = .not. is_refused
       if (r%asked%extremes_asked) then
-         counts = counts .and. j%correction(i) <= fine_prediction .and. r%at + 1 < r%m%steps
+         counts = counts .and. r%at + 1 < r%m%steps
          if (counts) call watch_lane(r, l, i, t, counts)
       else if (r%at + 1 == r%m%steps) then
          counts = counts .and. r%at + 1 == instant_count(r%m) - 1
@@ -197,8 +197,8 @@ contains
       end do
    end subroutine take_over
 
-   !> Loads lane `i` with the motions of `r`, if they are such as lanes need: `is_done`. They are those of one mechanism
-   !> by METHOD NEWTON, whose last instant has all of its motion.
+   !> Loads lane `i` with the motions of `r`, if they are such as lanes need: `is_done`. They are those of one
+   !> mechanism by METHOD NEWTON, whose last instant has all of its motion.
    subroutine load_run(r, l, i, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
@@ -275,13 +275,7 @@ contains
       end associate
       is_done = finite .and. .not. in_doubt
       if (.not. is_done) return
-      associate (track => r%asked%extremes%tracks(1))
-         associate (now => track%nodes(track%place(7)))
-            call find_node(r%s, track%asked, track%coordinates, t, now)
-            now%growth = growth
-         end associate
-      end associate
-      call watch_instant(r%asked%extremes, r%s, 1, r%at + 1, .true.)
+      call find_next(r%asked%extremes, r%s, 1, t, growth=growth)
    end subroutine watch_lane
 
    !> Gives the engine of `r` the motions of lane `i`, for the next instants or for times between.
