@@ -36,6 +36,8 @@ module column_search
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
+   !> Part of an interval that no table shows.
+   real(wp), parameter :: beside_end = 1.0e-6_wp
    !> Lengths that differ by this part are one.
    real(wp), parameter :: alike_part = 1.0e-9_wp
 
@@ -106,7 +108,7 @@ contains
    !> simple.
    subroutine look_for_turns(track)
       type(track_t), intent(inout) :: track
-      real(wp) :: jerk(2), noise(2), f(3)
+      real(wp) :: jerk(2), noise(2), f(3), clear(3)
       integer :: i, k
       logical :: simple
 
@@ -119,7 +121,8 @@ contains
                track%turns = track%turns .or. .not. simple
                do k = 1, 2
                   f = [a%f(k, i), middle%f(k, i), b%f(k, i)]
-                  call compare(merge(f, one%last(k), abs(f) > noise(k)), one%last(k))
+                  clear = merge(f, one%last(k), abs(f) > noise(k))
+                  call compare(clear, one%last(k))
                end do
                ! Where accelerations are alike it is that of rounding.
                if (max(f(1), f(2), f(3)) - min(f(1), f(2), f(3)) > 2.0_wp*max(alike*one%size_of(2), noise(2))) &
@@ -342,9 +345,11 @@ contains
                column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
             end do
             ! An extreme of the acceleration; of the velocity, one on either side of that at most; of the coordinate,
-            ! one on either side of each of these. Where accelerations are alike, none is told.
+            ! one on either side of each of these. Where accelerations are alike, none is told, nor one that is so near
+            ! an end that it is as good as there.
             if (differ_in_sign(jerk(1, i), jerk(2, i)) .and. maxval(path%f(2)) - minval(path%f(2)) &
-               > 2.0_wp*max(alike*one%size_of(2), column%noise(2))) then
+               > 2.0_wp*max(alike*one%size_of(2), column%noise(2)) .and. minval(abs(jerk(:, i))) &
+               > beside_end*maxval(abs(jerk(:, i)))) then
                call find_turn(s, column, path, jerk(:, i), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call take_found(2)

@@ -7,13 +7,15 @@
 !>
 !> A step is divided where not all of the motion exists: at change points and at a limit of the motion, and it has such
 !> an end at an instant without all of its motion. Each piece has nodes up to beside that place, and the one-sided
-!> limits there may be extremes. What is closer is not searched, and the table says so.
+!> limits there may be extremes. What is closer is not searched, and the table says so. On each side of a change point
+!> a number is a smooth function of the time that is left, at a limit of the motion of the root s of that: x0 + x1 s +
+!> x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the polynomial through these five in s^2 or
+!> in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, sample_of, extreme_t, times_between, beside_joint, limits_of, places, &
-      places_beside
+   use nodes, only: node_t, sample_of, extreme_t, times_between, beside_joint
    use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
@@ -25,6 +27,20 @@ module extreme_search
    !> times at most.
    real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
    integer, parameter :: max_nearer = 5, max_farther = 8
+   !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
+   !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
+   !> of the motion it leaves the power 5/2.
+   integer, parameter :: places = 5
+   real(wp), parameter :: beside_change = 1.0_wp/256.0_wp, &
+      beside_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
+   !> The polynomials at s = 0: through the five places, and through the first four for an estimate of the error.
+   real(wp), parameter :: in_time(places) = [5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, &
+      1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
+   real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
+      four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
+   !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
+   !> numbers below the second, in characteristic ones.
+   real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
 
 contains
 
@@ -185,12 +201,17 @@ contains
          real(wp), intent(out) :: beside(places)
          type(node_t) :: near(places)
          type(extreme_t), dimension(0:2, size(x%tracks(c)%coordinates)) :: limits, best
-         real(wp) :: times(places), sizes(0:2), error, least_error
+         real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
          integer :: i, k, try
 
+         five = merge(in_time, in_root, at%is_change)
+         four = merge(four_in_time, four_in_root, at%is_change)
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
-            times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
+            ! The nearest first, on the side of `other`.
+            nearest = merge(nearer**try*beside_change, farther**try*beside_limit, at%is_change)*x%step
+            nearest = min(nearest, abs(other - at%t)/(2*places**2))
+            times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places
                call find_node(s, x%tracks(c), times(i), near(i), .true.)
                if (.not. near(i)%is_known) exit
@@ -201,12 +222,18 @@ contains
             ! is badly known counts for nothing.
             error = 0.0_wp
             do k = 1, size(limits, 2)
-               associate (size_of => x%tracks(c)%coordinates(k)%size_of, one => limits(:, k))
-                  one = limits_of([(sample_of(near(i), k), i=1, places)], at%t, at%is_change, size_of)
-                  sizes = max(size_of, abs(one%value))
-                  error = max(error, maxval(one%error/sizes, mask=one%has_bound))
-                  one%exists = one%error <= badly_known*sizes .or. .not. one%has_bound
-               end associate
+               do i = 0, 2
+                  associate (one => limits(i, k), size_of => x%tracks(c)%coordinates(k)%size_of(i))
+                     f = [near(1)%f(i, k), near(2)%f(i, k), near(3)%f(i, k), near(4)%f(i, k), near(5)%f(i, k)]
+                     one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
+                     one%error = 2.0_wp*abs(dot_product(five - four, f)) + max(near(1)%error(i, k), &
+                        near(2)%error(i, k), near(3)%error(i, k), near(4)%error(i, k), near(5)%error(i, k))
+                     one%has_bound = at%is_change .or. abs(f(1)) < growth*abs(f(2)) .or. abs(f(1)) < small*size_of
+                     if (.not. one%has_bound) one%value = f(1)
+                     one%exists = .not. one%has_bound .or. one%error <= badly_known*max(size_of, abs(one%value))
+                     if (one%has_bound) error = max(error, one%error/max(size_of, abs(one%value)))
+                  end associate
+               end do
             end do
             if (error < least_error) then
                least_error = error

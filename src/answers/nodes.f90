@@ -1,36 +1,15 @@
 !> The rows of some requests of a set at the instants of TIME and at times between them, where what is asked of the
-!> whole run looks for something; and the limits of their numbers on one side of a time at which not all of the motion
-!> exists: a limit of the motion, a change point, a dead point.
-!>
-!> On each side of a change point a number is a smooth function of the time that is left, at a limit of the motion of
-!> the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the
-!> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
+!> whole run looks for something.
 module nodes
    use kinds, only: wp
    implicit none
    private
-   public :: sample_t, sample_of, node_t, extreme_t, times_between, beside_joint, order_along, &
-      limits_of, places, places_beside
+   public :: sample_t, sample_of, node_t, extreme_t, times_between, beside_joint, order_along
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
    !> The parts between two joints at least, and at most.
    integer, parameter :: parts_of_gap = 8, max_parts = 120
-   !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
-   !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
-   !> of the motion it leaves the power 5/2.
-   integer, parameter :: places = 5
-   real(wp), parameter :: beside_change = 1.0_wp/256.0_wp, &
-      beside_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
-   !> The polynomials at s = 0: through the five places, and through the first four for an estimate of the error.
-   real(wp), parameter :: in_time(places) = [5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, &
-      1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
-   real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
-      four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
-   !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
-   !> numbers below the second, in characteristic ones.
-   real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
-
    !> A coordinate of a row at one time, in the deck's unit or rad.
    type :: sample_t
       real(wp) :: t = 0.0_wp            !< time
@@ -127,37 +106,4 @@ contains
          order(k + 1) = i
       end do
    end function order_along
-
-   !> Times beside `t`, a change point or a limit, the nearest first, on the side of `from`; `step` of TIME; `farther`
-   !> than usual by this factor.
-   pure function places_beside(t, from, step, is_change, farther) result(times)
-      real(wp), intent(in) :: t, from, step, farther
-      logical, intent(in) :: is_change
-      real(wp) :: times(places), nearest
-      integer :: i
-
-      nearest = min(farther*merge(beside_change, beside_limit, is_change)*step, abs(from - t)/(2*places**2))
-      times = t + sign(nearest, from - t)*[(i**2, i=1, places)]
-   end function places_beside
-
-   !> The limits (0:2) of a coordinate, its rate and its acceleration at the time `t`, a change point or a limit of the
-   !> motion, from its samples `at` the places beside it; `size_of` (0:2): characteristic values.
-   pure function limits_of(at, t, is_change, size_of) result(limits)
-      type(sample_t), intent(in) :: at(places)
-      real(wp), intent(in) :: t, size_of(0:2)
-      logical, intent(in) :: is_change
-      type(extreme_t) :: limits(0:2)
-      real(wp), dimension(places) :: f, five, four
-      integer :: k
-
-      five = merge(in_time, in_root, is_change)
-      four = merge(four_in_time, four_in_root, is_change)
-      do k = 0, 2
-         f = at%f(k)
-         limits(k) = extreme_t(exists=.true., is_located=.true., t=t, value=dot_product(five, f), &
-            error=2.0_wp*abs(dot_product(five - four, f)) + maxval(at%error(k)))
-         limits(k)%has_bound = is_change .or. abs(f(1)) < growth*abs(f(2)) .or. abs(f(1)) < small*size_of(k)
-         if (.not. limits(k)%has_bound) limits(k)%value = f(1)
-      end do
-   end function limits_of
 end module nodes

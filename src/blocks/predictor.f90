@@ -25,8 +25,8 @@ module predictor
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.
    real(wp), parameter :: largest_change = 1.0_wp
-   real(wp), parameter :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
-   real(wp), parameter :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
+   real(wp), parameter, public :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
+   real(wp), parameter, public :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
    !> An acceleration does not serve a prediction that it makes uncertain by more than this part of the change: that
    !> could come nearer to another branch than to its own.
    real(wp), parameter :: largest_part = 0.01_wp

@@ -21,11 +21,6 @@ module lane_state
    !> Motions that a lane has room for: the last three, which are needed to predict, and the next.
    integer, parameter :: depth = 4
 
-   !> The motions of an unknown that are remembered, by slots.
-   type :: lane_past_t
-      real(wp) :: motion(width, 3, 0:depth - 1) = 0.0_wp   !< value, rate, acceleration
-   end type lane_past_t
-
    !> A block.
    type :: lane_block_t
       real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
@@ -47,7 +42,8 @@ module lane_state
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
       integer :: slot(0:depth - 1) = [0, 1, 2, 3]          !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
-      type(lane_past_t), allocatable :: past(:)         !< (0:unknowns)
+      !> (lanes, value and rate and acceleration, slots, unknowns) that are remembered
+      real(wp), allocatable :: past(:, :, :, :)
       type(lane_block_t), allocatable :: block(:)
       ! Numbers and state, as in `numbers_t` and `state_t`.
       type(row_numbers_t), allocatable :: rows(:)
@@ -86,7 +82,8 @@ contains
       associate (b => l%blocks, drives => size(e%laws))
          allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
          allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
-         allocate (l%past(0:b%unknowns), l%block(size(b%list)))
+         allocate (l%block(size(b%list)))
+         allocate (l%past(width, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
          allocate (l%u(0:b%unknowns), source=unknown_t(0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp))
          associate (none => vector_t(0.0_wp, 0.0_wp))
             allocate (l%rows(size(b%rows)), source=row_numbers_t(0.0_wp, 1.0_wp))
@@ -166,7 +163,7 @@ contains
             l%t(lane, slot) = e%history%t(k)
             do i = 1, size(l%predicted)
                associate (past => e%history%past(l%predicted(i)))
-                  l%past(l%predicted(i))%motion(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
+                  l%past(lane, :, slot, l%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
                end associate
             end do
          end associate
@@ -190,9 +187,9 @@ contains
             e%history%t(k) = l%t(lane, slot)
             do i = 1, size(l%predicted)
                u = l%predicted(i)
-               if (k == 0) e%history%past(u)%value = l%past(u)%motion(lane, 1, slot)
-               e%history%past(u)%rate(k) = l%past(u)%motion(lane, 2, slot)
-               e%history%past(u)%acceleration(k) = l%past(u)%motion(lane, 3, slot)
+               if (k == 0) e%history%past(u)%value = l%past(lane, 1, slot, u)
+               e%history%past(u)%rate(k) = l%past(lane, 2, slot, u)
+               e%history%past(u)%acceleration(k) = l%past(lane, 3, slot, u)
             end do
          end associate
       end do

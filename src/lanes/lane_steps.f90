@@ -4,7 +4,7 @@
 !> engine from which it came solves that instant. Lanes never look at one another.
 module lane_steps
    use kinds, only: wp
-   use predictor, only: largest_change
+   use predictor, only: largest_change, weight, weight2
    use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
    use following, only: largest_correction
@@ -19,10 +19,6 @@ module lane_steps
 
    !> What takes more iterations is refused.
    integer, parameter :: max_iterations = 5
-   !> The weights of the quintic of `predictor`.
-   real(wp), parameter :: v0 = -949.0_wp/240.0_wp, v1 = 608.0_wp/240.0_wp, v2 = 581.0_wp/240.0_wp, &
-      a0 = 637.0_wp/240.0_wp, a1 = 1080.0_wp/240.0_wp, a2 = 173.0_wp/240.0_wp
-
    !> What each lane's motion is worth.
    type :: judgement_t
       real(wp) :: refused(width) = 0.0_wp      !< above 0: it is no continuation that lanes can certify
@@ -82,14 +78,13 @@ contains
       real(wp), intent(in) :: t(width)
       type(judgement_t), intent(inout) :: j
       real(wp) :: step(width)
-      integer :: k
+      integer :: k, u
 
       step = t - l%t(:, l%slot(0))
       do k = 1, size(l%predicted)
-         associate (past => l%past(l%predicted(k))%motion)
-            call predict_one(step, past(1, 1, l%slot(0)), past(1, 1, l%slot(1)), past(1, 1, l%slot(2)), &
-               l%u(l%predicted(k))%value, j%refused)
-         end associate
+         u = l%predicted(k)
+         call predict_one(step, l%past(1, 1, l%slot(0), u), l%past(1, 1, l%slot(1), u), l%past(1, 1, l%slot(2), u), &
+            l%u(u)%value, j%refused)
          call set_lane_direction(l, l%predicted(k))
       end do
    end subroutine predict_lanes
@@ -102,7 +97,8 @@ contains
       integer :: l
 
       do l = 1, width
-         d = step(l)*(v0*p(l, 2) + v1*q(l, 2) + v2*r(l, 2) + step(l)*(a0*p(l, 3) + a1*q(l, 3) + a2*r(l, 3)))
+         d = step(l)*(weight(0)*p(l, 2) + weight(1)*q(l, 2) + weight(2)*r(l, 2) &
+            + step(l)*(weight2(0)*p(l, 3) + weight2(1)*q(l, 3) + weight2(2)*r(l, 3)))
          u(l) = p(l, 1) + d
          refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change) &
             + merge(0.0_wp, 1.0_wp, abs(p(l, 1) + d) <= max_angle)
@@ -243,10 +239,10 @@ contains
       l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
       l%t(:, l%slot(0)) = t
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)), past => l%past(l%predicted(k)))
-            past%motion(:, 1, l%slot(0)) = u%value
-            past%motion(:, 2, l%slot(0)) = u%rate
-            past%motion(:, 3, l%slot(0)) = u%acceleration
+         associate (u => l%u(l%predicted(k)), past => l%past(:, :, l%slot(0), l%predicted(k)))
+            past(:, 1) = u%value
+            past(:, 2) = u%rate
+            past(:, 3) = u%acceleration
          end associate
       end do
    end subroutine accept_lanes
@@ -258,7 +254,7 @@ contains
       integer :: k
 
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)), past => l%past(l%predicted(k))%motion(lane, :, l%slot(0)))
+         associate (u => l%u(l%predicted(k)), past => l%past(lane, :, l%slot(0), l%predicted(k)))
             u%value(lane) = past(1)
             u%rate(lane) = past(2)
             u%acceleration(lane) = past(3)
