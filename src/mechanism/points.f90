@@ -6,7 +6,7 @@ module points
       request_pair, request_pole, request_curve, instant_count, request_links
    use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
-   use planar, only: pi, direction, rotated, quarter_turn, point_of, add_rotating
+   use planar, only: pi, direction, rotated, point_of, add_rotating
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
@@ -193,7 +193,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(pair_t), intent(in) :: pair
-      real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), d(2, 0:2), e(2), n(2)
+      real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), r(2, 0:2)
 
       x = link_motion(q, m%points(pair%point_i)%link)
       if (pair%kind /= pair_prismatic) then
@@ -201,14 +201,9 @@ contains
          s = y(3, :) - x(3, :)
          return
       end if
-      d = point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i)
-      e = direction(x(3, 0) + pair%alpha)
-      n = quarter_turn(e)
-      associate (rate => x(3, 1), alpha => x(3, 2))
-         s(0) = dot_product(d(:, 0), e)
-         s(1) = dot_product(d(:, 1), e) + rate*dot_product(d(:, 0), n)
-         s(2) = dot_product(d(:, 2), e) + alpha*dot_product(d(:, 0), n) + 2.0_wp*rate*dot_product(d(:, 1), n) &
-            - rate**2*s(0)
-      end associate
+      ! Along the guide as seen from link i, in which P is at rest.
+      r = seen_from(x, point_motion(m, q, pair%point_j))
+      r(:, 0) = r(:, 0) - m%points(pair%point_i)%offset
+      s = matmul(direction(pair%alpha), r)
    end function pair_motion
 end module points
