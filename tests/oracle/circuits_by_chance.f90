@@ -274,7 +274,7 @@ contains
       call advance_set(s, 0.0_wp)
       call find_circuits(m, s%now%motions(1), 1, found)
       taken = .false.
-      compared = found%is_complete .and. size(found%assemblies) == 2
+      compared = found%is_complete .and. sum([(size(found%branches(i)%assemblies), i=1, size(found%branches))]) == 2
       do i = 1, size(found%list)
          do k = 1, size(taken)
             if (taken(k)) cycle
