@@ -30,6 +30,8 @@ module lane_runs
    integer, parameter :: first_patience = 3
    !> What steps may differ by, at the bounds of what drives allow.
    real(wp), parameter :: slack = 1.0e-6_wp
+   !> Steps are short where the prediction from three motions is off by less, in rad or the unit of length.
+   real(wp), parameter :: fine_prediction = 1.0e-7_wp
 
    !> A variant, and how far it has come.
    type :: lane_run_t
@@ -141,8 +143,8 @@ contains
    end subroutine run_lanes
 
    !> Lane `i` has made a step of `r`, to the time `t`: it counts, unless the engine must make it. That is so if it is
-   !> refused; at the last instant if others follow it, those of AT; with EXTREMES also at the last instant, of which
-   !> they take more.
+   !> refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the last
+   !> instant, of which they take more.
    subroutine look_at_step(r, l, i, j, t)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
@@ -155,7 +157,7 @@ contains
       if (is_refused) r%patience = 2*r%patience
       counts = .not. is_refused
       if (r%asked%extremes_asked) then
-         counts = counts .and. r%at + 1 < r%m%steps
+         counts = counts .and. j%correction(i) <= fine_prediction .and. r%at + 1 < r%m%steps
          if (counts) call watch_lane(r, l, i, t, counts)
       else if (r%at + 1 == r%m%steps) then
          counts = counts .and. r%at + 1 == instant_count(r%m) - 1

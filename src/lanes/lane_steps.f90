@@ -234,16 +234,15 @@ contains
    subroutine accept_lanes(l, t)
       type(lanes_t), intent(inout) :: l
       real(wp), intent(in) :: t(width)
-      integer :: k
+      integer :: k, u
 
       l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
       l%t(:, l%slot(0)) = t
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)), past => l%past(:, :, l%slot(0), l%predicted(k)))
-            past(:, 1) = u%value
-            past(:, 2) = u%rate
-            past(:, 3) = u%acceleration
-         end associate
+         u = l%predicted(k)
+         l%past(:, 1, l%slot(0), u) = l%u(u)%value
+         l%past(:, 2, l%slot(0), u) = l%u(u)%rate
+         l%past(:, 3, l%slot(0), u) = l%u(u)%acceleration
       end do
    end subroutine accept_lanes
 
@@ -251,14 +250,13 @@ contains
    subroutine keep_lane(l, lane)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: lane
-      integer :: k
+      integer :: k, u
 
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)), past => l%past(lane, :, l%slot(0), l%predicted(k)))
-            u%value(lane) = past(1)
-            u%rate(lane) = past(2)
-            u%acceleration(lane) = past(3)
-         end associate
+         u = l%predicted(k)
+         l%u(u)%value(lane) = l%past(lane, 1, l%slot(0), u)
+         l%u(u)%rate(lane) = l%past(lane, 2, l%slot(0), u)
+         l%u(u)%acceleration(lane) = l%past(lane, 3, l%slot(0), u)
       end do
       associate (next => l%slot(depth - 1))
          do k = 1, size(l%block)
