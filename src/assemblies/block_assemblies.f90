@@ -11,7 +11,7 @@ module block_assemblies
    use block_rank, only: gauss_newton_step, moving_unknowns
    use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
    use homotopy, only: follow_paths
-   use block_bilinear, only: block_form_t, make_form, solves_all, real_values
+   use block_bilinear, only: block_form_t, make_form, real_values
    implicit none
    private
    public :: block_positions_t, find_positions, max_group
@@ -25,6 +25,8 @@ module block_assemblies
    !> Positions that differ by less are one.
    real(dp), parameter :: alike = real_level, singular_alike = singular_near
    integer, parameter :: singular_steps = 6
+   !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
+   real(dp), parameter :: solved_level = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
    !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
    real(wp), parameter :: grid = 2.0_wp**26
 
@@ -60,7 +62,7 @@ contains
       type(block_form_t) :: f
       type(ends_t) :: ends
       logical :: moves
-      integer :: k
+      integer :: j, k
 
       found%x = reshape([real(wp) ::], [b%list(i)%shape%n, 0])
       found%sign_of = [integer ::]
@@ -85,7 +87,7 @@ contains
       else if (f%system%p == 1) then
          call solve_quadratic(f%system, ends, moves)
       else
-         call follow_paths(f%system, start, ends, moves)
+         call follow_paths(f%system, start, ends)
       end if
       found%moves = found%moves .or. moves
       found%paths = found%paths + ends%paths
@@ -93,11 +95,14 @@ contains
       found%failed = found%failed + ends%failed
       do k = 1, size(ends%list)
          found%finite = found%finite + 1
-         if (solves_all(f, ends%list(k))) then
-            call take_end(ends%list(k))
-         else
-            call leave_out(found%partial)
-         end if
+         associate (e => ends%list(k))
+            if (all([(abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= solved_level*maxval(abs(e%x))*maxval(abs(e%y)), &
+               j=1, size(f%more, 3))])) then
+               call take_end(e)
+            else
+               call leave_out(found%partial)
+            end if
+         end associate
       end do
       found%real = found%real + size(found%sign_of)
       found%is_open = found%is_open .or. any(found%rates_open)
@@ -113,6 +118,8 @@ contains
          integer :: k
 
          call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
+         ! A path that ends on a curve of solutions ends at any of its points, real or not.
+         if (.not. is_real) found%moves = found%moves .or. e%is_singular
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
          x = anint(grid*x)/grid

@@ -10,10 +10,10 @@ module block_bilinear
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t, given
    use block_equations, only: find_known_parts
-   use bilinear, only: bilinear_t, path_end_t, rounding, find_null_space
+   use bilinear, only: bilinear_t, path_end_t, find_null_space
    implicit none
    private
-   public :: block_form_t, make_form, solves_all, real_values
+   public :: block_form_t, make_form, real_values
 
    !> The system of a block, from whose solutions its unknowns follow.
    type :: block_form_t
@@ -31,8 +31,6 @@ module block_bilinear
    !> Of equations that are too many those that differ by less agree: the numbers of the deck have 11 digits, of which
    !> the elimination may lose two. Newton's method then decides with the exact equations.
    real(wp), parameter :: surplus_level = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
-   !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
-   real(dp), parameter :: solved_level = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
 
    !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
    type :: projection_t
@@ -266,7 +264,7 @@ contains
       type(block_form_t), intent(inout) :: f
       type(draft_t), intent(in) :: d
       logical, intent(in) :: is_redundant
-      complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :)
+      complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: level, size_of
       integer :: p, j, k, count_of
 
@@ -284,8 +282,14 @@ contains
             size_of = max(d%size_of(j), maxval(abs(d%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))
-            ! Of angles that differ by what is given one equation is left twice.
-            if (.not. is_new(reshape(one, [(p + 1)**2]), level, independent)) cycle
+            ! Of angles that differ by what is given one equation is left twice. The part `left` of a combination of
+            ! those before is rounding; `independent` are orthogonal combinations of them, of length 1.
+            left = reshape(one, [(p + 1)**2])
+            do k = 1, size(independent, 2)
+               left = left - dot_product(independent(:, k), left)*independent(:, k)
+            end do
+            if (.not. norm2(abs(left)) > level*norm2(abs(one))) cycle
+            independent = reshape([independent, left/norm2(abs(left))], [size(left), size(independent, 2) + 1])
          end associate
          count_of = count_of + 1
       end do
@@ -303,36 +307,6 @@ contains
          f%system%c(:, :, j) = cmplx(c(:, :, j)/maxval(abs(c(:, :, j))), kind=dp)
       end do
    end subroutine reduce
-
-   !> The coefficients `one` are no combination of those before, of which `independent` (size(one), any number) are
-   !> orthogonal combinations of length 1; it becomes one column wider. Parts of `one` below `level` are rounding.
-   logical function is_new(one, level, independent)
-      complex(wp), intent(in) :: one(:)
-      real(wp), intent(in) :: level
-      complex(wp), allocatable, intent(inout) :: independent(:, :)
-      complex(wp) :: left(size(one))
-      integer :: k
-
-      left = one
-      do k = 1, size(independent, 2)
-         left = left - dot_product(independent(:, k), left)*independent(:, k)
-      end do
-      is_new = norm2(abs(left)) > level*norm2(abs(one))
-      if (is_new) independent = reshape([independent, left/norm2(abs(left))], [size(one), size(independent, 2) + 1])
-   end function is_new
-
-   !> The solution `e` of the combinations that are solved is one of all equations.
-   pure logical function solves_all(f, e)
-      type(block_form_t), intent(in) :: f
-      type(path_end_t), intent(in) :: e
-      integer :: j
-
-      solves_all = .true.
-      do j = 1, size(f%more, 3)
-         solves_all = solves_all .and. abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= solved_level*maxval(abs(e%x)) &
-            *maxval(abs(e%y))
-      end do
-   end function solves_all
 
    !> (n) The unknowns of the block at the solution `e`. `is_real`: x and y are conjugate, as far as rounding can tell.
    subroutine real_values(f, e, level, x, is_real)

@@ -41,63 +41,31 @@ module homotopy
    real(dp), parameter :: far = 1.0e-3_dp, sure_power = 0.5_dp
    !> Ends that differ by less, in parts of z, are one.
    real(dp), parameter :: alike = sqrt(epsilon(1.0_dp))
-   !> Singular ends that differ by less may be one: four that meet are known to the fourth root of the last t.
-   real(dp), parameter :: blurred = 1.0e-2_dp
 
 contains
 
-   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions. `start`: where the
-   !> paths begin, if it is for that p; otherwise afterwards points of all these paths, from which those of a similar
-   !> system are short.
-   subroutine follow_paths(f, start, ends, moves)
+   !> The `ends` of all paths of `f`, p from 1. `start`: where the paths begin, if it is for that p; otherwise
+   !> afterwards points of all these paths, from which those of a similar system are short.
+   subroutine follow_paths(f, start, ends)
       type(bilinear_t), intent(in) :: f
       type(path_start_t), allocatable, intent(inout) :: start
       type(ends_t), intent(out) :: ends
-      logical, intent(out) :: moves
       type(path_start_t) :: own
-      type(ends_t) :: others
       logical :: is_done
-      integer :: k
 
       is_done = .false.
       if (allocated(start)) is_done = start%p == f%p
       if (is_done) call follow_all(f, start, ends)
       if (is_done) is_done = ends%failed == 0
-      if (.not. is_done) then
-         call make_start(f%p, 1, own)
-         call follow_all(f, own, ends, start)
-      end if
-      moves = .false.
-      if (.not. any(ends%list%is_singular)) return
-      ! Paths from another start come to the same solutions, but to other points of a curve.
-      call make_start(f%p, 2, own)
-      call follow_all(f, own, others)
-      do k = 1, size(ends%list)
-         if (ends%list(k)%is_singular) moves = moves .or. .not. is_among(f, ends%list(k), others%list)
-      end do
+      if (is_done) return
+      call make_start(f%p, own)
+      call follow_all(f, own, ends, start)
    end subroutine follow_paths
 
-   !> A singular solution of `list` is that of `e`, as far as rounding leaves it known.
-   logical function is_among(f, e, list)
-      type(bilinear_t), intent(in) :: f
-      type(path_end_t), intent(in) :: e, list(:)
-      complex(dp) :: x(f%p + 1), y(f%p + 1)
-      integer :: k
-
-      is_among = .false.
-      do k = 1, size(list)
-         if (.not. list(k)%is_singular) cycle
-         x = list(k)%x*(sum(f%plane*e%x)/sum(f%plane*list(k)%x))
-         y = list(k)%y*(sum(conjg(f%plane)*e%y)/sum(conjg(f%plane)*list(k)%y))
-         is_among = is_among .or. (maxval(abs(x - e%x)) <= blurred*maxval(abs(x)) .and. &
-            maxval(abs(y - e%y)) <= blurred*maxval(abs(y)))
-      end do
-   end function is_among
-
-   !> The start number `number`: each has a chance of its own. Its solution number k is where the forms in x of
-   !> p equations are zero, the k-th choice of them, and those in y of the others.
-   subroutine make_start(p, number, start)
-      integer, intent(in) :: p, number
+   !> The start for `p`. Its solution number k is where the forms in x of p equations are zero, the k-th choice of them,
+   !> and those in y of the others.
+   subroutine make_start(p, start)
+      integer, intent(in) :: p
       type(path_start_t), intent(out) :: start
       complex(dp) :: a(0:p, 2*p), b(0:p, 2*p)
       integer :: seed, chosen(p), paths, j, k
@@ -108,7 +76,7 @@ contains
          paths = paths*(p + k)/k
       end do
       allocate (start%chart(p, 2), start%c(0:p, 0:p, 2*p), start%z(2*p, paths))
-      seed = 1987*number
+      seed = 1987
       do j = 1, 2*p
          do k = 0, p
             a(k, j) = on_circle(seed)
