@@ -23,7 +23,7 @@ module block_engine
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_each, &
-      is_certain, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, &
+      is_certain, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, &
       followed_state, slide_unit
 
    !> A change of more than this, in radians or characteristic lengths, is a jump to another branch.
@@ -105,9 +105,7 @@ contains
       e%tolerance = m%tolerance
       if (.not. e%blocks%solvable) return
 
-      associate (t => e%blocks%tree, axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
-         e%chain = new_chain(m, t, axes, wanted_links(m), unit)
-      end associate
+      e%chain = new_chain(m, e%blocks, wanted_links(m))
       ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
       allocate (need(0:e%blocks%unknowns), source=.false.)
       do i = 1, e%chain%wanted
@@ -143,9 +141,7 @@ contains
       call put_numbers(m, e%blocks, x, fits)
       call move_alloc(x, e%blocks%numbers)
       e%length = e%blocks%numbers%equations%length
-      associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)
-         call put_chain(m, b%tree, axes, b%numbers%unit, e%chain)
-      end associate
+      call put_chain(m, e%blocks, e%chain)
       call put_laws(e, m)
    end subroutine put_mechanism
 
@@ -191,8 +187,7 @@ contains
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
       ! As a section: a function's result would bring its own lower bound.
-      e%estimated(:) = estimated_values(m, e%blocks%tree, e%blocks%numbers%equations%axes, e%length, &
-         e%blocks%unknowns, e%blocks%numbers%span)/e%blocks%numbers%unit
+      e%estimated(:) = estimated_values(m, e%blocks)
    end subroutine put_estimate
 
    !> The laws of the drives of `m`, and the units of their values.
@@ -268,20 +263,6 @@ contains
          e%state%drive_value(0:2, i) = e%unit_of(i)*f
       end do
    end subroutine set_drive_values
-
-   !> The position found last is that of `t`, too, at which the drives have the same values. Blocks without velocities
-   !> keep it as it is; the others find their velocities and accelerations.
-   subroutine stay(e, t, c)
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      type(convergence_t), intent(out) :: c
-
-      e%t = t
-      call set_drive_values(e, t)
-      c = nothing_gathered
-      call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., c)
-      c%singular = .true.
-   end subroutine stay
 
    !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve_blocks`.
    subroutine solve_each(e, list, follows, c)

@@ -13,6 +13,7 @@ module initial_estimate
    use planar, only: direction, quarter_turn, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use links_tree, only: tree_t, axes_t
+   use blocks, only: blocks_t
    implicit none
    private
    public :: estimated_values, estimated_directions
@@ -33,31 +34,29 @@ module initial_estimate
 
 contains
 
-   !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m`
-   !> for its equations.
-   function estimated_values(m, t, a, length, unknowns, span) result(value)
+   !> Values (0:unknowns) of angles and slides of `m`, in the units of its blocks `b`.
+   function estimated_values(m, b) result(value)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: length
-      integer, intent(in) :: unknowns
-      real(wp), intent(in) :: span
-      real(wp) :: value(0:unknowns)
+      type(blocks_t), intent(in) :: b
+      real(wp) :: value(0:b%unknowns)
       real(wp) :: phi(size(m%links))
       integer :: i, u
 
       value = 0.0_wp
-      phi = estimated_directions(m, t, a, span)
-      do i = size(m%links), 1, -1
-         if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - a%angle_offset(i)
-         if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
-         u = t%orientations + t%slides + 2*t%root(i) - 1
-         value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
-      end do
-      do i = 1, size(m%pairs)
-         if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, phi), &
-            direction(phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha))/length
-      end do
+      associate (t => b%tree, a => b%numbers%equations%axes, length => b%numbers%equations%length)
+         phi = estimated_directions(m, t, a, b%numbers%span)
+         do i = size(m%links), 1, -1
+            if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - a%angle_offset(i)
+            if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
+            u = t%orientations + t%slides + 2*t%root(i) - 1
+            value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
+         end do
+         do i = 1, size(m%pairs)
+            if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, phi), &
+               direction(phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha))/length
+         end do
+      end associate
+      value = value/b%numbers%unit
    end function estimated_values
 
    !> (2) From the first point of pair `k` to the other, the links at the deck's places and the angles `phi` (links).

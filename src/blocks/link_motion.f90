@@ -8,7 +8,8 @@ module link_motion
    use planar, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: tree_t, axes_t, link_offset_t, place_on_tree
+   use links_tree, only: link_offset_t, place_on_tree
+   use blocks, only: blocks_t
    use block_state, only: unknown_t, state_t
    implicit none
    private
@@ -41,49 +42,46 @@ module link_motion
 
 contains
 
-   !> The chain of the links of `m`, in the deck's unit of length; first those `wanted` (links), and their parents.
-   !> `unit` (0:unknowns): of each unknown in the unit of the slides.
-   function new_chain(m, t, a, wanted, unit) result(c)
+   !> The chain of the links of `m`, whose blocks are `b`, in the deck's unit of length; first those `wanted` (links),
+   !> and their parents.
+   function new_chain(m, b, wanted) result(c)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
+      type(blocks_t), intent(in) :: b
       logical, intent(in) :: wanted(:)
-      real(wp), intent(in) :: unit(0:)
       type(chain_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
       integer :: i
 
       needed = wanted
-      do i = size(t%order), 1, -1
-         if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
-      end do
-      associate (moves => .not. m%links(t%order)%ground)
-         links = [pack(t%order, moves .and. needed(t%order)), pack(t%order, moves .and. .not. needed(t%order))]
-         c%wanted = count(moves .and. needed(t%order))
+      associate (order => b%tree%order, parent => b%tree%parent)
+         do i = size(order), 1, -1
+            if (needed(order(i)) .and. parent(order(i)) > 0) needed(parent(order(i))) = .true.
+         end do
+         links = pack(order, .not. m%links(order)%ground)
       end associate
+      c%wanted = count(needed(links))
+      links = [pack(links, needed(links)), pack(links, .not. needed(links))]
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
-      call put_chain(m, t, a, unit, c)
+      call put_chain(m, b, c)
    end function new_chain
 
-   !> Gives the chain `c` the numbers of `m`, whose tree is `t` with the axes `a`; the other arguments as above.
-   subroutine put_chain(m, t, a, unit, c)
+   !> Gives the chain `c` the numbers of `m`, whose blocks are `b`.
+   subroutine put_chain(m, b, c)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
-      real(wp), intent(in) :: unit(0:)
+      type(blocks_t), intent(in) :: b
       type(chain_t), intent(inout) :: c
       integer :: i
 
       do i = 1, size(c%links)
-         associate (h => c%links(i), link => c%links(i)%link)
+         associate (h => c%links(i), link => c%links(i)%link, t => b%tree, a => b%numbers%equations%axes)
             h%orientation = t%orientation(link)
             h%angle_offset = a%angle_offset(link)
             if (t%parent(link) == 0) then
                h%root = t%orientations + t%slides + 2*t%root(link) - 1
-               h%root_unit = unit(h%root:h%root + 1)
+               h%root_unit = b%numbers%unit(h%root:h%root + 1)
                cycle
             end if
             h%place = place_on_tree(m, t, a, link)
@@ -91,15 +89,15 @@ contains
             h%parent_orientation = t%orientation(t%parent(link))
             if (h%place%slide > 0) then
                h%slide = t%orientations + h%place%slide
-               h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
+               h%place%slide_body_vector = b%numbers%unit(h%slide)*h%place%slide_body_vector
             end if
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
          end associate
       end do
       do i = 1, size(c%ground)
-         c%ground_position(:, i) = m%links(c%ground(i))%position - [a%origin, 0.0_wp]
+         c%ground_position(:, i) = m%links(c%ground(i))%position - [b%numbers%equations%axes%origin, 0.0_wp]
       end do
-      c%origin = a%origin
+      c%origin = b%numbers%equations%axes%origin
    end subroutine put_chain
 
    !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the

@@ -10,9 +10,10 @@ module analysis
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
-   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
+   use convergence, only: convergence_t, nothing_gathered, is_solved, ended_inconsistent, ended_unsought, &
+      ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
-      get_driven_links, stay
+      get_driven_links, set_drive_values, solve_each
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
@@ -147,7 +148,14 @@ contains
       if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
       if (step%rests) then
          if (a%is_left) call return_to(a%following_t, a%left)
-         call stay(a%engine, t, a%convergence)
+         ! Blocks without velocities keep their position; the others find their velocities and accelerations.
+         associate (e => a%engine)
+            e%t = t
+            call set_drive_values(e, t)
+            a%convergence = nothing_gathered
+            call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., a%convergence)
+         end associate
+         a%convergence%singular = .true.
          step%arrived = .true.
          step%stands = .true.
          return
@@ -372,6 +380,7 @@ contains
    subroutine take_motion(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
+      integer :: link, last
       logical :: finite
 
       if (allocated(a%dense)) then
@@ -394,14 +403,8 @@ contains
          ! Where rates contradict one another no link has any.
          if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
       end if
-      if (.not. finite) call look_for_overflow(found)
-   end subroutine take_motion
-
-   !> Marks what is out of the range of the real kind as not known.
-   pure subroutine look_for_overflow(found)
-      type(motion_t), intent(inout) :: found
-      integer :: link, last
-
+      if (finite) return
+      ! What is out of the range of the real kind is not known.
       do link = 1, size(found%position, 2)
          last = known_of(found, link)
          if (last == 2 .and. .not. all(abs(found%acceleration(:, link)) <= huge(1.0_wp))) last = 1
@@ -417,7 +420,7 @@ contains
          if (last < found%known) found%mark = mark_overflow
          found%known = min(found%known, last)
       end do
-   end subroutine look_for_overflow
+   end subroutine take_motion
 
    !> Keeps only derivatives up to number `known` of all links; `mark` says why.
    pure subroutine cut(found, known, mark)

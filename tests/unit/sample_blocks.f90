@@ -2,26 +2,33 @@
 module sample_blocks
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use links_tree, only: tree_t, new_tree, axes_t, put_axes
+   use links_tree, only: tree_t, new_tree, put_axes
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, numbers_t
    use block_structure, only: new_blocks
    use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, make_equations, axes_of
+   public :: plain_blocks, make_equations, tree_blocks
 
 contains
 
-   !> The axes of the links of `m` on its tree `t`.
-   function axes_of(m, t) result(a)
+   !> The tree of `m` and the axes of its links, as blocks without equations; lengths in units of `length`.
+   function tree_blocks(m, length) result(b)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(axes_t) :: a
+      real(wp), intent(in) :: length
+      type(blocks_t) :: b
 
-      allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
-      call put_axes(m, t, a)
-   end function axes_of
+      b%tree = new_tree(m)
+      b%unknowns = b%tree%orientations + b%tree%slides + 2*maxval(b%tree%root)
+      allocate (b%numbers)
+      b%numbers%equations%length = length
+      allocate (b%numbers%unit(0:b%unknowns), source=1.0_wp)
+      associate (a => b%numbers%equations%axes)
+         allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
+         call put_axes(m, b%tree, a)
+      end associate
+   end function tree_blocks
 
    !> The equations `e` of `m` with their numbers `x`, lengths in units of `length`.
    subroutine make_equations(m, length, e, x)
