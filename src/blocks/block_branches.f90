@@ -65,12 +65,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(branch_requests_t) :: c
 
-      allocate (c%branch_switches(0))
-      if (allocated(m%branch_requests)) then
-         c%cards = m%branch_requests
-      else
-         allocate (c%cards(0))
-      end if
+      allocate (c%branch_switches(0), c%cards(0))
+      if (allocated(m%branch_requests)) c%cards = m%branch_requests
       allocate (c%used(size(c%cards)), source=.false.)
    end function new_branch_requests
 

@@ -46,7 +46,7 @@ contains
       real(wp) :: least, square
       integer :: k
 
-      if (.not. serves(b, i)) return
+      if (size(start) == 0 .or. size(start) > max_unknowns) return
       call find_known_parts(b, i, s)
       start = values_of(b, i, s)
       best = start
@@ -62,14 +62,6 @@ contains
       call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> The sum of squares is sought of block `i`.
-   pure logical function serves(b, i)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-
-      serves = b%list(i)%shape%n > 0 .and. b%list(i)%shape%n <= max_unknowns
-   end function serves
-
    !> Puts into `c` the pair or drive of block `i` that is open the most where the sum of squares is least, as in `s`,
    !> and by how much that one is open at least while all others are closed; 0: no such position is found. Of equations
    !> that are too many: its part of the least sum, since they share what is lacking.
@@ -83,7 +75,7 @@ contains
       real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
       integer :: k, m
 
-      if (.not. serves(b, i)) return
+      if (size(best) == 0 .or. size(best) > max_unknowns) return
       best = values_of(b, i, s)
       call note_closure_error(b, i, residual_of(b, i, best, s), c)
       if (size(r) > size(best)) return

@@ -143,6 +143,7 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t), allocatable :: returns(:)
+      real(wp) :: beside
 
       step%rests = a%stands
       if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
@@ -162,7 +163,14 @@ contains
       end if
 
       a%begins = .not. a%follows
-      if (a%begins .and. a%stands) call begin_beside(a, t)
+      if (a%begins .and. a%stands) then
+         ! From a first position that is singular, more than one motion begins. The one to `t` begins in the assembly
+         ! that is the nearest close to that position: at `t` another one may be, if the step is wide.
+         beside = time_beside(a%engine, a%last, t, beside_start)
+         call continue_to(a%following_t, beside, step)
+         if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
+            call go_on_from(a%following_t, beside)
+      end if
       ! Back in time the motion is what it was.
       if (a%stands .and. .not. a%begins .and. (a%t - a%last)*(t - a%last) < 0.0_wp) then
          call leave(a%following_t, a%last, t, &
@@ -176,20 +184,6 @@ contains
       if (allocated(returns) .and. step%arrived .and. .not. (allocated(list) .or. passed_of(step) > 0 &
          .or. a%convergence%singular)) call move_alloc(returns, list)
    end subroutine reach
-
-   !> From a first position that is singular, more than one motion begins. The one to `t` begins in the assembly that is
-   !> the nearest close to that position: at `t` another one may be, if the step is wide.
-   subroutine begin_beside(a, t)
-      type(analysis_t), intent(inout) :: a
-      real(wp), intent(in) :: t
-      type(step_record_t) :: step
-      real(wp) :: beside
-
-      beside = time_beside(a%engine, a%last, t, beside_start)
-      call continue_to(a%following_t, beside, step)
-      if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
-         call go_on_from(a%following_t, beside)
-   end subroutine begin_beside
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
    !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`

@@ -37,7 +37,9 @@ contains
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: depends
       type(drive_excursion_t) :: p
-      real(wp) :: length, rate
+      type(bounds_t) :: b
+      real(wp) :: length, largest(2)
+      integer :: i
 
       p%laws = m%drives(:merge(size(m%drives), 0, depends))
       length = 1.0_wp
@@ -45,10 +47,19 @@ contains
       p%unit = merge(1.0_wp/length, 1.0_wp, is_length(p%laws))
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
-      rate = largest_derivative(p, 1, p%first, p%last)
+      ! First and second derivatives, in radians or characteristic lengths; huge: no bound.
+      largest = 0.0_wp
+      do i = 1, size(p%laws)
+         b = bounds_of(p%laws(i), p%first, p%last)
+         where (b%high(1:) >= huge(1.0_wp) .or. b%low(1:) <= -huge(1.0_wp))
+            largest = huge(1.0_wp)
+         elsewhere
+            largest = max(largest, p%unit(i)*max(-b%low(1:), b%high(1:)))
+         end where
+      end do
       p%longest = huge(1.0_wp)
-      if (rate > largest_change/huge(1.0_wp)) p%longest = largest_change/rate
-      p%curve = largest_derivative(p, 2, p%first, p%last)
+      if (largest(1) > largest_change/huge(1.0_wp)) p%longest = largest_change/largest(1)
+      p%curve = largest(2)
    end function new_drive_excursion
 
    !> The part of the `substep` from `t` on that the drives allow at once.
@@ -141,26 +152,6 @@ contains
       end do
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
-
-   !> Bounds derivative number `k` of every drive between `t1` and `t2`, in radians or characteristic lengths; huge: no
-   !> bound.
-   pure real(wp) function largest_derivative(p, k, t1, t2) result(largest)
-      type(drive_excursion_t), intent(in) :: p
-      integer, intent(in) :: k
-      real(wp), intent(in) :: t1, t2
-      type(bounds_t) :: b
-      integer :: i
-
-      largest = 0.0_wp
-      do i = 1, size(p%laws)
-         b = bounds_of(p%laws(i), t1, t2)
-         if (b%high(k) >= huge(1.0_wp) .or. b%low(k) <= -huge(1.0_wp)) then
-            largest = huge(1.0_wp)
-         else
-            largest = max(largest, p%unit(i)*max(-b%low(k), b%high(k)))
-         end if
-      end do
-   end function largest_derivative
 
    !> `t1` and `t2` lie within the time of all instants.
    pure logical function is_within(p, t1, t2)

@@ -87,26 +87,17 @@ module klu
          integer(c_int), value :: ldim, nrhs
          type(common_t), intent(inout) :: common
       end function klu_solve
-      !> Solves A' x = b in place.
-      integer(c_int) function klu_tsolve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
-         import :: c_int, c_ptr, common_t
-         type(c_ptr), value :: symbolic, numeric, b
-         integer(c_int), value :: ldim, nrhs
-         type(common_t), intent(inout) :: common
-      end function klu_tsolve
       !> Frees the ordering.
       integer(c_int) function klu_free_symbolic(symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), intent(inout) :: symbolic
          type(common_t), intent(inout) :: common
       end function klu_free_symbolic
-      !> Frees the factors.
-      integer(c_int) function klu_free_numeric(numeric, common) bind(c)
-         import :: c_int, c_ptr, common_t
-         type(c_ptr), intent(inout) :: numeric
-         type(common_t), intent(inout) :: common
-      end function klu_free_numeric
    end interface
+   !> Solves A' x = b in place.
+   procedure(klu_solve), bind(c) :: klu_tsolve
+   !> Frees the factors.
+   procedure(klu_free_symbolic), bind(c) :: klu_free_numeric
 
 contains
 

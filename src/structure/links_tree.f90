@@ -11,8 +11,7 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, &
-      ground_place, guide
+   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, guide
 
    type :: tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -212,7 +211,7 @@ contains
          sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
          p%reach = point_offset(m, a, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
          p%body_vector = point_offset(m, a, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
-         if (m%links(parent)%ground) p%reach = p%reach + ground_place(m, a, parent)
+         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - a%origin)
          if (pair%kind /= pair_prismatic) return
          p%slide = t%slide(t%parent_joint(link))
          p%slide_body_vector = sign_of*guide(m, a, t%parent_joint(link), across=.false.)
@@ -242,14 +241,4 @@ contains
 
       v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))
    end function point_offset
-
-   !> The place of ground `link` from the origin of all places.
-   pure function ground_place(m, a, link) result(v)
-      type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: a
-      integer, intent(in) :: link
-      real(wp) :: v(2)
-
-      v = m%links(link)%position(:2) - a%origin
-   end function ground_place
 end module links_tree

@@ -14,7 +14,7 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
-   use links_tree, only: tree_t, axes_t, point_offset, ground_place, guide, other_link
+   use links_tree, only: tree_t, axes_t, point_offset, guide, other_link
    implicit none
    private
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
@@ -163,7 +163,9 @@ contains
                   more = sign_of*m%pairs(pair)%offset*guide(m, a, pair, across=.true.)
                else
                   more = sign_of*point_offset(m, a, point)
-                  if (m%links(m%points(point)%link)%ground) place = ground_place(m, a, m%points(point)%link)
+                  associate (link => m%links(m%points(point)%link))
+                     if (link%ground) place = link%position(:2) - a%origin
+                  end associate
                   places = places + sign_of*place
                end if
                x%body_vector(:, v) = x%body_vector(:, v) + more
