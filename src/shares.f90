@@ -99,8 +99,9 @@ contains
             else if (status < status_system) then
                ! Only the Fortran library ends a child as if the deck were rejected: memory is short. All parts before
                ! its own are done.
-               message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s))) &
-                  //' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
+               message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s)))
+               if (iand(ended, 127) == 0) message = message//' HAS FAILED'
+               if (iand(ended, 127) > 0) message = message//' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
                status = status_system
             end if
          end do

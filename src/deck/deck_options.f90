@@ -196,6 +196,8 @@ contains
                   call request_all(one)
                end do
             else if (name == '') then
+               if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
+                  call add_card_error(set, word_unknown, k, label_a, 'THE ITEMS OF THIS SET')
                call request_all(one)
             else
                call look_up(set, one%kind, k, label_b, one%subject)

@@ -829,6 +829,9 @@ explained 'a link that does not exist' '/^DRIVE/ { sub(/CRANK/, "CRNAK") } 1' \
 explained 'a pair that does not exist' '/^DRIVE/ { print "PRINT   PAIRS   GUDE" } 1' \
    ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" IS NOT THE NAME OF A PAIR
  LAYOUT    |PRINT   KIND    NAME    EVERY'
+explained 'pairs of a set without pairs' '/^(LINK|GROUND|UNITS|DRIVE|TIME|AT) / { print; next } /^END/ { print "PRINT   PAIRS"; print; exit }' \
+   ' *** E070  CARD 8  COLUMN 9  FIELD LABEL-A: "PAIRS" IS NOT ONE OF THE ITEMS OF THIS SET
+ LAYOUT    |PRINT   KIND    NAME    EVERY'
 explained 'a number of more than 16 columns' '/^POINT   B2/ { $0 = "POINT   B2      ROD             3.0000000000000004E-001" } 1' \
    ' *** E018  CARD 12  COLUMN 33  FIELD REAL-1: "3.0000000000000004E-001" CROSSES THE FIELD BORDER BETWEEN COLUMNS 48 AND 49
  LAYOUT    |POINT   POINT   LINK            XI              ETA'
