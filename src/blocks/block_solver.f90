@@ -299,10 +299,8 @@ contains
          least = 1.0_wp/inverse
       end if
       c%min_pivot = 1.0_wp
-      c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       c%min_pivot = least
-      if (n > 1) c%reciprocal_condition = least/largest
       if (n == 1) largest = numbers%lipschitz
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
@@ -316,7 +314,6 @@ contains
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
       if (.not. suspicious) return
-      c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = numbers%coarse
       do k = block%first, block%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))

@@ -47,10 +47,8 @@ module convergence
       integer :: iterations = 0                !< in all
       real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
       real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
-      real(wp) :: rate = 0.0_wp                !< mean ratio of successive residuals
-      real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
       integer :: determinant = 0               !< its sign
-      real(wp) :: min_pivot = 0.0_wp         !< of its factors
+      real(wp) :: min_pivot = 0.0_wp           !< of its factors; of METHOD DENSE, over the largest
       real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
       real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
       real(wp) :: inverse = 0.0_wp             !< |J^-1| there
@@ -63,8 +61,7 @@ module convergence
    end type convergence_t
 
    !> A record in which nothing is gathered yet.
-   type(convergence_t), parameter :: nothing_gathered = convergence_t(ended=ended_converged, &
-      reciprocal_condition=1.0_wp, determinant=1)
+   type(convergence_t), parameter :: nothing_gathered = convergence_t(ended=ended_converged, determinant=1)
 
 contains
 
@@ -84,7 +81,6 @@ contains
       c%iterations = max(c%iterations, one%iterations)
       c%residual = max(c%residual, one%residual)
       c%step = max(c%step, one%step)
-      c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
       c%determinant = c%determinant*one%determinant
       if (one%open%value > c%open%value) c%open = one%open
       c%singular = c%singular .or. one%singular

@@ -109,7 +109,7 @@ contains
          if (is_solved(c) .and. .not. c%singular) then
             call pivot_range(shape_t(d%system%n, d%system%n), d%factors%a, d%factors%pivots, least, largest, &
                c%determinant)
-            c%reciprocal_condition = least/max(largest, least)
+            c%min_pivot = least/max(largest, least)
          end if
          iterations = iterations + c%iterations
          if (is_solved(c)) then

@@ -50,7 +50,7 @@ contains
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
-      real(wp) :: r(s%n), start(size(p%q, 2)), before, first, highest
+      real(wp) :: r(s%n), start(size(p%q, 2)), before, highest
       logical :: stays
       integer :: info
 
@@ -58,13 +58,11 @@ contains
       if (is_matrix) call choose_references(s, p)
       start = p%q(3, :)
       before = huge(before)
-      first = 0.0_wp
       do while (c%iterations < merge(matrix_iterations, newton_iterations, is_matrix))
          c%iterations = c%iterations + 1
          call residual(s, p, driven, r)
          highest = max(1.0_wp, maxval(abs(p%q)))
          c%residual = maxval(abs(r))/highest
-         if (c%iterations == 1) first = c%residual
          call jacobian(s, p, f%a)
          call factor(f, info)
          if (info > 0) then
@@ -96,7 +94,6 @@ contains
          end if
          before = c%step
       end do
-      if (c%iterations > 1 .and. first > 0.0_wp) c%rate = (c%residual/first)**(1.0_wp/real(c%iterations - 1, wp))
       if (.not. is_matrix) return
 
       p%frozen = .false.

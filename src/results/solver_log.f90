@@ -19,13 +19,12 @@ contains
       type(mechanism_t), intent(in) :: m
 
       call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method_words(m%method)))
-      call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL CORRECTION       RATE' &
-         //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  SUBSTEPS  KANTOROVICH')
+      call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL CORRECTION  SIGN OF DET' &
+         //'   BRANCH  SUBSTEPS  KANTOROVICH')
    end subroutine log_head
 
    !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
-   !> the coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant; the
-   !> branch `b`, and what was verified of it.
+   !> the coordinates), sign of the determinant; the branch `b`, and what was verified of it.
    subroutine log_instant(o, step, t, c, b)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step
@@ -33,11 +32,10 @@ contains
       type(convergence_t), intent(in) :: c
       type(branch_t), intent(in) :: b
       character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
-      character(149) :: line
+      character(116) :: line
 
-      write (line, '(i8, es25.16e3, 1x, a9, i6, 3es11.3, es22.3, i13, a9, i10, es13.3)') step, t, adjustr(ending(c)), &
-         c%iterations, c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, &
-         adjustr(branch_words(b%kind)), b%substeps, b%kantorovich_ratio
+      write (line, '(i8, es25.16e3, 1x, a9, i6, 2es11.3, i13, a9, i10, es13.3)') step, t, adjustr(ending(c)), &
+         c%iterations, c%residual, c%step, c%determinant, adjustr(branch_words(b%kind)), b%substeps, b%kantorovich_ratio
       call put(o, line)
    end subroutine log_instant
 end module solver_log

@@ -9,8 +9,8 @@ function put_log() {
 }
 FNR == 1 { put_log() }
 $1 ~ /^[0-9]+$/ {
-   instants++; iterations += $4; substeps += $11
-   if ($10 != word) put_branch()
-   word = $10; many++
+   instants++; iterations += $4; substeps += $9
+   if ($8 != word) put_branch()
+   word = $8; many++
 }
 END { put_log() }

@@ -52,10 +52,10 @@ contains
          if (q%mark == mark_none .and. r%mark == mark_none) then
             c%solved = c%solved + 1
             share = apart(q, r, wanted_links(m), dense%engine%length, &
-               0.1_wp*dense%convergence%reciprocal_condition)
+               0.1_wp*dense%convergence%min_pivot)
             if (maxval(share) > maxval(c%share)) then
                c%time = t(k)
-               c%condition = 0.1_wp*dense%convergence%reciprocal_condition
+               c%condition = 0.1_wp*dense%convergence%min_pivot
             end if
             c%share = max(c%share, share)
          else if (q%mark == mark_none) then
