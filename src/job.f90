@@ -18,7 +18,7 @@ module job
    use text_output, only: put, flush_output, turn_lost
    use processes, only: processor_count, end_process
    use command_line
-   use outputs, only: outputs_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
+   use outputs, only: outputs_t, open_outputs, open_table, close_outputs, is_over
    use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
@@ -260,7 +260,7 @@ contains
       if (allocated(m%echo)) deallocate (m%echo)
       if (o%options%check) return
       if (first <= 1) then
-         call open_set_outputs(o%options, set_suffix(o%first, o%last, i), .false., o, failure)
+         call open_table(o%options, o%first, o%last, i, .false., o, failure)
          if (allocated(failure)) then
             call move_alloc(failure, o%failure)
             call break_off(o, m, say_broken_set, m%set_number - 1)

@@ -6,10 +6,10 @@ module outputs
    use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
    use system_calls, only: identity_t, identity_of, signal_received
    use numerals, only: whole
-   use command_line, only: options_t, out_shared, out_last
+   use command_line, only: options_t, out_shared, out_table, out_last
    implicit none
    private
-   public :: outputs_t, share_of_job_t, open_outputs, open_set_outputs, close_outputs, is_over, set_suffix
+   public :: outputs_t, share_of_job_t, open_outputs, open_table, close_outputs, is_over
 
    !> The part of a job in several processes that this process computes; `shares` divides the job.
    type :: share_of_job_t
@@ -52,72 +52,47 @@ contains
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
-      do k = 1, out_last
-         if (.not. o%asked(k)) cycle
-         if (allocated(failure)) exit
-         associate (path => options%files(k)%text)
-            if (k <= out_shared) then
-               call open_output(o%files(k), path, failure)
-            else if (first < last .and. len(path) == 0) then
-               call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF ' &
-                  //whole(count)//' WITH --sets K/'//whole(count))
-            end if
-         end associate
+      do k = 1, out_shared
+         if (o%asked(k) .and. .not. allocated(failure)) &
+            call open_output(o%files(k), options%files(k)%text, failure)
       end do
-
+      if (o%asked(out_table) .and. first < last .and. .not. allocated(failure)) then
+         if (len(options%files(out_table)%text) == 0) call fail(failure, status_rejected, &
+            'STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count)//' WITH --sets K/' &
+            //whole(count))
+      end if
       if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
       do i = first, last
          if (allocated(failure)) exit
-         call open_set_outputs(options, set_suffix(first, last, i), .true., o, failure)
-         call abandon_output(o%files(out_shared + 1:))
+         call open_table(options, first, last, i, .true., o, failure)
+         call abandon_output(o%files(out_table))
       end do
       if (allocated(failure)) call abandon_output(o%files)
    end subroutine open_outputs
 
-   !> Opens the outputs of the set whose files have the `suffix`; one that `tries` them leaves devices and pipes alone,
-   !> whose readers would go. Errors: as for `open_outputs`.
-   subroutine open_set_outputs(options, suffix, tries, o, failure)
+   !> Opens the table of set number `i` of those from `first` to `last`; where these are several, its name has the
+   !> number before its extension. One that `tries` leaves devices and pipes alone, whose readers would go. Errors: as
+   !> for `open_outputs`.
+   subroutine open_table(options, first, last, i, tries, o, failure)
       type(options_t), intent(in) :: options
-      character(*), intent(in) :: suffix
+      integer, intent(in) :: first, last, i
       logical, intent(in) :: tries
       class(outputs_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
       type(identity_t) :: there
-      integer :: k
+      character(:), allocatable :: path
+      integer :: dot
 
-      if (.not. any(o%asked(out_shared + 1:))) return
-      do k = out_shared + 1, out_last
-         if (allocated(failure) .or. .not. o%asked(k)) cycle
-         if (tries) there = identity_of(path=path())
-         if (.not. (tries .and. there%device_or_pipe)) call open_output(o%files(k), path(), failure)
-      end do
+      if (.not. o%asked(out_table)) return
+      path = options%files(out_table)%text
+      dot = index(path, '.', back=.true.)
+      ! A name without an extension ends with the number.
+      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
+      if (first < last) path = path(:dot - 1)//'-'//whole(i)//path(dot:)
+      there = identity_of(path=path)
+      if (.not. (tries .and. there%device_or_pipe)) call open_output(o%files(out_table), path, failure)
       if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
-
-   contains
-
-      !> The path of output number `k`; '' is standard output.
-      function path()
-         character(:), allocatable :: path
-         integer :: dot
-
-         path = options%files(k)%text
-         if (len(path) == 0) return
-         dot = index(path, '.', back=.true.)
-         ! A name without an extension ends with the suffix.
-         if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
-         path = path(:dot - 1)//suffix//path(dot:)
-      end function path
-   end subroutine open_set_outputs
-
-   !> Tells what the names of files have before their extension for set number `i`, where the job has more than one
-   !> set, those from `first` to `last`.
-   pure function set_suffix(first, last, i) result(suffix)
-      integer, intent(in) :: first, last, i
-      character(:), allocatable :: suffix
-
-      suffix = ''
-      if (first < last) suffix = '-'//whole(i)
-   end function set_suffix
+   end subroutine open_table
 
    !> Closes the outputs number `first` to `last`; o%failure becomes that of the last one that could not be written.
    subroutine close_outputs(o, first, last)
