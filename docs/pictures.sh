@@ -38,7 +38,7 @@ COUPLER  ROCKER|links solved together: a dyad
 END
 sed '1a TITLE   FOUR-BAR LINKAGE' "$deck" | "$kinmat" | awk -v notes="$notes" -f docs/listing.awk > "$to/listing.svg" || exit 1
 first docs/tutorial.md > "$deck"; draw "$deck" --svg tutorial || exit 1
-for name in yoke jansen cardan platform drawn_cylinder; do
+for name in yoke jansen cardan drawn_cylinder; do
    sed '/^END/q' "input/$name.deck" > "$deck"; draw "$deck" --svg "$name" || exit 1
 done
 for name in jansen cardan; do

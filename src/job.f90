@@ -30,11 +30,10 @@ module job
    use circuits, only: circuits_t
    use circuits_table, only: find_all_circuits
    use circuits_picture, only: put_circuits
-   use assembly_table, only: draw_assemblies
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
-   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
-      put_variant_row, put_variants_end
+   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
+      put_variants_end
    use lane_runs, only: lane_run_t, renew_run, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use phrases, only: phrase_t, phrase, say_broken_set, say_broken_variant, say_broken_off
@@ -233,8 +232,6 @@ contains
          call record_instant(d, a%now, k)
          if (signal_received() > 0) return
       end do
-      if (m%assemblies) call make_set_analysis(m, a)
-      if (m%assemblies) call draw_assemblies(a, d)
       if (o%asked(out_svg)) call put_picture(pages(out_svg), d)
       if (o%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
@@ -302,7 +299,6 @@ contains
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
-         call put_note_of_shares(o%files(out_listing), m)
          call put_variant_heads(o%files(out_listing), summary)
       end if
       if (are_together(m, full, o)) then

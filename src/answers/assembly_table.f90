@@ -8,7 +8,6 @@ module assembly_table
    use cards, only: ruler_card
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
    use set_analysis, only: set_analysis_t
-   use drawing, only: drawing_t, snapshot_t
    use listing_layout, only: layout_t, put_folded
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -16,7 +15,7 @@ module assembly_table
    use phrases
    implicit none
    private
-   public :: put_assemblies, draw_assemblies
+   public :: put_assemblies
 
    !> Characters of a number on a card, and on a * card; the first is a blank.
    integer, parameter :: number_width = 16, star_width = 24
@@ -56,51 +55,6 @@ contains
          end associate
       end do
    end subroutine put_assemblies
-
-   !> Puts the assemblies of the set that `s` analyses, at its first instant, in the place of the deck's own frames in
-   !> its drawing `d`: the one chosen first, then the others of one mechanism after another.
-   subroutine draw_assemblies(s, d)
-      type(set_analysis_t), intent(in) :: s
-      type(drawing_t), intent(inout) :: d
-      type(snapshot_t), allocatable :: frames(:)
-      type(snapshot_t) :: one
-      integer :: c, k
-
-      one = d%frame(d%own(1))
-      do c = 1, size(s%assemblies)
-         if (size(s%assemblies(c)%list) > 0) call place(max(1, s%assemblies(c)%chosen))
-      end do
-      frames = [one]
-      do c = 1, size(s%assemblies)
-         do k = 1, size(s%assemblies(c)%list)
-            one = frames(1)
-            if (k == max(1, s%assemblies(c)%chosen)) cycle
-            call place(k)
-            frames = [frames, one]
-         end do
-      end do
-      d%own = [(d%frames + k, k=1, size(frames))]
-      frames = [d%frame(:d%frames), frames]
-      call move_alloc(frames, d%frame)
-      d%frames = size(d%frame)
-      d%assemblies = .true.
-
-   contains
-
-      !> Puts the links of mechanism `c` where assembly number `number` has them.
-      subroutine place(number)
-         integer, intent(in) :: number
-         integer :: i
-
-         associate (links => s%now%cards(c)%of, own => s%now%parts(c))
-            do i = 1, size(links)
-               one%place(:, links(i)) = s%assemblies(c)%list(number)%position(:, i) &
-                  + [plane_origin(own) - d%origin, 0.0_wp]
-               one%known(links(i)) = .true.
-            end do
-         end associate
-      end subroutine place
-   end subroutine draw_assemblies
 
    !> The line of block number `k`, with its paths, and what there is to say of it.
    subroutine put_block(o, m, k, one)

@@ -16,8 +16,7 @@ module variant_tables
    use phrases
    implicit none
    private
-   public :: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, put_variant_row, &
-      put_variants_end
+   public :: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, put_variants_end
 
    !> Characters of the number of a variant, and at least of a column.
    integer, parameter :: number_length = 10, least_width = 12
@@ -164,16 +163,6 @@ contains
          //whole(m%variants))
       call put(o, '')
    end subroutine put_variants_end
-
-   !> Writes where the shares of tolerances are to be had, for a set without tables of its variants.
-   subroutine put_note_of_shares(o, s)
-      type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: s
-
-      if (.not. s%largest_tolerance > 0.0_wp) return
-      call put(o, '')
-      call put(o, ' --- '//phrase(say_shares_elsewhere, s%polish))
-   end subroutine put_note_of_shares
 
    !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
    pure function line_starts(s) result(starts)

@@ -4,7 +4,7 @@
 module drawing
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_point, request_pole, pair_revolute, pair_prismatic, instant_count, &
+   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, &
       plane_origin, is_listed_alone
    use planar, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
@@ -72,7 +72,7 @@ module drawing
       type(mechanism_t) :: m
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       type(outline_t), allocatable :: outlines(:)   !< (links)
-      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for, each path once
+      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
       integer, allocatable :: poles(:)       !< the requests of poles
       type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
@@ -80,7 +80,6 @@ module drawing
       type(snapshot_t), allocatable :: frame(:)
       integer :: frames = 0, films = 0       !< recorded so far; those of TIME, which come first
       integer, allocatable :: own(:)         !< the numbers of frames that the picture may show in full
-      logical :: assemblies = .false.        !< these are assemblies at one instant, the one chosen first
       type(snapshot_t) :: now                !< the last known position of each link
       integer :: flagged = 0                 !< instants
       type(snapshot_t) :: flag               !< the first of them
@@ -127,7 +126,6 @@ contains
       integer, intent(in) :: every
       type(drawing_t) :: d
       real(wp) :: angles(2)
-      integer, allocatable :: same(:)
       integer :: ends(2), i, k, most
 
       d%m = m
@@ -138,13 +136,7 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
             cycle
-         associate (point => m%requests(i)%subject, pairs => m%pairs)
-            ! Points that a revolute pair joins have one path.
-            same = [point, pack(pairs%point_i, pairs%kind == pair_revolute .and. pairs%point_j == point), &
-               pack(pairs%point_j, pairs%kind == pair_revolute .and. pairs%point_i == point)]
-            if (size(d%curves) < max_curves .and. all([(all(d%curves /= same(k)), k=1, size(same))])) &
-               d%curves = [d%curves, point]
-         end associate
+         if (size(d%curves) < max_curves) d%curves = [d%curves, m%requests(i)%subject]
       end do
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(m%pairs%kind == pair_prismatic)))

@@ -190,8 +190,6 @@ module phrases
       say_of_pair = phrase_t('OF PAIR', 'PARY'), &
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &
       say_elsewhere = phrase_t('THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'), &
-      say_faint = phrase_t('FAINT: T =', 'BLADO: T ='), &
-      say_faint_assemblies = phrase_t('FAINT: THE OTHER ASSEMBLIES', 'BLADO: POZOSTALE MONTAZE'), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
@@ -205,8 +203,6 @@ module phrases
       say_at_time = phrase_t('AT T', 'W T'), &
       say_one_range = phrase_t('RANGE', 'ZAKRES'), &
       say_whole_turns = phrase_t('REPEATS AFTER TURNS', 'OBROTY DO ZAMKNIECIA'), &
-      say_shares_elsewhere = phrase_t('TOLERANCES: CONTRIBUTIONS ARE IN THE TABLES OF EACH VARIANT (CARD PRINT)', &
-         'TOLERANCJE: UDZIALY SA W TABLICACH WARIANTU, PATRZ KARTA PRINT'), &
       say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI'), &
       say_broken_set = phrase_t('THE RUN WAS BROKEN OFF AFTER SET', 'OBLICZENIA PRZERWANO PO KOMPLECIE')

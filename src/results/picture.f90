@@ -55,8 +55,6 @@ contains
       type(snapshot_t) :: s
       type(element_t), allocatable :: list(:)
       integer, allocatable :: faint(:)
-      character(:), allocatable :: now, others
-      real(wp) :: y
       integer :: best, k
 
       s = d%now
@@ -64,8 +62,6 @@ contains
       if (size(d%own) > 0) then
          best = clearest(d, d%own)
          faint = faint_frames(d, d%own, best)
-         if (d%assemblies) best = d%own(1)
-         if (d%assemblies) faint = d%own(2:)
          s = d%frame(best)
       end if
       call make_canvas(page, d, s, faint, c)
@@ -90,19 +86,9 @@ contains
          call put_links(c)
       end if
 
-      ! At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
-      if (size(d%own) > 0) then
-         y = real(c%bottom - 16 - line_height, wp)
-         now = 'T = '//fitted(s%t)//' '//trim(d%m%time_unit)
-         call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
-         others = phrase(say_faint, d%m%polish)
-         do k = 1, size(faint)
-            others = others//trim(merge(', ', '  ', k > 1))//' '//fitted(d%frame(faint(k))%t)
-         end do
-         if (d%assemblies) others = phrase(say_faint_assemblies, d%m%polish)
-         if (size(faint) > 0) &
-            call put_words(c%o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
-      end if
+      ! At the foot: the instant that is drawn in full.
+      if (size(d%own) > 0) call put_words(c%o, [14.0_wp, real(c%bottom - 16 - line_height, wp)], 'start', &
+         'class="time"', 'T = '//fitted(s%t)//' '//trim(d%m%time_unit))
       call put_foot(c)
    end subroutine put_picture
 

@@ -26,7 +26,6 @@ module svg
       'paint-order:stroke;stroke-linejoin:round}', &
       'text.title{font-size:14px;font-weight:bold}', &
       'text.time{font-weight:bold}', &
-      'text.between{fill:#777}', &
       'text.link{font-style:italic}', &
       'text.flag{fill:#d00000}', &
       'polyline,polygon{fill:none;stroke:#222;stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}', &

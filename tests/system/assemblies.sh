@@ -243,10 +243,6 @@ same 'rows of the CSV' "$w/rows" "$w/found"
 equal 'the chosen one' 1 "$(awk -F , '$5 == "PLATFORM" && $4 == "LINK" { first = sprintf("%.9f %.9f", $6, $8) }
    $5 == "PLATFORM" && $4 == "LINK ASSEMBLY 1" { print first == sprintf("%.9f %.9f", $6, $8) }' "$w/rows.csv")"
 
-# The picture has a faint outline for each assembly that is not chosen, and says so.
-"$kinmat" --quiet --no-listing --svg "$w/picture.svg" "$w/three_rrr.deck"
-equal 'the picture: words' 1 "$(grep -c 'FAINT: THE OTHER ASSEMBLIES' "$w/picture.svg")"
-
 # Polish; two cards; a card that costs nothing where there is no listing.
 with four_bar "$(card LANG PL)" "$(card ASSEMBLY)" > "$w/polish.deck"
 equal 'in Polish' 'MONTAZE WYBRANY' "$("$kinmat" "$w/polish.deck" | grep -oE 'MONTAZE  |WYBRANY' | head -n 2 | tr -s ' \n' ' ' | sed 's/ $//')"
