@@ -55,7 +55,7 @@ contains
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: word
-      integer :: i, k, first
+      integer :: i, k
       logical :: has_deck
 
       options%deck = ''
@@ -107,12 +107,8 @@ contains
                options%deck = trim(options%deck//' '//next_word())
             end do
             options%deck = trim(adjustl(options%deck))
-            if (len(options%deck) == 0) then
+            if (len(explained(options%deck)) == 0) &
                call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
-            else if (len(explained(options%deck)) == 0) then
-               call reject('OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//options%deck &
-                  //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
-            end if
          case default
             if (len(word) == 0) then
                call reject('THE NAME OF THE DECK IS EMPTY')
@@ -141,13 +137,10 @@ contains
       ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
       if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
          call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
-      first = findloc(to_standard_output(options%files), .true., dim=1)
+      if (count(to_standard_output(options%files)) > 1) call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT')
       do k = 1, out_last
          if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
             call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
-         if (to_standard_output(options%files(k)) .and. k > first) &
-            call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first))//' OR ' &
-               //trim(file_options(k)))
       end do
       if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
          word = ''

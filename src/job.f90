@@ -91,10 +91,8 @@ contains
          if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
             allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
             'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
-         do i = out_shared + 1, out_last
-            if (allocated(options%files(i)%text)) call fail(failure, status_rejected, &
-               'OPTION '//trim(file_options(i))//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
-         end do
+         if (allocated(options%files(out_table)%text)) call fail(failure, status_rejected, &
+            'OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
       end if
       if (.not. allocated(failure)) then
          o%share%first = int(variants*(options%share - 1)/options%shares) + 1

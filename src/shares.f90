@@ -15,9 +15,9 @@ module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_rejected, status_system, status_signal
    use numerals, only: whole
-   use processes, only: pipe, poll, poll_t, waitpid, fork_process, interrupt_child, memfd_create, lseek, &
+   use processes, only: waitpid, no_hang, usleep, fork_process, interrupt_child, memfd_create, lseek, &
       from_here, change_lock, locked, unlocked
-   use system_calls, only: close_descriptor, signal_received, signal_pipe, last_error, reason_of
+   use system_calls, only: signal_received, signal_pipe, last_error, reason_of
    use text_output, only: held_length, write_held, release_output, turn_lost
    use command_line, only: out_shared
    use outputs, only: outputs_t, share_of_job_t
@@ -28,8 +28,8 @@ module shares
    !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
    !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
    integer, parameter :: parts_a_process = 1024, parts_together = 32
-   !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
-   integer(c_int), parameter :: look_time = 200
+   !> Microseconds after which the parent looks whether a child has ended or a signal has come.
+   integer(c_int), parameter :: look_time = 2000
 
    !> An output that holds more characters than these waits for its turn after the instant. Its buffer, twice as large
    !> at most, is 128 MB unless the text of an instant is longer.
@@ -51,18 +51,15 @@ contains
       integer, intent(in) :: processes
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
-      type(poll_t) :: list(1)
       integer :: children(processes), started, k
-      integer(c_int) :: ends(2), ended, ignored
-      logical :: closed
+      integer(c_int) :: ended(processes), ignored
 
       associate (s => o%share, count => o%share%last - o%share%first + 1)
          s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
          if (count < processes*s%length) s%length = (count - 1)/processes + 1
 
          started = 0
-         if (pipe(ends) /= 0) ends = -1
-         if (ends(1) >= 0) s%taken = memfd_create('taken'//c_null_char, 0_c_int)
+         s%taken = memfd_create('taken'//c_null_char, 0_c_int)
          if (s%taken >= 0) s%done = memfd_create('done'//c_null_char, 0_c_int)
          if (s%done >= 0) started = processes
          do k = 1, started
@@ -83,25 +80,24 @@ contains
                //capitals(reason_of(last_error()))//')'
             call interrupt_child(children(:started))
          end if
-         ! The pipe ends when no child has it any more.
-         if (ends(1) >= 0) closed = close_descriptor(ends(2))
-         list%descriptor = ends(1)
-         do while (started > 0 .and. poll(list, 1_c_long, look_time) <= 0)
-            if (signal_received() > 0) call interrupt_child(children(:started))
+         ended = 0
+         do k = 1, started
+            do while (waitpid(int(children(k), c_int), ended(k), no_hang) == 0)
+               ignored = usleep(look_time)
+               if (signal_received() > 0) call interrupt_child(children(k:started))
+            end do
          end do
          do k = 1, started
-            ended = 0
-            ignored = waitpid(int(children(k), c_int), ended, 0_c_int)
-            if (iand(ended, 127) == signal_pipe) then
+            if (iand(ended(k), 127) == signal_pipe) then
                status = status_signal + signal_pipe
-            else if (iand(ended, 127) == 0 .and. ended /= ishft(status_rejected, 8)) then
-               status = max(status, ishft(iand(ended, 65535), -8))
+            else if (iand(ended(k), 127) == 0 .and. ended(k) /= ishft(status_rejected, 8)) then
+               status = max(status, ishft(iand(ended(k), 65535), -8))
             else if (status < status_system) then
                ! Only the Fortran library ends a child as if the deck were rejected: memory is short. All parts before
                ! its own are done.
                message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s)))
-               if (iand(ended, 127) == 0) message = message//' HAS FAILED'
-               if (iand(ended, 127) > 0) message = message//' WAS ENDED BY SIGNAL '//whole(iand(ended, 127))
+               if (iand(ended(k), 127) == 0) message = message//' HAS FAILED'
+               if (iand(ended(k), 127) > 0) message = message//' WAS ENDED BY SIGNAL '//whole(iand(ended(k), 127))
                status = status_system
             end if
          end do

@@ -5,18 +5,12 @@ module processes
    implicit none
    private
    public :: processor_count, fork_process, interrupt_child, end_process
-   public :: pipe, poll, poll_t, waitpid, memfd_create, lseek, from_here, change_lock, locked, unlocked
+   public :: waitpid, no_hang, usleep, memfd_create, lseek, from_here, change_lock, locked, unlocked
 
    !> SIGTERM; PR_SET_PDEATHSIG of prctl.
    integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
-
-   !> What poll is asked about a descriptor: whether there is input.
-   type, bind(c) :: poll_t
-      integer(c_int) :: descriptor = -1
-      integer(c_int16_t) :: asked = 1, found = 0
-   end type poll_t
 
    !> Bytes that are locked, as fcntl takes them.
    type, bind(c) :: lock_t
@@ -25,8 +19,9 @@ module processes
       integer(c_int) :: process = 0
    end type lock_t
 
-   !> Of fcntl: sets a lock, and waits for it. Kinds of locks. Of lseek: positions are counted from the present one.
-   integer(c_int), parameter :: set_lock = 7, from_here = 1
+   !> Of fcntl: sets a lock, and waits for it. Kinds of locks. Of lseek: positions are counted from the present one. Of
+   !> waitpid: does not wait.
+   integer(c_int), parameter :: set_lock = 7, from_here = 1, no_hang = 1
    integer(c_int16_t), parameter :: locked = 1, unlocked = 2
    !> The system's number of the error that a signal came.
    integer, parameter :: interrupted = 4
@@ -36,19 +31,12 @@ module processes
       integer(c_int) function fork() bind(c)
          import :: c_int
       end function fork
-      !> poll(2): waits for input or the end of input, at most so many milliseconds: 0 if there is none, -1 at a signal.
-      integer(c_int) function poll(list, count, milliseconds) bind(c)
-         import :: c_int, c_long, poll_t
-         type(poll_t), intent(inout) :: list(*)
-         integer(c_long), value :: count
-         integer(c_int), value :: milliseconds
-      end function poll
-      !> pipe(2): makes a pipe, whose ends are read from and written to; 0, or -1 for an error.
-      integer(c_int) function pipe(ends) bind(c)
+      !> usleep(3): waits so many microseconds, or until a signal comes.
+      integer(c_int) function usleep(microseconds) bind(c)
          import :: c_int
-         integer(c_int), intent(out) :: ends(2)
-      end function pipe
-      !> waitpid(2): waits until the child has ended, -1 for an error.
+         integer(c_int), value :: microseconds
+      end function usleep
+      !> waitpid(2): how the child has ended; 0 with `no_hang` if it runs, -1 for an error.
       integer(c_int) function waitpid(child, status, options) bind(c)
          import :: c_int
          integer(c_int), value :: child, options

@@ -86,11 +86,13 @@ contains
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: unit
-      integer :: kind, n
+      integer :: kind, n, k, i
 
       unit = angle_in_radians(set%mechanism)
       do kind = request_link, request_pair
-         set%named(kind)%card = cards_of(pack(definers%form, definers%kind == kind))
+         ! In the order of the deck; twice those of a form that is there twice.
+         set%named(kind)%card = [((k, i=1, count(definers%kind == kind .and. definers%form == set%cards(k)%form)), &
+            k=1, set%count)]
       end do
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
@@ -178,21 +180,6 @@ contains
                call add_card_error(set, cylinder_points, k, label_b)
          end if
       end subroutine build_pair
-
-      !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is
-      !> there twice.
-      pure function cards_of(forms_asked) result(list)
-         integer, intent(in) :: forms_asked(:)
-         integer :: list(sum(set%number_of(forms_asked)))
-         integer :: k, n, many
-
-         n = 0
-         do k = 1, set%count
-            many = count(set%cards(k)%form == forms_asked)
-            list(n + 1:n + many) = k
-            n = n + many
-         end do
-      end function cards_of
 
       !> Enters the name on the card of link, point or pair (`kind`) number `n`. A name that is there already is an
       !> error. Of two JOINT cards the error of their points stands for both.

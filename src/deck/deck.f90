@@ -47,7 +47,6 @@ contains
       type(variation_t), allocatable, intent(out), optional :: variations(:)
       type(reading_t) :: progress
       type(source_t) :: source
-      integer :: errors
 
       allocate (progress%sets(4))
       call begin_set(progress%set, 1)
@@ -56,9 +55,8 @@ contains
          call read_cards(source, progress, failure)
       end if
       report = error_report(progress%set%errors)
-      errors = progress%set%errors%count
-      if (.not. allocated(failure) .and. errors > 0) &
-         call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
+      if (.not. allocated(failure) .and. progress%set%errors%count > 0) &
+         call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(progress%set%errors%count))
       if (allocated(failure)) progress%closed = 0
 
       sets = progress%sets(:progress%closed)%mechanism
