@@ -223,7 +223,7 @@ for jobs in 1 2 3 8; do
 done
 "$kinmat" "$w/m.deck" --sets 2/2 --jobs 2 > "$w/out"
 "$kinmat" "$w/m.deck" --sets 2/2 | same '--jobs with --sets' - "$w/out"
-sh -c 'ulimit -n 4; exec "$0" "$1" --jobs 2' "$kinmat" "$w/m.deck" > "$w/out" 2> "$w/err"
+sh -c 'exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ulimit -n 4; exec "$0" "$1" --jobs 2' "$kinmat" "$w/m.deck" > "$w/out" 2> "$w/err"
 equal '--jobs: no files: status' 3 $?
 equal '--jobs: no files' ' *** CANNOT START A PROCESS FOR SETS 1 TO 1 (TOO MANY OPEN FILES)' "$(cat "$w/err")"
 # Instants without an assembly are flagged, also where the system keeps no exit status of processes.
