@@ -4,7 +4,7 @@
 module assemblies
    use kinds, only: wp
    use planar, only: without_turns
-   use mechanism, only: mechanism_t, plane_origin, pair_links, drive_links
+   use mechanism, only: mechanism_t, plane_origin
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
@@ -39,7 +39,8 @@ module assemblies
    !> What was found of a block that iterates, in all assemblies of what it builds on.
    type, extends(block_positions_t) :: assembly_block_t
       integer :: block = 0                      !< its number
-      integer, allocatable :: links(:)          !< that its unknowns turn or move
+      !> Those whose angle it solves for; of a block of slides alone those that have their place then and no earlier.
+      integer, allocatable :: links(:)
       integer :: unknowns = 0                   !< of the block
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
    end type assembly_block_t
@@ -61,12 +62,25 @@ contains
       real(wp), intent(in) :: t
       type(assemblies_t), intent(out) :: a
       type(block_engine_t) :: e
+      type(assembly_block_t) :: one
+      integer :: i, k, places(2, size(m%links))
 
       allocate (a%list(0), a%blocks(0))
       call make_block_engine(e, m)
       if (.not. e%blocks%solvable) return
       call set_drive_values(e, t)
-      call name_blocks(m, e, a)
+      places = places_of(e)
+      do i = 1, size(e%blocks%list)
+         associate (shape => e%blocks%list(i)%shape)
+            if (e%blocks%list(i)%direct .or. shape%n == 0) cycle
+            one%block = i
+            one%unknowns = shape%n
+            one%is_redundant = shape%rows > shape%n
+         end associate
+         one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
+         a%blocks = [a%blocks, one]
+      end do
       call search(m, e, t, a)
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
@@ -82,6 +96,7 @@ contains
       type(block_engine_t) :: e
       type(convergence_t) :: c
       type(motion_t) :: q
+      real(wp) :: off(3, size(m%links)), nearest
       logical :: unused
       integer :: i
 
@@ -91,7 +106,16 @@ contains
       if (is_solved(c)) then
          q = new_motion(size(m%links))
          call move_links(e%chain, e%state, e%length, q, unused, .true.)
-         a%chosen = number_of(q%position, a%list, e%blocks%numbers%span)
+         ! Of all that it may be that which is nearest to it, whole turns not counted.
+         nearest = same_place
+         do i = 1, size(a%list)
+            off = a%list(i)%position - q%position
+            off(:2, :) = off(:2, :)/e%blocks%numbers%span
+            off(3, :) = without_turns(off(3, :))
+            if (maxval(abs(off)) > nearest) cycle
+            nearest = maxval(abs(off))
+            a%chosen = i
+         end do
       end if
       if (is_nearer_one()) then
          a%chosen = 1
@@ -122,58 +146,6 @@ contains
       end function is_nearer_one
    end subroutine find_nearest
 
-   !> The number in `list` of the `position` (3, links), that of all that it may be which is nearest to it, whole turns
-   !> not counted; 0: it is none of them. `length`: the characteristic one, in the unit of `position`.
-   pure integer function number_of(position, list, length) result(number)
-      real(wp), intent(in) :: position(:, :), length
-      type(assembly_t), intent(in) :: list(:)
-      real(wp) :: off(3, size(position, 2)), nearest
-      integer :: k
-
-      number = 0
-      nearest = same_place
-      do k = 1, size(list)
-         off = list(k)%position - position
-         off(:2, :) = off(:2, :)/length
-         off(3, :) = without_turns(off(3, :))
-         if (maxval(abs(off)) > nearest) cycle
-         nearest = maxval(abs(off))
-         number = k
-      end do
-   end function number_of
-
-   !> The blocks that iterate, with their links: those whose angle it solves for; of a block of slides alone those that
-   !> have their place then and no earlier; of a block without unknowns those of its pairs and drives.
-   subroutine name_blocks(m, e, a)
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
-      type(assemblies_t), intent(inout) :: a
-      type(assembly_block_t) :: one
-      logical :: is_joined(size(m%links))
-      integer :: i, k, places(2, size(m%links))
-
-      places = places_of(e)
-      do i = 1, size(e%blocks%list)
-         if (e%blocks%list(i)%direct) cycle
-         one%block = i
-         one%unknowns = e%blocks%list(i)%shape%n
-         one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
-         one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
-         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
-         if (size(one%links) == 0) then
-            is_joined = .false.
-            do k = e%blocks%list(i)%first_row, e%blocks%list(i)%last_row
-               associate (row => e%blocks%rows(k))
-                  if (row%pair > 0) is_joined(pair_links(m, m%pairs(row%pair))) = .true.
-                  if (row%drive > 0) is_joined(drive_links(m, m%drives(row%drive))) = .true.
-               end associate
-            end do
-            one%links = pack([(k, k=1, size(m%links))], is_joined .and. .not. m%links%ground)
-         end if
-         a%blocks = [a%blocks, one]
-      end do
-   end subroutine name_blocks
-
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
    !> changed it last; `seen`: of each block the same, when it was solved.
    subroutine search(m, e, t, a)
@@ -189,6 +161,7 @@ contains
 
       p = new_ball_numbers(m, e%blocks, e%length)
       q = new_placed(e%blocks, size(m%drives))
+      e%needed = [(k, k=1, size(found))]
       chosen = 0
       seen = -1
       changed = 0
@@ -198,7 +171,7 @@ contains
          if (i > size(found)) then
             a%are_more = size(a%list) == max_assemblies
             if (a%are_more) exit
-            call prove_position(p, e, e%state, t, [(k, k=1, size(found))], 0, q, failed)
+            call prove_position(p, e, t, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
             call note_assembly(e, found, chosen, is_proved, a)
             i = i - 1

@@ -2,76 +2,42 @@
 module link_bounds
    use kinds, only: wp
    use planar, only: real_vector_t => vector_t
-   use mechanism, only: mechanism_t, pair_prismatic
+   use mechanism, only: mechanism_t
    use motion, only: motion_t
    use block_engine, only: block_engine_t
    use balls, only: ball_t, distance, operator(+), operator(*)
    use ball_equations, only: vector_t, unknown_t, ball_state_t, add_rotating
-   use ball_numbers, only: angle_errors, around, point_error, of_number, of_vector
+   use ball_numbers, only: angle_error, length_in_link, around, of_number, of_vector
    implicit none
    private
-   public :: link_vectors_t, link_vectors, bound_links
+   public :: bound_links
 
    type(ball_t), parameter :: zero = ball_t(0.0_wp, 0.0_wp)
 
-   !> The vectors of a link of the engine's chain, in the deck's unit.
-   type :: link_vectors_t
-      type(vector_t) :: reach, back, slide        !< `back`: from the point that joins it to its parent to its origin
-      type(ball_t) :: angle                       !< of the link from its orientation, rad
-   end type link_vectors_t
-
 contains
 
-   !> (chain) Those of the engine `e` of `m`.
-   function link_vectors(m, e) result(l)
+   !> The exact place from the origin of `q` and angle of each link and their derivatives lie in `links` (3, 0:2,
+   !> links); the exact unknowns lie in `s`. 0 of the ground and of links that nothing asks for. `largest` (2, 0:2): the
+   !> largest distances of lengths and of angles from those of the motion `q` that the engine `e` of `m` has found.
+   pure subroutine bound_links(m, e, s, q, links, largest)
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
-      type(link_vectors_t) :: l(e%chain%wanted)
-      real(wp) :: angle(0:e%blocks%tree%orientations), slide(2), of_reach, of_back, of_slide
-      integer :: i, points(2)                     ! of the parent, and its own
-
-      angle = angle_errors(m, e%blocks%tree)
-      do i = 1, size(l)
-         associate (h => e%chain%links(i), place => e%chain%links(i)%place)
-            of_slide = of_number + 2.0_wp*of_vector + angle(h%parent_orientation)
-            of_reach = 0.0_wp
-            of_back = 0.0_wp
-            if (h%root == 0) then
-               associate (pair => m%pairs(e%blocks%tree%parent_joint(h%link)))
-                  points = [pair%point_i, pair%point_j]
-                  if (m%points(points(1))%link == h%link) points = points([2, 1])
-                  of_reach = point_error(m, points(1), of_vector + angle(h%parent_orientation), of_vector)
-                  of_back = point_error(m, points(2), of_vector + angle(h%orientation), of_vector)
-                  if (pair%kind == pair_prismatic) of_reach = of_reach + abs(pair%offset)*of_slide
-               end associate
-            end if
-            slide = place%slide_body_vector*e%length
-            l(i)%reach = around(real_vector_t(place%reach(1), place%reach(2)), of_reach)
-            l(i)%back = around(real_vector_t(-place%body_vector(1), -place%body_vector(2)), of_back)
-            l(i)%slide = around(real_vector_t(slide(1), slide(2)), of_slide*norm2(slide))
-            l(i)%angle = ball_t(h%angle_offset, angle(h%orientation))
-         end associate
-      end do
-   end function link_vectors
-
-   !> The exact place from the origin of `q` and angle of each link, with the vectors `l`, and their derivatives lie in
-   !> `links` (3, 0:2, links); the exact unknowns lie in `s`. 0 of the ground and of links that nothing asks for.
-   !> `largest` (2, 0:2): the largest distances of lengths and of angles from those of the motion `q` of the engine `e`.
-   pure subroutine bound_links(l, e, s, q, links, largest)
-      type(link_vectors_t), intent(in) :: l(:)
       type(block_engine_t), intent(in) :: e
       type(ball_state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(ball_t), intent(out) :: links(3, 0:2, size(e%orientation_of))
       real(wp), intent(out) :: largest(2, 0:2)
       type(vector_t) :: here(0:2)
-      real(wp) :: error(3, 0:2)
+      real(wp) :: error(3, 0:2), slide(2), of_angle, of_direction, of_vectors
       integer :: i
 
+      of_angle = angle_error(m)
+      of_direction = of_number + 2.0_wp*of_vector + of_angle
+      of_vectors = of_direction*(maxval([0.0_wp, length_in_link(m, [(i, i=1, size(m%points))])]) &
+         + maxval([0.0_wp, abs(m%pairs%offset)]))
       links = zero
       largest = 0.0_wp
-      do i = 1, size(l)
-         associate (h => e%chain%links(i), own => e%chain%links(i)%link, &
+      do i = 1, e%chain%wanted
+         associate (h => e%chain%links(i), own => e%chain%links(i)%link, place => e%chain%links(i)%place, &
             p => s%u(e%chain%links(i)%parent_orientation), f => s%u(e%chain%links(i)%orientation))
             here = vector_t()
             if (h%root > 0) then
@@ -80,13 +46,16 @@ contains
             else
                if (h%parent > 0) here%x = links(1, :, h%parent)
                if (h%parent > 0) here%y = links(2, :, h%parent)
-               call add_rotating(l(i)%reach, p, here)
-               call add_rotating(l(i)%back, f, here)
-               if (h%slide > 0) call add_sliding(l(i)%slide, p, s%u(h%slide), here)
+               call add_rotating(around(real_vector_t(place%reach(1), place%reach(2)), of_vectors), p, here)
+               call add_rotating(around(real_vector_t(-place%body_vector(1), -place%body_vector(2)), of_vectors), f, &
+                  here)
+               slide = place%slide_body_vector*e%length
+               if (h%slide > 0) call add_sliding(around(real_vector_t(slide(1), slide(2)), of_direction*norm2(slide)), &
+                  p, s%u(h%slide), here)
             end if
             links(1, :, own) = here%x
             links(2, :, own) = here%y
-            links(3, :, own) = [f%value + l(i)%angle, f%rate, f%acceleration]
+            links(3, :, own) = [f%value + ball_t(h%angle_offset, of_angle), f%rate, f%acceleration]
             error(:, 0) = distance(links(:, 0, own), q%position(:, own))
             error(:, 1) = distance(links(:, 1, own), q%velocity(:, own))
             error(:, 2) = distance(links(:, 2, own), q%acceleration(:, own))

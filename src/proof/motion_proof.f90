@@ -7,17 +7,14 @@ module motion_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use drives, only: drive_motion
-   use block_state, only: state_t, new_state
-   use block_solver, only: workspace_t, new_workspace, solve_block
-   use block_engine, only: block_engine_t
-   use convergence, only: convergence_t, is_solved
+   use block_engine, only: block_engine_t, set_drive_values, solve_each
+   use convergence, only: convergence_t, nothing_gathered, is_solved
    use balls, only: ball_t
    use ball_equations, only: ball_numbers_t
    use ball_numbers, only: new_ball_numbers
    use position_proof, only: placed_t, new_placed, prove_position, max_unknowns
    use tube_proof, only: tube_t, new_tube, prove_tube
-   use link_bounds, only: link_vectors_t, link_vectors, bound_links
+   use link_bounds, only: bound_links
    implicit none
    private
    public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_proof_t, prove_step
@@ -33,14 +30,12 @@ module motion_proof
       integer :: tries = 0                        !< tubes tried
       real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
       integer :: block = 0                        !< that is not proved
-      real(wp) :: t = 0.0_wp                      !< the middle of the part that is not
    end type step_proof_t
 
    !> What the proofs of a mechanism need and keep.
    type :: motion_prover_t
       logical :: has_begun = .false.              !< a position is proved
       type(ball_numbers_t) :: numbers
-      type(link_vectors_t), allocatable :: links(:)
       type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
       integer :: now = 1                          !< which of them is at hand
    end type motion_prover_t
@@ -77,9 +72,8 @@ contains
       found%is_proved = .false.
       found%has_step = .false.
       found%step = step_proof_t()
-      if (.not. allocated(p%links)) then
+      if (.not. allocated(found%links)) then
          p%numbers = new_ball_numbers(m, e%blocks, e%length)
-         p%links = link_vectors(m, e)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
          allocate (found%links(3, 0:2, size(m%links)))
@@ -88,13 +82,13 @@ contains
       if (q%known < 2) return
 
       associate (here => p%at(p%now), before => p%at(3 - p%now))
-         call prove_position(p%numbers, e, e%state, q%t, e%needed, merge(2, 0, bounded), here, failed)
+         call prove_position(p%numbers, e, q%t, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
-            if (bounded) call bound_links(p%links, e, here%ball_state_t, q, found%links, found%largest)
+            if (bounded) call bound_links(m, e, here%ball_state_t, q, found%links, found%largest)
             found%gap = here%gap
             found%has_step = p%has_begun
-            if (found%has_step) call prove_step(p%numbers, e, e%needed, before, here, found%step)
+            if (found%has_step) call prove_step(p%numbers, e, before, here, found%step)
             failed = found%step%block
          end if
       end associate
@@ -114,16 +108,15 @@ contains
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of the blocks `list`, with the numbers `p`, between the proved positions `from` and `to`.
-   subroutine prove_step(p, e, list, from, to, proof)
+   !> Proves the motion of the blocks of `e` that are needed, with the numbers `p`, between the proved positions `from`
+   !> and `to`.
+   subroutine prove_step(p, e, from, to, proof)
       type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
-      type(workspace_t), allocatable :: work            ! few steps need it
-      type(state_t) :: s
+      type(block_engine_t), allocatable :: other        ! few steps need it
 
       tube = new_tube(e%blocks, size(e%laws))
       proof%is_proved = .true.
@@ -131,55 +124,39 @@ contains
 
    contains
 
-      !> Proves a part of a step, none less than `shortest`.
+      !> Proves a part of a step, none less than `shortest`; if there is no tube about it, its two halves.
       recursive subroutine prove_part(from, to, shortest)
          type(placed_t), intent(in) :: from, to
          real(wp), intent(in) :: shortest
          type(placed_t), allocatable :: middle
+         type(convergence_t) :: c
+         integer :: failed
 
          proof%tries = proof%tries + 1
-         call prove_tube(p, e, list, from, to, tube)
+         call prove_tube(p, e, from, to, tube)
          if (tube%block == 0) then
             proof%parts = proof%parts + 1
             proof%radius = max(proof%radius, maxval(tube%radius))
             return
          end if
          proof%block = tube%block
-         proof%t = 0.5_wp*(from%t + to%t)
-         proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_tries
-         if (.not. proof%is_proved) return
+         proof%is_proved = .false.
+         if (abs(to%t - from%t) <= shortest .or. proof%tries >= max_tries) return
+
+         if (.not. allocated(other)) other = e
+         other%t = 0.5_wp*(from%t + to%t)
+         call set_drive_values(other, other%t)
+         other%state%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
+            + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
+         c = nothing_gathered
+         call solve_each(other, other%needed, .false., c)
+         if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          allocate (middle)
          middle = new_placed(e%blocks, size(e%laws))
-         call solve_middle(from, to, middle, proof%is_proved)
+         call prove_position(p, other, other%t, 0, middle, failed)
+         proof%is_proved = failed == 0
          if (proof%is_proved) call prove_part(from, middle, shortest)
          if (proof%is_proved) call prove_part(middle, to, shortest)
       end subroutine prove_part
-
-      !> The position `middle` at proof%t, in the middle between `from` and `to`; `is_found`: it is proved.
-      subroutine solve_middle(from, to, middle, is_found)
-         type(placed_t), intent(in) :: from, to
-         type(placed_t), intent(inout) :: middle
-         logical, intent(out) :: is_found
-         type(convergence_t) :: c
-         integer :: i, k, failed
-
-         if (.not. allocated(work)) then
-            work = new_workspace(e%blocks)
-            s = new_state(e%blocks, size(e%laws))
-         end if
-         do i = 1, size(e%laws)
-            s%drive_value(:, i) = drive_motion(e%laws(i), proof%t)*e%unit_of(i)
-         end do
-         s%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
-            + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
-         is_found = .false.
-         do k = 1, size(list)
-            c = convergence_t()
-            call solve_block(e%blocks, list(k), e%tolerance, work, s, c)
-            if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
-         end do
-         call prove_position(p, e, s, proof%t, list, 0, middle, failed)
-         is_found = failed == 0
-      end subroutine solve_middle
    end subroutine prove_step
 end module motion_proof

@@ -14,13 +14,13 @@
 !> So F has exactly one zero in the ball, J is regular in all of it, and z1 + z2 r < 1. (Ortega and Rheinboldt, ch. 12;
 !> the form with bounds from data is that of Day, Lessard and Mischaikow's radii polynomials.)
 !>
-!> Where equations are too many, as many independent ones as there are unknowns are proved, and of the others it is
-!> bounded by how much they stay open.
+!> Where equations are too many, A is an inverse by least squares: as many sums of equations as there are unknowns are
+!> proved, and of all equations it is bounded by how much they stay open.
 module position_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
-   use block_matrix, only: entries_of
+   use block_matrix, only: shape_t, entries_of, solve_first, solve_again, work_length
    use block_state, only: state_t
    use block_engine, only: block_engine_t
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
@@ -75,15 +75,14 @@ contains
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
    end function new_placed
 
-   !> Proves the position of the blocks `list`, in solving order, at the time `t` and the values of `s`, for the
-   !> numbers `p` and the laws and units of the engine `e`; with `order` 2 instead of 0 velocities and accelerations as
-   !> well. Result: `q`, and `failed`, the number of the first block that is not proved, where the proof ends; or 0.
-   subroutine prove_position(p, e, s, t, list, order, q, failed)
+   !> Proves the position of the blocks of `e` that are needed, at the time `t` and the values that it has, for the
+   !> numbers `p`; with `order` 2 instead of 0 velocities and accelerations as well. Result: `q`, and `failed`, the
+   !> number of the first block that is not proved, where the proof ends; or 0.
+   subroutine prove_position(p, e, t, order, q, failed)
       type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
-      type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
-      integer, intent(in) :: list(:), order
+      integer, intent(in) :: order
       type(placed_t), intent(inout) :: q
       integer, intent(out) :: failed
       type(bounds_t) :: law
@@ -96,15 +95,15 @@ contains
       q%u(:) = unknown_t()
       do i = 1, size(e%laws)
          law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
-         associate (value => s%drive_value(:, i), unit => e%unit_of(i))
+         associate (value => e%state%drive_value(:, i), unit => e%unit_of(i))
             q%drive(:, i)%mid = value
             q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value))*room
          end associate
       end do
 
-      do k = 1, size(list)
-         failed = list(k)
-         call prove_block(p, e%blocks, failed, s, order, q, is_proved)
+      do k = 1, size(e%needed)
+         failed = e%needed(k)
+         call prove_block(p, e%blocks, failed, e%state, order, q, is_proved)
          if (.not. is_proved) return
       end do
       failed = 0
@@ -299,51 +298,41 @@ contains
    end subroutine subtract_product
 
    !> `a` (n, rows): |A| of about the inverse A of `jacobian` (rows, n), with room for roundings; `off` (n): the row
-   !> sums of |1 - A J|. Of equations that are too many those count that have the largest pivots; the columns of the
-   !> others are 0. `exists`: there is an inverse.
+   !> sums of |1 - A J|. Of equations that are too many A is the inverse by least squares. `exists`: there is one.
    subroutine bound_inverse(rows, n, jacobian, a, off, exists)
       integer, intent(in) :: rows, n
       real(wp), intent(in) :: jacobian(rows, n)
       real(wp), intent(out) :: a(n, rows), off(n)
       logical, intent(out) :: exists
-      real(wp) :: left(n + rows, rows)            ! Each column an equation: the Jacobian, and what has been added up.
-      real(wp) :: x(n), room
-      integer :: equation(n), k, i
-      logical :: taken(rows)
+      real(wp), allocatable :: factors(:, :), work(:)
+      real(wp) :: x(max(n, rows)), room
+      integer :: pivots(n), k, i, info
 
-      ! Gauss and Jordan's elimination.
-      exists = .true.
-      left(:n, :) = transpose(jacobian)
-      left(n + 1:, :) = 0.0_wp
-      do i = 1, rows
-         left(n + i, i) = 1.0_wp
-      end do
-      taken = .false.
-      do k = 1, n
-         equation(k) = maxloc(abs(left(k, :)), dim=1, mask=.not. taken)
-         associate (own => equation(k))
-            taken(own) = .true.
-            exists = abs(left(k, own)) > 0.0_wp
-            if (.not. exists) return
-            left(k + 1:, own) = left(k + 1:, own)/left(k, own)
-            do i = 1, rows
-               if (i == own .or. .not. abs(left(k, i)) > 0.0_wp) cycle
-               left(k + 1:, i) = left(k + 1:, i) - left(k, i)*left(k + 1:, own)
-            end do
-         end associate
-      end do
-      do k = 1, n
-         a(k, :) = left(n + 1:, equation(k))
-      end do
+      associate (dense => shape_t(rows, n))
+         factors = jacobian
+         allocate (work(work_length(dense)))
+         do i = 1, rows
+            x = 0.0_wp
+            x(i) = 1.0_wp
+            if (i == 1) then
+               call solve_first(dense, factors, pivots, work, x, info)
+               exists = info == 0
+               if (.not. exists) return
+            else
+               call solve_again(dense, factors, pivots, work, x)
+            end if
+            a(:, i) = x(:n)
+         end do
+      end associate
 
       off = (n + 2)*rounding
       do k = 1, n
          x = 0.0_wp
          x(k) = -1.0_wp
          do i = 1, rows
-            if (abs(jacobian(i, k)) > 0.0_wp) x = x + a(:, i)*jacobian(i, k)
+            if (abs(jacobian(i, k)) > 0.0_wp) x(:n) = x(:n) + a(:, i)*jacobian(i, k)
          end do
-         off = off + abs(x)
+         off = off + abs(x(:n))
       end do
 
       ! What rounding leaves open of all terms; room, too, for products that underflow.

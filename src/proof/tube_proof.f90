@@ -48,12 +48,11 @@ contains
       tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of the blocks `list`, in solving order, with the numbers `p`, between the positions `from` and
+   !> Proves the motion of the blocks of `e` that are needed, with the numbers `p`, between the positions `from` and
    !> `to`.
-   subroutine prove_tube(p, e, list, from, to, tube)
+   subroutine prove_tube(p, e, from, to, tube)
       type(ball_numbers_t), intent(in) :: p
       type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
       logical :: unbounded(0:size(e%laws))
@@ -68,10 +67,10 @@ contains
       tube%balls%u(:) = unknown_t()
       call bound_drives()
 
-      do k = 1, size(list)
-         tube%block = list(k)
-         associate (block => e%blocks%list(list(k)), &
-            own => e%blocks%unknown(e%blocks%list(list(k))%first:e%blocks%list(list(k))%last))
+      do k = 1, size(e%needed)
+         tube%block = e%needed(k)
+         associate (block => e%blocks%list(tube%block), &
+            own => e%blocks%unknown(e%blocks%list(tube%block)%first:e%blocks%list(tube%block)%last))
             if (any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))) return
             do j = 1, size(own)
                associate (u => own(j))
@@ -89,7 +88,7 @@ contains
                      + tube%balls%drive(1, row%drive)%radius)*room
                end associate
             else
-               call prove_block(e%blocks, list(k), own, radius)
+               call prove_block(e%blocks, tube%block, own, radius)
             end if
             if (radius < 0.0_wp) return
 

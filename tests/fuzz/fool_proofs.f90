@@ -85,7 +85,7 @@ contains
       do k = 1, 2
          q(k) = new_placed(e%blocks, size(m%drives))
          call put_there(f, e, t(k), sign_of(k))
-         call prove_position(p, e, e%state, t(k), e%needed, 2, q(k), failed(k))
+         call prove_position(p, e, t(k), 2, q(k), failed(k))
          if (failed(k) > 0) cycle
          positions = positions + 1
          if (is_false(f, q(k), sign_of(k))) then
@@ -94,7 +94,7 @@ contains
          end if
       end do
       if (all(failed == 0)) then
-         call prove_step(p, e, e%needed, q(1), q(2), proof)
+         call prove_step(p, e, q(1), q(2), proof)
          if (proof%is_proved) steps = steps + 1
          if (proof%is_proved .and. (sign_of(1) /= sign_of(2) .or. .not. exists_between(f, t, sign_of(1)))) then
             print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE STEP IS PROVED, SCENE ', f%scene
