@@ -7,7 +7,7 @@ module command_line
    use document_texts, only: message_cell, message_count
    implicit none
    private
-   public :: options_t, word_t, read_command, explained
+   public :: options_t, read_command, explained
    public :: file_options
    public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table, &
       out_shared, out_last

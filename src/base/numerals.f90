@@ -13,7 +13,7 @@ module numerals
    use kinds, only: wp
    implicit none
    private
-   public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length, significant
+   public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length
    public :: put_whole, put_with_point, put_minus, put_exponent, max_decimals
    public :: nearest_whole, tens
 

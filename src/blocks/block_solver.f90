@@ -17,7 +17,7 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
    use planar, only: length_of
-   use blocks, only: blocks_t, block_t, block_numbers_t, loop_projection
+   use blocks, only: blocks_t, block_t, block_numbers_t, known_to, loop_projection
    use block_state, only: state_t, set_direction
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
    implicit none
@@ -345,20 +345,15 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       real(wp) :: largest(2)
-      integer, allocatable :: u(:)
-      integer :: k, m
+      integer :: k
 
       largest = 0.0_wp
       do k = b%list(i)%first_row, b%list(i)%last_row
          largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
       end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            u = [g%orientation, g%less, b%body_vectors(g%first_vector:g%last_vector)%orientation, &
-               b%slides(g%first_slide:g%last_slide)%orientation, b%slides(g%first_slide:g%last_slide)%unknown]
-         end associate
-         largest = max(largest, [maxval(abs(s%u(u)%rate)), maxval(abs(s%u(u)%acceleration))])
-      end do
+      associate (u => s%u(known_to(b, i)))
+         largest = max(largest, [maxval(abs(u%rate)), maxval(abs(u%acceleration))])
+      end associate
    end function largest_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.

@@ -13,7 +13,7 @@ module link_motion
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+   public :: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
       missing_all
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.

@@ -19,7 +19,7 @@ module blocks
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
       loop_projection, loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
-   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known
+   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
