@@ -3,15 +3,16 @@
 module digits_in_doubt
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t, method_newton, request_pole
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
-   use sum_errors, only: growth_in_centres
+   use points, only: row_t, find_row
+   use instant_centres, only: centre_finite
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, safe_growth
+   public :: sizes_t, sizes_of, find_growth, growth_in_centres, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
@@ -68,8 +69,9 @@ contains
       type(motion_t), intent(in) :: q
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
-      real(wp) :: law, angle, size_of, usual, of_angles
+      real(wp) :: law, angle, size_of, usual, of_angles, inverse
       real(wp), dimension(2) :: position, velocity, acceleration
+      integer :: k
 
       law = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. m%method /= method_newton)
@@ -87,37 +89,28 @@ contains
          growth_in_centres(m, q))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
-      call find_growths(e, growth, of_angles)
+      ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
+      ! numbers grow by L/p^2, with C above `usual_coarse` also by C/p and C L/p^2; angles by C/p in positions and,
+      ! over `rate_digits`, by C L^2/p^3 in accelerations.
+      growth = 0.0_wp
+      of_angles = 1.0_wp
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+            if (e%blocks%list(e%needed(k))%direct) cycle
+            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
+            associate (turned => block%lipschitz*inverse)
+               growth = max(growth, turned*inverse)
+               if (block%coarse > usual_coarse) growth = max(growth, block%coarse*inverse*max(1.0_wp, turned))
+               of_angles = max(of_angles, block%coarse*inverse*max(1.0_wp, turned**2/rate_digits))
+            end associate
+         end associate
+      end do
       growth = usual*growth
       in_doubt = max(usual, growth) > safe_growth .or. m%method /= method_newton
       if (.not. angle > usual_angle) return
       in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
       growth = growth*max(1.0_wp, angle/usual)
    end subroutine find_growth
-
-   !> Finds by how much roundings grow at most in a block of `e`, with p the least pivot of its Jacobian (at most 1), L
-   !> its Lipschitz constant, C its `coarse`. `numbers`: L/p^2; with C above `usual_coarse` also C/p and C L/p^2.
-   !> `angles`: C/p in positions; over `rate_digits`, C L^2/p^3 in accelerations.
-   pure subroutine find_growths(e, numbers, angles)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(out) :: numbers, angles
-      real(wp) :: inverse
-      integer :: k
-
-      numbers = 0.0_wp
-      angles = 1.0_wp
-      do k = 1, size(e%needed)
-         associate (block => e%blocks%numbers%blocks(e%needed(k)))
-            if (e%blocks%list(e%needed(k))%direct) cycle
-            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
-            associate (turned => block%lipschitz*inverse)
-               numbers = max(numbers, turned*inverse)
-               if (block%coarse > usual_coarse) numbers = max(numbers, block%coarse*inverse*max(1.0_wp, turned))
-               angles = max(angles, block%coarse*inverse*max(1.0_wp, turned**2/rate_digits))
-            end associate
-         end associate
-      end do
-   end subroutine find_growths
 
    !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
    pure subroutine find_largest(n, x, largest)
@@ -132,4 +125,28 @@ contains
          largest(2) = max(largest(2), abs(x(3, i)))
       end do
    end subroutine find_largest
+
+   !> By how much roundings of the motion `q` grow in the poles and curves of `m`, in characteristic ones; at infinity
+   !> and at rest without limit.
+   pure real(wp) function growth_in_centres(m, q) result(growth)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(row_t) :: row
+      integer :: i
+
+      growth = 0.0_wp
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind < request_pole) cycle
+         call find_row(m, q, m%requests(i), row)
+         if (row%state /= centre_finite) growth = huge(1.0_wp)
+         if (row%state /= centre_finite) return
+         associate (length => m%requests(i)%length, v => row%value(3, 1), a => row%value(3, 2))
+            if (m%requests(i)%kind == request_pole) then
+               growth = max(growth, (1.0_wp + norm2(row%value(:2, 2))/length)*m%requests(i)%rate/abs(row%weight))
+            else
+               growth = max(growth, (1.0_wp + row%value(1, 2)/length)*(3.0_wp/v + (v + a)/abs(row%weight)))
+            end if
+         end associate
+      end do
+   end function growth_in_centres
 end module digits_in_doubt

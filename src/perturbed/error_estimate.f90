@@ -2,15 +2,15 @@
 !> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_link, request_pair, request_pole
+   use mechanism, only: mechanism_t, request_point, request_pole
    use motion, only: motion_t
    use points, only: row_t, find_row, difference, is_fixed
-   use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
+   use instant_centres, only: centre_finite, centre_starting
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
    use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
-   use rounded_numbers, only: directions, caution, put_off, part_off
+   use rounded_numbers, only: directions, caution, put_off, put_sums_off
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
@@ -18,24 +18,23 @@ module error_estimate
    !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
    !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
    real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
+   !> A sum is off by so many roundings of its largest number. So the estimates of `make errors` are above all the true
+   !> errors, and 16 times these in the mean.
+   real(wp), parameter :: of_sum = 0.9_wp
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
    type :: error_estimate_t
       logical :: taken = .false.             !< `changes` tell something
       logical :: asked = .false.             !< --errors: wanted at every instant
-      logical :: without_own = .false.       !< `own` is not wanted
       real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
       type(sizes_t) :: sizes                 !< what numbers are compared with, where `taken`
       logical :: in_doubt = .false.          !< it is so much that digits may be lost
-      !> (length, angle or slide, derivative) The rounding error of a sum of numbers as large as the largest of the
-      !> rows.
-      real(wp) :: of_sums(3, 0:2) = 0.0_wp
       !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
       real(wp), allocatable :: changes(:, :, :)
-      type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
-      !> (3, 0:2, requests) Changes of the rows if all numbers are off by one rounding, if errors are asked for. What
-      !> exceeds `changes` is rounding of the calculation; rates of links that turn as one have no other error.
+      !> (3, 0:2, requests) --errors: what one rounding of all numbers changes at most, with the roundings of the
+      !> calculation itself: rates of links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
+      type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
    end type error_estimate_t
 
    !> What the estimates of a mechanism need.
@@ -60,7 +59,7 @@ contains
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found. `always`: also where no digit of a table is
-   !> in doubt; then with what `row_error` needs, unless found%without_own says that `estimate_of` is enough.
+   !> in doubt.
    subroutine estimate_errors(s, m, engine, q, always, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
@@ -77,20 +76,20 @@ contains
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
-         found%solved(size(m%requests)))
+         found%own(3, 0:2, size(m%requests)), found%solved(size(m%requests)))
       found%sizes = s%sizes
       found%taken = .true.
       call find_place(engine, q, s%place)
       s%place%stays = s%place%is_singular
       call find_changed(0, many, found%solved)
-      found%of_sums = errors_of_sums(m, q, s%sizes%length, found%solved)
       s%place%stays = .false.
       call find_changes(many, s%place%is_singular, found%changes, is_small)
       if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
-      if (.not. always .or. found%without_own) return
-      if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
+      call add_sums(.false., found%changes)
+      if (.not. always) return
       found%own = 0.0_wp
       if (.not. s%place%is_singular) call find_changes(1.0_wp, .true., found%own, is_small)
+      call add_sums(.true., found%own)
 
    contains
 
@@ -106,11 +105,9 @@ contains
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
                associate (blocks => engine%blocks)
-                  call put_off(m, blocks%tree, blocks%numbers%equations%axes, k, roundings, p%m)
+                  call put_off(m, blocks%tree, blocks%numbers%equations%axes, k, roundings, p%m, p%time_off)
                end associate
                call put_changes(p, by_roundings=.true.)
-               p%time_off = 0.0_wp
-               if (k > 0) p%time_off = roundings*part_off(k)
                p%direction = k
                p%roundings = roundings
             end if
@@ -126,7 +123,7 @@ contains
          real(wp), intent(out) :: changes(:, 0:, :)
          logical, intent(out) :: is_small
          type(row_t), dimension(size(found%solved)) :: rows, other
-         real(wp) :: part, x(3, 0:2)
+         real(wp) :: part
          integer :: k, i
 
          ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
@@ -142,19 +139,54 @@ contains
                where (rows%known < 0) rows = other
             end if
             do i = 1, size(rows)
-               associate (one => rows(i), middle => found%solved(i))
-                  x = part*difference(one, middle)
-                  if (one%kind < request_pole) then
-                     x(:, one%known + 1:) = nothing_known
-                  else
-                     x = merge(nothing_known, x, lost_numbers(one, middle))
-                  end if
-                  changes(:, :, i) = max(changes(:, :, i), x)
-               end associate
+               changes(:, :, i) = max(changes(:, :, i), change(rows(i), found%solved(i), part))
             end do
          end do
       end subroutine find_changes
+
+      !> Adds to the `changes` (3, 0:2, requests) those by a rounding of the sums that the motion and its rows are.
+      !> `zeros`: also to those of rates that are zero, and that no change of the numbers changes.
+      subroutine add_sums(zeros, changes)
+         logical, intent(in) :: zeros
+         real(wp), intent(inout) :: changes(:, 0:, :)
+         real(wp) :: of_sums(3, 0:2, size(m%requests)), x(3, 0:2)
+         type(motion_t) :: other
+         type(row_t) :: one, row
+         integer :: k, i
+
+         of_sums = 0.0_wp
+         do k = 1, directions
+            other = q
+            ! By one they could be hidden by the roundings of the rows.
+            call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, other)
+            do i = 1, size(m%requests)
+               call find_row(m, q, m%requests(i), row)
+               call find_row(m, other, m%requests(i), one)
+               ! No sum moves a centre from infinity.
+               if (row%state /= centre_finite) one%state = row%state
+               x = change(one, row, of_sum/few)
+               if (.not. zeros) &
+                  x(:, 1:) = merge(x(:, 1:), 0.0_wp, abs(row%value(:, 1:)) > 0.0_wp .or. changes(:, 1:, i) > 0.0_wp)
+               of_sums(:, :, i) = max(of_sums(:, :, i), x)
+            end do
+         end do
+         changes = min(hypot(changes, of_sums), nothing_known)
+      end subroutine add_sums
    end subroutine estimate_errors
+
+   !> The change (3, 0:2) by a rounding, from the rows `middle` and `one`, of which a `part` is that of one rounding.
+   pure function change(one, middle, part) result(x)
+      type(row_t), intent(in) :: one, middle
+      real(wp), intent(in) :: part
+      real(wp) :: x(3, 0:2)
+
+      x = part*difference(one, middle)
+      if (one%kind < request_pole) then
+         x(:, one%known + 1:) = nothing_known
+      else
+         x = merge(nothing_known, x, lost_numbers(one, middle))
+      end if
+   end function change
 
    !> Estimates what rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`,
    !> in its units. `nothing_known`, where it is so.
@@ -164,27 +196,20 @@ contains
       type(error_estimate_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp), dimension(3, 0:2) :: error
-      logical :: is_zero(3, 0:2)
 
       error = 0.0_wp
       associate (request => m%requests(i))
          if (is_fixed(m, request)) then
-            error(:, 0) = fixed_error(m, request)
+            ! A sum of numbers of cards.
+            error(:, 0) = abs(row%value(:, 0))
+            if (request%kind == request_point) error(:, 0) = max(error(:, 0), norm2(m%points(request%subject)%offset), &
+               norm2(m%links(m%points(request%subject)%link)%position(:2)))
+            error(:, 0) = merge(caution*epsilon(1.0_wp)*error(:, 0), 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
             return
          end if
          if (s%asked) error = nothing_known
          if (.not. s%taken) return
-         associate (largest => s%changes(:, :, i))
-            error = caution*largest + error_of_sums(s%of_sums, request, row)
-            ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels. A coordinate of
-            ! what moves is zero by chance only.
-            is_zero = .not. (abs(row%value) > 0.0_wp .or. largest > 0.0_wp)
-            is_zero(:, 0) = all(is_zero, dim=2)
-            if (request%kind == request_link) is_zero(3, 0) = .false.
-            if (request%kind == request_pair .and. row%angular) is_zero(1, 0) = .false.
-            where (is_zero) error = 0.0_wp
-            where (largest >= nothing_known) error = nothing_known
-         end associate
+         error = merge(nothing_known, caution*s%changes(:, :, i), s%changes(:, :, i) >= nothing_known)
          if (request%kind < request_pole) error(:, min(row%known, s%solved(i)%known) + 1:) = nothing_known
       end associate
    end function estimate_of
@@ -196,16 +221,30 @@ contains
       type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp), dimension(3, 0:2) :: error, least
+      real(wp), dimension(3, 0:2) :: error
       type(row_t) :: row
 
       call find_row(m, q, m%requests(i), row)
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
-      ! A rate that is zero may be a sum that cancels; a coordinate that is zero without a sum stays so.
-      least = max(caution*(s%own(:, :, i) - s%changes(:, :, i)), error_of_sums(s%of_sums, m%requests(i), row))
-      where (error(:, 0) <= 0.0_wp) least(:, 0) = 0.0_wp
-      where (error < nothing_known) error = max(error, least) + difference(row, s%solved(i))
+      where (error < nothing_known) error = max(error, caution*s%own(:, :, i)) + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
+
+   !> The numbers (3, 0:2) of the pole or curve `row` of which a sample with the row `one` leaves nothing: all, where it
+   !> has no such motion; places, where one of the two has its centre at infinity, or rests, and the other not, or they
+   !> are on two sides of infinity; and directions, where one rests.
+   pure function lost_numbers(one, row) result(lost)
+      type(row_t), intent(in) :: one, row
+      logical :: lost(3, 0:2)
+      integer :: first
+      logical :: same_side
+
+      lost = one%known < row%known
+      same_side = row%state /= centre_finite .or. (one%weight > 0.0_wp .eqv. row%weight > 0.0_wp)
+      if (one%state == row%state .and. same_side) return
+      first = merge(0, 1, row%kind == request_pole)
+      lost(:2, first:) = .true.
+      if (max(one%state, row%state) >= centre_starting) lost(3, :) = .true.
+   end function lost_numbers
 end module error_estimate

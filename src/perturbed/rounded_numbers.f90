@@ -8,7 +8,7 @@
 !> the mean of 1/(12 m**2) over mantissas m = 1 to 2, 0.045, if small mantissas are as frequent as in numbers by chance.
 !> A vector of length L that turns is rounded four times: on its card, in the sine and cosine, in their products, and in
 !> the sum of two of these. Each leaves 0.045 (eps L)**2 in both components together; the directions have 2 (eps L)**2.
-!> So the standard deviation of the error is s sqrt(4*0.045/2) = 0.30 s. (What is added up to rows is in `sum_errors`.)
+!> So the standard deviation of the error is s sqrt(4*0.045/2) = 0.30 s.
 !> Of eight normal deviates the largest is below a ninth one over r in one of a million cases if r = 7.84; for sixteen
 !> directions r would be 4.07. The factor is 7.84*0.30 = 2.35.
 module rounded_numbers
@@ -18,10 +18,11 @@ module rounded_numbers
    use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number, put_table
+   use motion, only: motion_t, known_of
    use links_tree, only: tree_t, axes_t
    implicit none
    private
-   public :: directions, caution, put_off, part_off
+   public :: directions, caution, put_off, put_sums_off
 
    integer, parameter :: directions = 8
    real(wp), parameter :: caution = 2.35_wp
@@ -34,18 +35,22 @@ module rounded_numbers
 contains
 
    !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
-   !> by so many `roundings`; 0: by none. As they stand are the time of a table, the exponent of a power, the angles
-   !> of ground links, BETA of guides, and the initial guess of moving links. `t`, `axes`: of `m`.
-   subroutine put_off(m, t, axes, k, roundings, off)
+   !> by so many `roundings`; 0: by none. `time_off`: by this part of it the instant is off. As they stand are the time
+   !> of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial guess of moving
+   !> links. `t`, `axes`: of `m`.
+   subroutine put_off(m, t, axes, k, roundings, off, time_off)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
       type(mechanism_t), intent(inout) :: off
+      real(wp), intent(out) :: time_off
       real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
+      time_off = 0.0_wp
+      if (k > 0) time_off = roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
          do j = 1, 2
@@ -131,12 +136,45 @@ contains
       end subroutine put_term
    end subroutine put_off
 
-   !> By which part of it the instant is off in direction `k` by a rounding.
-   pure real(wp) function part_off(k)
+   !> Puts the motion `q` of links with the tree `t` off in direction `k`, by so many `roundings` of sums of numbers as
+   !> large as the largest of its links; `length`: the characteristic one. What is summed up to a velocity is no smaller
+   !> than an angular velocity times a length, what is summed up to an acceleration has the square of one. A coordinate
+   !> that is zero and rests stays so, but for angles, which may cancel. Links that turn as one turn as one.
+   subroutine put_sums_off(t, length, k, roundings, q)
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length, roundings
       integer, intent(in) :: k
+      type(motion_t), intent(inout) :: q
+      real(wp) :: size_of(2, 0:2), x(0:2)
+      integer :: i, c, j
 
-      part_off = epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
-   end function part_off
+      size_of = 0.0_wp
+      size_of(1, 0) = maxval(abs(q%origin))
+      do i = 1, size(q%position, 2)
+         if (known_of(q, i) < 0) cycle
+         size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, i) + q%origin)), &
+            maxval(abs(q%velocity(:2, i))), maxval(abs(q%acceleration(:2, i)))])
+         size_of(2, :) = max(size_of(2, :), abs([q%position(3, i), q%velocity(3, i), q%acceleration(3, i)]))
+      end do
+      size_of(2, 0) = max(size_of(2, 0), 1.0_wp)
+      size_of(1, :1) = max(size_of(1, :1), size_of(2, :1)*length)
+      size_of(:, 2) = max(size_of(:, 2), size_of(:, 1)*size_of(2, 1))
+      size_of = roundings*epsilon(1.0_wp)*size_of
+
+      do i = 1, size(q%position, 2)
+         do c = 1, 3
+            x = [q%position(c, i), q%velocity(c, i), q%acceleration(c, i)]
+            if (.not. (any(abs(x) > 0.0_wp) .or. c == 3)) cycle
+            do j = 0, 2
+               x(j) = x(j) + size_of(merge(2, 1, c == 3), j) &
+                  *deviate(card_number_t(number_time, merge(t%orientation(i), i, c == 3 .and. j > 0), c, j + 1), k)
+            end do
+            q%position(c, i) = x(0)
+            q%velocity(c, i) = x(1)
+            q%acceleration(c, i) = x(2)
+         end do
+      end do
+   end subroutine put_sums_off
 
    !> The normal deviate of the number with this address in direction `k` (Box and Muller).
    pure real(wp) function deviate(number, k) result(z)

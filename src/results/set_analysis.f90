@@ -160,7 +160,6 @@ contains
                call find_row(own, q, request_of(s%now, list(i)), rows(i))
             end do
             if (.not. present(always)) return
-            estimate%without_own = .true.
             call estimate_errors(s%estimators(c), own, a%engine, q, always, estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
