@@ -34,14 +34,14 @@ module job
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
       put_variants_end
-   use lane_runs, only: lane_run_t, renew_run, begin_run, run_lanes, width
+   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use phrases, only: phrase_t, phrase, say_broken_set, say_broken_variant, say_broken_off
    use numerals, only: whole
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
-   use set_analysis, only: set_analysis_t, make_set_analysis, begin_analysis, advance_set, sample_set, prove_set, &
-      set_closing_diagnostics
+   use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, begin_analysis, advance_set, &
+      sample_set, prove_set, set_closing_diagnostics
    use analysis, only: redundancy_error
    implicit none
    private
@@ -352,11 +352,15 @@ contains
          call build_variant(v, r%row%number, r%m, r%row%rejected)
          r%is_over = r%row%rejected /= ''
          if (r%is_over) return
-         call renew_run(r, is_done)
-         if (is_done) return
-         call check_variant(r%m, findings, r%row)
-         r%is_over = r%row%rejected /= ''
-         if (.not. r%is_over) call begin_run(r, findings)
+         ! A variant with the structure of the one before takes over what that has made.
+         call renew_set_analysis(r%m, r%s, is_done)
+         if (.not. is_done) then
+            call check_variant(r%m, findings, r%row)
+            r%is_over = r%row%rejected /= ''
+            if (r%is_over) return
+            call make_set_analysis(r%m, r%s, findings)
+         end if
+         call begin_run(r)
       end subroutine start
 
       !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.

@@ -6,13 +6,12 @@ module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
    use motion, only: mark_none
-   use structure, only: findings_t
    use predictor, only: is_even
    use drive_excursion, only: judge_step
    use analysis, only: come_back
    use block_engine, only: get_motion
    use digits_in_doubt, only: find_growth
-   use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
+   use set_analysis, only: set_analysis_t, advance_set
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
@@ -23,7 +22,7 @@ module lane_runs
    use lane_steps, only: judgement_t, solve_lanes, accept_lanes, keep_lane
    implicit none
    private
-   public :: lane_run_t, renew_run, begin_run, run_lanes, width
+   public :: lane_run_t, begin_run, run_lanes, width
 
    !> Instants that the ordinary engine solves from where a lane is refused, at first: three, which a prediction takes;
    !> twice as many each time.
@@ -47,27 +46,8 @@ module lane_runs
 
 contains
 
-   !> Makes `r`, which has solved a variant before, ready for the first instant of the variant r%m if that has the same
-   !> structure: `is_done`.
-   subroutine renew_run(r, is_done)
-      type(lane_run_t), intent(inout) :: r
-      logical, intent(out) :: is_done
-
-      call renew_set_analysis(r%m, r%s, is_done)
-      if (is_done) call begin_answers(r)
-   end subroutine renew_run
-
-   !> Makes `r` ready for the first instant of the variant r%m, whose structure is `findings`.
-   subroutine begin_run(r, findings)
-      type(lane_run_t), intent(inout) :: r
-      type(findings_t), intent(inout) :: findings
-
-      call make_set_analysis(r%m, r%s, findings)
-      call begin_answers(r)
-   end subroutine begin_run
-
-   !> Nothing is known of any instant of `r` yet.
-   subroutine begin_answers(r)
+   !> Makes `r`, whose analysis r%s has the variant r%m, ready for its first instant.
+   subroutine begin_run(r)
       type(lane_run_t), intent(inout) :: r
 
       call new_answers(r%s, .false., r%asked)
@@ -75,7 +55,7 @@ contains
       r%patience = first_patience
       r%is_over = .false.
       r%is_laned = .false.
-   end subroutine begin_answers
+   end subroutine begin_run
 
    !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
    subroutine run_lanes(runs, l)

@@ -5,6 +5,7 @@ module bench_lanes
    use mechanism, only: mechanism_t
    use structure, only: findings_t, check_structure
    use failures, only: failure_t
+   use set_analysis, only: make_set_analysis
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use lane_sines, only: max_angle
@@ -80,7 +81,8 @@ contains
       do i = 1, width
          call check_structure(m, findings, failure)
          runs(i)%m = m(1)
-         call begin_run(runs(i), findings(1))
+         call make_set_analysis(runs(i)%m, runs(i)%s, findings(1))
+         call begin_run(runs(i))
       end do
       time = seconds()
       call run_lanes(runs, lanes)
