@@ -13,7 +13,7 @@ module column_search
    use known_digits, only: nothing_known
    use set_motion, only: find_row_in_set
    use set_analysis, only: set_analysis_t, rows_at
-   use nodes, only: node_t, sample_t, sample_of, beside_joint
+   use nodes, only: node_t, sample_t, beside_joint
    use zero_search, only: column_t, find_zero, find_turn, differ_in_sign, noise_part
    use extremes, only: extremes_t, track_t, offer_sample, note_velocity, note_interval, alike
    implicit none
@@ -22,7 +22,7 @@ module column_search
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
-   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 1.0e-3_wp, max_part = 1.0_wp/8.0_wp
+   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 5.0e-4_wp, max_part = 1.0_wp/8.0_wp
    !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
    real(wp), parameter :: errors_by_rates = 122.0_wp
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
@@ -54,37 +54,31 @@ contains
       logical, intent(in), optional :: always
       real(wp), intent(in), optional :: growth
       logical :: has_errors
+      real(wp) :: grows
       integer :: i
 
-      if (.not. allocated(node%f)) then
-         associate (n => size(track%coordinates))
-            allocate (node%known(n), node%f(0:2, n))
-            allocate (node%error(0:2, n), source=0.0_wp)
-         end associate
-      end if
+      if (.not. allocated(node%samples)) allocate (node%samples(size(track%coordinates)))
       node%t = t
+      node%is_known = .true.
       has_errors = .false.
       associate (rows => track%rows, error => track%error, c => s%now%rows(track%requests(1))%part)
          if (present(always)) then
-            call rows_at(s, c, track%requests, t, rows, always, error, node%growth)
-            has_errors = always .or. node%growth >= safe_growth
+            call rows_at(s, c, track%requests, t, rows, always, error, grows)
+            has_errors = always .or. grows >= safe_growth
          else
-            node%growth = growth
+            grows = growth
             do i = 1, size(rows)
                call find_row_in_set(s%now, track%requests(i), rows(i))
             end do
          end if
          do i = 1, size(track%coordinates)
-            associate (one => track%coordinates(i))
-               node%f(:, i) = rows(one%row)%value(one%column, :)
-               node%known(i) = rows(one%row)%known
-               if (has_errors .or. node%has_errors) node%error(:, i) = error(one%column, :, one%row)
+            associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
+               sample = sample_t(t, rows(row)%value(k, :), known=rows(row)%known, growth=grows)
+               if (has_errors) sample%error = error(k, :, row)
+               node%is_known = node%is_known .and. sample%known == 2 .and. all(sample%error < nothing_known)
             end associate
          end do
       end associate
-      node%has_errors = has_errors
-      node%is_known = all(node%known == 2)
-      if (has_errors) node%is_known = node%is_known .and. all(node%error < nothing_known)
    end subroutine find_node
 
    !> Finds the node of mechanism `c` that comes next, at the time `t`, and whether something turns between the last
@@ -117,10 +111,10 @@ contains
          if (track%turns) return
          do i = 1, size(track%coordinates)
             associate (one => track%coordinates(i))
-               call find_jerk(a, middle, b, i, one%size_of, jerk, noise, simple)
+               call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, jerk, noise, simple)
                track%turns = track%turns .or. .not. simple
                do k = 1, 2
-                  f = [a%f(k, i), middle%f(k, i), b%f(k, i)]
+                  f = [a%samples(i)%f(k), middle%samples(i)%f(k), b%samples(i)%f(k)]
                   clear = merge(f, one%last(k), abs(f) > noise(k))
                   call compare(clear, one%last(k))
                end do
@@ -208,15 +202,14 @@ contains
       end associate
    end subroutine search_waiting
 
-   !> Finds the derivatives `jerk` of the acceleration of coordinate `i` at the ends of a part with the nodes `a`,
+   !> Finds the derivatives `jerk` of the acceleration of a coordinate at the ends of a part with the samples `a`,
    !> `middle` and `b`; `size_of`: its characteristic values. They are those of the polynomial of degree 8 with the
    !> values, rates and accelerations (Hermite), which has an error of 2E-6 of the ninth derivative, but where rounding
    !> explains the difference from rates and accelerations alone, with an error of 7E-4 of the seventh. `noise`: what
    !> rounding may leave open, at most, of rate and acceleration. `simple`: the cubic with the accelerations and jerks
    !> at the ends has about the acceleration in the middle, and one extreme inside at most.
-   pure subroutine find_jerk(a, middle, b, i, size_of, jerk, noise, simple)
-      type(node_t), intent(in) :: a, middle, b
-      integer, intent(in) :: i
+   pure subroutine find_jerk(a, middle, b, size_of, jerk, noise, simple)
+      type(sample_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: size_of(0:2)
       real(wp), intent(out) :: jerk(2), noise(2)
       logical, intent(out) :: simple
@@ -225,12 +218,11 @@ contains
 
       h = b%t - a%t
       left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*size_of
-      if (a%has_errors .or. middle%has_errors .or. b%has_errors) &
-         left = max(a%error(:, i), middle%error(:, i), b%error(:, i), left)
+      left = max(a%error, middle%error, b%error, left)
       noise = left(1:)
-      first = a%f(:, i)*[1.0_wp, h, h*h]
-      half = middle%f(:, i)*[1.0_wp, h, h*h]
-      last = b%f(:, i)*[1.0_wp, h, h*h]
+      first = a%f*[1.0_wp, h, h*h]
+      half = middle%f*[1.0_wp, h, h*h]
+      last = b%f*[1.0_wp, h, h*h]
       open = max(left(0), noise_part*max(abs(first(0)), abs(half(0)), abs(last(0))))
 
       ! The mean of both jerks and half their change, times h^3.
@@ -246,13 +238,14 @@ contains
 
       ! In accelerations; what is less than `open` counts for nothing.
       open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
-      first(2) = a%f(2, i)
-      last(2) = b%f(2, i)
+      first(2) = a%f(2)
+      half(2) = middle%f(2)
+      last(2) = b%f(2)
       mean = mean/(h*h)
       change = change/(h*h)
       step = last(2) - first(2)
-      simple = abs(middle%f(2, i) - 0.5_wp*(first(2) + last(2)) + 0.25_wp*change) <= misses_by &
-         *(max(first(2), middle%f(2, i), last(2)) - min(first(2), middle%f(2, i), last(2))) + open
+      simple = abs(half(2) - 0.5_wp*(first(2) + last(2)) + 0.25_wp*change) <= misses_by &
+         *(max(first(2), half(2), last(2)) - min(first(2), half(2), last(2))) + open
       most = abs(mean) + abs(change)
       if (abs(change) > abs(mean) .or. most <= open) return
       simple = simple .and. mean*sign(1.0_wp, step) > 0.0_wp .and. most <= steeper_by*abs(step) + open
@@ -264,15 +257,15 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
       logical, intent(in) :: next
-      type(sample_t) :: sample
       integer :: i, k
 
-      do i = 1, size(node%known)
-         sample = sample_of(node, i)
-         do k = 0, sample%known
-            call offer_sample(x%tracks(c)%coordinates(i), k, sample, .false., x%step)
-         end do
-         if (next .and. sample%known == 2) call note_velocity(x%tracks(c)%coordinates(i), sample)
+      do i = 1, size(node%samples)
+         associate (one => x%tracks(c)%coordinates(i), sample => node%samples(i))
+            do k = 0, sample%known
+               call offer_sample(one, k, sample, .false., x%step)
+            end do
+            if (next .and. sample%known == 2) call note_velocity(one, sample)
+         end associate
       end do
    end subroutine take_node
 
@@ -307,7 +300,8 @@ contains
             return
          end if
          do i = 1, size(simple)
-            call find_jerk(a, middle, b, i, track%coordinates(i)%size_of, jerk(:, i), noise, simple(i))
+            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, jerk(:, i), &
+               noise, simple(i))
          end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
@@ -338,7 +332,7 @@ contains
 
       do i = 1, size(x%tracks(c)%coordinates)
          associate (one => x%tracks(c)%coordinates(i))
-            path = [sample_of(a, i), sample_of(middle, i), sample_of(b, i)]
+            path = [a%samples(i), middle%samples(i), b%samples(i)]
             column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
                max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
             do k = 0, 2

@@ -15,7 +15,7 @@ module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, sample_of, extreme_t, times_between, beside_joint
+   use nodes, only: node_t, extreme_t, times_between, beside_joint
    use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
@@ -97,7 +97,7 @@ contains
          end if
          associate (node => track%nodes(track%filled + 1))
             known = node%is_known
-            track%is_lost = any(node%known < 0)
+            track%is_lost = any(node%samples%known < 0)
          end associate
          call add_node(x, s, c)
          if (k == s%now%steps) call search_waiting(x, s, c)
@@ -202,7 +202,7 @@ contains
          type(node_t) :: near(places)
          type(extreme_t), dimension(0:2, size(x%tracks(c)%coordinates)) :: limits, best
          real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
-         integer :: i, k, try
+         integer :: i, k, n, try
 
          five = merge(in_time, in_root, at%is_change)
          four = merge(four_in_time, four_in_root, at%is_change)
@@ -224,10 +224,10 @@ contains
             do k = 1, size(limits, 2)
                do i = 0, 2
                   associate (one => limits(i, k), size_of => x%tracks(c)%coordinates(k)%size_of(i))
-                     f = [near(1)%f(i, k), near(2)%f(i, k), near(3)%f(i, k), near(4)%f(i, k), near(5)%f(i, k)]
+                     f = [(near(n)%samples(k)%f(i), n=1, places)]
                      one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
-                     one%error = 2.0_wp*abs(dot_product(five - four, f)) + max(near(1)%error(i, k), &
-                        near(2)%error(i, k), near(3)%error(i, k), near(4)%error(i, k), near(5)%error(i, k))
+                     one%error = 2.0_wp*abs(dot_product(five - four, f)) &
+                        + maxval([(near(n)%samples(k)%error(i), n=1, places)])
                      one%has_bound = at%is_change .or. abs(f(1)) < growth*abs(f(2)) .or. abs(f(1)) < small*size_of
                      if (.not. one%has_bound) one%value = f(1)
                      one%exists = .not. one%has_bound .or. one%error <= badly_known*max(size_of, abs(one%value))

@@ -4,7 +4,7 @@ module nodes
    use kinds, only: wp
    implicit none
    private
-   public :: sample_t, sample_of, node_t, extreme_t, times_between, beside_joint, order_along
+   public :: sample_t, node_t, extreme_t, times_between, beside_joint, order_along
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
@@ -26,10 +26,7 @@ module nodes
       !> All of the motion is known, and of no number all digits are open: such a one cannot be told to be an extreme,
       !> nor to be none.
       logical :: is_known = .false.
-      logical :: has_errors = .false.          !< not all of `error` is 0
-      real(wp) :: growth = 0.0_wp              !< as in `sample_t`
-      integer, allocatable :: known(:)         !< (coordinates) likewise
-      real(wp), allocatable, dimension(:, :) :: f, error   !< (0:2, coordinates) likewise
+      type(sample_t), allocatable :: samples(:)   !< (coordinates)
    end type node_t
 
    !> The least or the greatest value of a number, or what may be that. In the deck's unit or rad.
@@ -42,14 +39,6 @@ module nodes
    end type extreme_t
 
 contains
-
-   !> Coordinate `i` of the `node`.
-   pure type(sample_t) function sample_of(node, i) result(sample)
-      type(node_t), intent(in) :: node
-      integer, intent(in) :: i
-
-      sample = sample_t(node%t, node%f(:, i), node%error(:, i), node%known(i), node%growth)
-   end function sample_of
 
    !> The times of the nodes between `t1` and `t2`, instants of a run of the time `run`, in their order: at each of the
    !> `joints` of the drives' laws, which are in this order too, and on either side of it; and between them, so that no
