@@ -122,7 +122,7 @@ contains
       end do
    end subroutine run_lanes
 
-   !> Lane `i` has made a step of `r`, to the time `t`: it counts, unless the engine must make it. That is so if it is
+   !> Takes the step of `r` to the time `t` that lane `i` has made, unless the engine must make it. That is so if it is
    !> refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the last
    !> instant, of which they take more.
    subroutine look_at_step(r, l, i, j, t)
@@ -208,7 +208,7 @@ contains
       end associate
    end subroutine load_run
 
-   !> The next instants of `r`, up to number `last` or the last that there is, by the engine.
+   !> Solves the next instants of `r` by the engine, up to number `last` or the last that there is.
    subroutine by_engine(r, last)
       type(lane_run_t), intent(inout) :: r
       integer, intent(in) :: last
@@ -224,8 +224,8 @@ contains
       r%is_over = r%at == instant_count(r%m) - 1
    end subroutine by_engine
 
-   !> EXTREMES of `r` take the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in range, and
-   !> none of their digits is in doubt.
+   !> Gives the EXTREMES of `r` the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in range,
+   !> and none of their digits is in doubt.
    subroutine watch_lane(r, l, i, t, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
