@@ -37,7 +37,7 @@ function note_gaps(text,  list, n, i, ends, scale) {
       from[set, gaps[set]] = scale*value_of(ends[1])
       to[set, gaps[set]] = scale*value_of(ends[2] == ".." ? ends[3] : ends[1])
    }
-   if (text ~ /MORE/) all_gaps_known[set] = 0
+   if (text ~ / MORE/) has_more[set] = 1
 }
 function is_covered(set, t,  i, low, high, open) {
    if (t in seen) return seen[t]
@@ -75,7 +75,7 @@ file == 1 || FNR == 1 { next }
    split($0, a, ",")
    if (a[1] != last_set) { split("", seen); last_set = a[1]; begins_later = 0 }
    if (a[2] == 0 && a[4] == "LINK" && a[6] == "") begins_later = 1
-   covered = !begins_later && is_covered(a[1] + 0, a[3] + 0)
+   covered = !begins_later && !(a[1] in has_more) && is_covered(a[1] + 0, a[3] + 0)
    for (i = 1; i <= 9; i++) {
       if (a[5 + i] == "") continue
       j = i
