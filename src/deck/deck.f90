@@ -96,8 +96,8 @@ contains
    subroutine take_card(card, progress)
       type(card_t), intent(in) :: card
       type(reading_t), intent(inout) :: progress
-      type(parsed_card_t) :: parsed
       type(parsed_card_t), allocatable :: larger(:)
+      integer :: n
 
       associate (set => progress%set)
          if (card%text(1:1) == '*') then
@@ -108,21 +108,21 @@ contains
             end if
             return
          end if
-         call read_card(card, parsed, set%errors)
-         if (parsed%form /= form_end) then
-            if (set%count == size(set%cards)) then
-               allocate (larger(2*set%count))
-               larger(1:set%count) = set%cards
-               call move_alloc(larger, set%cards)
+         n = set%count + 1
+         if (n > size(set%cards)) then
+            allocate (larger(2*set%count))
+            larger(1:set%count) = set%cards
+            call move_alloc(larger, set%cards)
+         end if
+         call read_card(card, set%cards(n), set%errors)
+         if (set%cards(n)%form /= form_end) then
+            if (n > 1) then
+               set%cards(n)%below = n - 1
+               if (any(set%cards(n - 1)%form == [form_toler, form_vary])) set%cards(n)%below = set%cards(n - 1)%below
             end if
-            if (set%count > 0) then
-               parsed%below = set%count
-               if (any(set%cards(set%count)%form == [form_toler, form_vary])) parsed%below = set%cards(set%count)%below
-            end if
-            set%count = set%count + 1
-            set%cards(set%count) = parsed
-            set%number_of(parsed%form) = set%number_of(parsed%form) + 1
-            set%names_certain = set%names_certain .and. parsed%names_certain
+            set%count = n
+            set%number_of(set%cards(n)%form) = set%number_of(set%cards(n)%form) + 1
+            set%names_certain = set%names_certain .and. set%cards(n)%names_certain
          else
             ! A card that was not understood may be the missing one.
             if (set%names_certain .and. set%number_of(form_link) == 0) &
