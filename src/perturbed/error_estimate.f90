@@ -85,11 +85,9 @@ contains
       s%place%stays = .false.
       call find_changes(many, s%place%is_singular, found%changes, is_small)
       if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
-      call add_sums(.false., found%changes)
-      if (.not. always) return
       found%own = 0.0_wp
-      if (.not. s%place%is_singular) call find_changes(1.0_wp, .true., found%own, is_small)
-      call add_sums(.true., found%own)
+      if (always .and. .not. s%place%is_singular) call find_changes(1.0_wp, .true., found%own, is_small)
+      call add_sums()
 
    contains
 
@@ -144,33 +142,35 @@ contains
          end do
       end subroutine find_changes
 
-      !> Adds to the `changes` (3, 0:2, requests) those by a rounding of the sums that the motion and its rows are.
-      !> `zeros`: also to those of rates that are zero, and that no change of the numbers changes.
-      subroutine add_sums(zeros, changes)
-         logical, intent(in) :: zeros
-         real(wp), intent(inout) :: changes(:, 0:, :)
-         real(wp) :: of_sums(3, 0:2, size(m%requests)), x(3, 0:2)
+      !> Adds to both changes those by a rounding of the sums that the motion and its rows are.
+      subroutine add_sums()
+         real(wp) :: of_sums(3, 0:2, size(m%requests))
          type(motion_t) :: other
-         type(row_t) :: one, row
+         type(row_t) :: one, rows(size(m%requests))
          integer :: k, i
 
+         do i = 1, size(rows)
+            call find_row(m, q, m%requests(i), rows(i))
+         end do
          of_sums = 0.0_wp
          do k = 1, directions
             other = q
             ! By one they could be hidden by the roundings of the rows.
             call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, other)
-            do i = 1, size(m%requests)
-               call find_row(m, q, m%requests(i), row)
+            do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
                ! No sum moves a centre from infinity.
-               if (row%state /= centre_finite) one%state = row%state
-               x = change(one, row, of_sum/few)
-               if (.not. zeros) &
-                  x(:, 1:) = merge(x(:, 1:), 0.0_wp, abs(row%value(:, 1:)) > 0.0_wp .or. changes(:, 1:, i) > 0.0_wp)
-               of_sums(:, :, i) = max(of_sums(:, :, i), x)
+               if (rows(i)%state /= centre_finite) one%state = rows(i)%state
+               of_sums(:, :, i) = max(of_sums(:, :, i), change(one, rows(i), of_sum/few))
             end do
          end do
-         changes = min(hypot(changes, of_sums), nothing_known)
+         found%own = min(hypot(found%own, of_sums), nothing_known)
+         ! For the tables a rate that is zero, and that no change of the numbers changes, is no sum.
+         do i = 1, size(rows)
+            of_sums(:, 1:, i) = merge(of_sums(:, 1:, i), 0.0_wp, abs(rows(i)%value(:, 1:)) > 0.0_wp &
+               .or. found%changes(:, 1:, i) > 0.0_wp)
+         end do
+         found%changes = min(hypot(found%changes, of_sums), nothing_known)
       end subroutine add_sums
    end subroutine estimate_errors
 
