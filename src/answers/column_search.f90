@@ -9,7 +9,6 @@
 !> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
 module column_search
    use kinds, only: wp
-   use digits_in_doubt, only: safe_growth
    use known_digits, only: nothing_known
    use set_motion, only: find_row_in_set
    use set_analysis, only: set_analysis_t, rows_at
@@ -21,7 +20,7 @@ module column_search
    public :: find_node, find_next, add_node, search_waiting
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
-   !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
+   !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_turn` shortens it.
    real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 5.0e-4_wp, max_part = 1.0_wp/8.0_wp
    !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
    real(wp), parameter :: errors_by_rates = 122.0_wp
@@ -53,18 +52,15 @@ contains
       type(node_t), intent(inout) :: node
       logical, intent(in), optional :: always
       real(wp), intent(in), optional :: growth
-      logical :: has_errors
       real(wp) :: grows
       integer :: i
 
       if (.not. allocated(node%samples)) allocate (node%samples(size(track%coordinates)))
       node%t = t
       node%is_known = .true.
-      has_errors = .false.
       associate (rows => track%rows, error => track%error, c => s%now%rows(track%requests(1))%part)
          if (present(always)) then
             call rows_at(s, c, track%requests, t, rows, always, error, grows)
-            has_errors = always .or. grows >= safe_growth
          else
             grows = growth
             do i = 1, size(rows)
@@ -74,7 +70,7 @@ contains
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
                sample = sample_t(t, rows(row)%value(k, :), known=rows(row)%known, growth=grows)
-               if (has_errors) sample%error = error(k, :, row)
+               if (present(always)) sample%error = error(k, :, row)
                node%is_known = node%is_known .and. sample%known == 2 .and. all(sample%error < nothing_known)
             end associate
          end do
