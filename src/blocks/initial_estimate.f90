@@ -78,7 +78,7 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: phi(:)
 
-      opening = norm2(closure_error_of(m, k, phi))
+      if (m%pairs(k)%kind == pair_revolute) opening = norm2(closure_error_of(m, k, phi))
       if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset + dot_product(closure_error_of(m, k, phi), &
          quarter_turn(direction(phi(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))))
    end function opening_of
