@@ -4,7 +4,7 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, of_slope, of_bend, of_size, step_along, step_between, &
+   use circuit_curve, only: curve_t, curve_point_t, of_value, of_slope, of_bend, of_size, step_along, step_between, &
       lies_between, offset_from, reversed
    use drives, only: halve, middle_of
    use pose, only: add_to_links
@@ -37,26 +37,31 @@ module circuit_trace
 contains
 
    !> The circuit of the curve `c` through the point `start`. One that closes begins, and ends, at its first dead point.
-   recursive subroutine trace(c, start, circuit)
+   subroutine trace(c, start, circuit)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(circuit_t) :: back
       type(curve_point_t), allocatable :: points(:)
-      type(curve_point_t) :: dead
       integer :: n, i
 
       call follow(c, start, circuit)
       if (circuit%ends(2) == end_closed) then
          circuit%ends(1) = end_closed
-         ! Of a dead point at the start only the neighbours tell, if it is not known.
+         ! Of a dead point at the start only the neighbours tell.
          n = size(circuit%points)
-         circuit%points([1, n])%is_dead = start%is_dead .or. sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
+         circuit%points([1, n])%is_dead = sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
          i = findloc(circuit%points%is_dead, .true., dim=1)
-         if (i > 1 .and. .not. start%is_dead) then
-            dead = circuit%points(i)
-            call trace(c, dead, circuit)
-            return
+         if (i > 1) then
+            ! What comes before that point comes a round later.
+            points = [circuit%points(i:), circuit%points(2:i)]
+            associate (first => circuit%points(1), last => circuit%points(n))
+               do i = n - i + 2, n
+                  points(i)%q = points(i)%q + (last%q - first%q)
+                  points(i)%value(of_value) = points(i)%value(of_value) + (last%value(of_value) - first%value(of_value))
+               end do
+            end associate
+            call move_alloc(points, circuit%points)
          end if
       else
          call follow(c, reversed(start), back)
@@ -71,7 +76,7 @@ contains
          call move_alloc(points, circuit%points)
          circuit%ends(1) = back%ends(2)
       end if
-      circuit%rests = .not. any(is_sure(circuit%points))
+      circuit%rests = size(circuit%points) > 1 .and. .not. any(is_sure(circuit%points))
    end subroutine trace
 
    !> Follows the curve from `start` in the sense of its tangent to its end.
@@ -153,8 +158,11 @@ contains
             ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
                .and. norm2(b%tangent - a%tangent) < straight
             if (.not. ok) return
-            call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
-            change%value(0) = 0.5_wp*(a%value(0) + b%value(0))
+            ! Halfway on the cubic through both with their tangents: the drive may have its dead point there.
+            call add_to_links(c%closure, &
+               0.5_wp*offset_from(c, a%q, b%q, .false.) + 0.125_wp*h*(a%tangent - b%tangent), change%q)
+            change%value(of_value) = 0.5_wp*(a%value(of_value) + b%value(of_value)) &
+               + 0.125_wp*h*(a%value(of_slope) - b%value(of_slope))
          end associate
          change%reach = 0.0_wp
          change%is_change = .true.

@@ -97,11 +97,13 @@ contains
       end do
 
       held = held_at(m, start%t)
-      if (start%known >= 0) call add_circuit(found, start%position)
+      if (start%known >= 0) call add_circuit(found, start%position, .false.)
       do i = 1, size(all_of_them%list)
-         call add_circuit(found, all_of_them%list(i)%position)
+         call add_circuit(found, all_of_them%list(i)%position, .false.)
       end do
       call search_whole_range(held, found)
+      ! The run's own assembly has a row, if only one of a circuit that is not followed.
+      if (start%known >= 0) call add_circuit(found, start%position, .true.)
 
       do i = 1, size(found%list)
          call add_branches(found, held, i)
@@ -132,7 +134,7 @@ contains
             driven%drives(found%drive)%polynomial(1) = from + turn*real(k, wp)/real(n, wp)
             call find_assemblies(driven, 0.0_wp, more)
             do i = 1, size(more%list)
-               call add_circuit(found, more%list(i)%position)
+               call add_circuit(found, more%list(i)%position, .false.)
             end do
             if (k == 0) n = min(n, max_paths/max(1, sum(more%blocks%paths)))
             k = k + 1
@@ -141,24 +143,25 @@ contains
    end subroutine search_whole_range
 
    !> Adds the circuit through the links' `position` (3, links), in the deck's unit and from its origin, unless it is
-   !> known.
-   subroutine add_circuit(found, position)
+   !> known. From a change point, where it cannot be followed, and beyond all limits only if it is `needed`.
+   subroutine add_circuit(found, position, needed)
       type(circuits_t), intent(inout) :: found
       real(wp), intent(in) :: position(:, :)
+      logical, intent(in) :: needed
       type(curve_point_t) :: p
       type(circuit_t), allocatable :: more(:)
       integer :: n, i, k
       logical :: ok
 
       n = size(found%list) + 1
-      if (found%are_more .or. signal_received() > 0) return
+      if (.not. needed .and. (found%are_more .or. signal_received() > 0)) return
       call start_point(found%curve, position, p, ok)
       if (.not. ok) return
-      if (p%reach < least_step .or. p%value(of_size) > found%curve%far) return
+      if (.not. needed .and. (p%reach < least_step .or. p%value(of_size) > found%curve%far)) return
       call locate(found, p, i, k)
       if (i > 0) return
-      found%are_more = n > max_circuits .or. found%work > max_work
-      if (found%are_more) return
+      found%are_more = found%are_more .or. .not. needed .and. (n > max_circuits .or. found%work > max_work)
+      if (found%are_more .and. .not. needed) return
       allocate (more(n))
       more(:n - 1) = found%list
       call trace(found%curve, p, more(n))
@@ -166,7 +169,8 @@ contains
       call move_alloc(more, found%list)
    end subroutine add_circuit
 
-   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1. `i` is 0 if none does.
+   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1, or at its only one.
+   !> `i` is 0 if none does.
    subroutine locate(found, p, i, k)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
@@ -174,10 +178,12 @@ contains
       type(curve_point_t) :: again
       real(wp) :: least, greatest
       logical :: passes
+      integer :: n
 
       do i = 1, size(found%list)
-         do k = 1, size(found%list(i)%points) - 1
-            associate (a => found%list(i)%points(k), b => found%list(i)%points(k + 1), value => p%value(0))
+         n = size(found%list(i)%points)
+         do k = 1, max(1, n - 1)
+            associate (a => found%list(i)%points(k), b => found%list(i)%points(min(k + 1, n)), value => p%value(0))
                ! The drive has the value of `p`, but for whole turns, between these neighbours, or nearly there.
                least = min(a%value(0), b%value(0)) - same
                greatest = max(a%value(0), b%value(0)) + same
@@ -261,7 +267,7 @@ contains
       end associate
    end subroutine add_branches
 
-   !> Adds to the branches their assemblies of the `list`, those of card ASSEMBLY, if the drive moves on the circuit.
+   !> Adds to the branches their assemblies of the `list`, those of card ASSEMBLY.
    subroutine add_assemblies(found, list)
       type(circuits_t), intent(inout) :: found
       type(assembly_t), intent(in) :: list(:)
@@ -274,9 +280,8 @@ contains
          if (.not. ok) cycle
          call locate(found, p, i, k)
          if (i == 0) cycle
-         if (found%list(i)%rests) cycle
-         b = findloc(found%branches%circuit == i .and. found%branches%first <= k .and. k < found%branches%last, &
-            .true., dim=1)
+         b = findloc(found%branches%circuit == i .and. found%branches%first <= k &
+            .and. k < max(found%branches%first + 1, found%branches%last), .true., dim=1)
          found%branches(b)%assemblies = [found%branches(b)%assemblies, number]
       end do
    end subroutine add_assemblies

@@ -45,6 +45,20 @@ done
 four_bar 4.0 2.0 2.0 4.0 CRANK 30.0 -20.0 -110.0 30.0 > "$w/deck"
 equal 'a drive at rest' ' 2       3                     AT REST 0.000000000 DEG' "$(circuits | grep 'AT REST')"
 
+# Two bars of one length, driven by the height of the joint between them: both are singular where they are in line, so that the
+# circuits meet at their dead points. Also where the first instant is there.
+bars() {
+   card UNITS M DEG S; card GROUND G; card LINK A; card LINK B; card LINK SL; card JOINT O G A 0.0 0.0
+   card JOINT M A B "$1" "$2"; card JOINT W SL B "$3" 0.0; card POINT Z G; card PRISM Z W WAY
+   card DRIVE Y M '' 0.05; card AT '' '' '' 0.0; card CIRCUITS; card END
+}
+for place in '0.8 0.6 1.6' '0.0 1.0 0.0'; do
+   bars $place > "$w/deck"
+   equal "two dead points at one height: $place" '1 1 2 2, 1 2 3 4, -1.000000000 .. 1.000000000' "$(circuits | awk '/ [.][.] / {
+      circuits = circuits " " $1; assembly[$3]; range = $4 " " $5 " " $6 }
+      END { sub(/ /, "", circuits); printf "%s,", circuits; for (i = 1; i in assembly; i++) printf " %d", i; print ", " range }')"
+done
+
 # The five-bar has a table for each drive that moves.
 with five_bar "$(card CIRCUITS)" > "$w/deck"
 equal 'two drives' ' CIRCUITS AND BRANCHES, DRIVE ANGLE LEFT
