@@ -17,7 +17,8 @@ module circuit_curve
    use linear_solver, only: factors_t, new_factors, factor, solve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values
-   use root_distance, only: coordinates_at, kantorovich, distance
+   use root_distance, only: coordinates_t, new_coordinates, measure_slides, distance, forms_by_inverse, kantorovich, &
+      change_along
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
@@ -51,6 +52,7 @@ module circuit_curve
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
       real(wp) :: far = 100.0_wp
       type(pose_t) :: pose                    !< of the position found last
+      type(coordinates_t) :: nonlinear        !< in which the equations are not linear
       type(factors_t) :: factors
    end type curve_t
 
@@ -61,6 +63,7 @@ module circuit_curve
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
       real(wp) :: value(of_value:of_size) = 0.0_wp
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
+      real(wp) :: room = 0.0_wp               !< within it no other curve comes near, whatever the direction
       logical :: is_dead = .false.            !< the drive turns back here
       logical :: is_change = .false.          !< circuits meet here, or one crosses itself: between two points of one
    end type curve_point_t
@@ -88,6 +91,7 @@ contains
       c%closure%laws = c%driven%laws(:size(others))
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
+      c%nonlinear = new_coordinates(c%closure)
    end subroutine make_curve
 
    !> Some equations are too many, by count: two of each pair, one of each drive that is held.
@@ -97,10 +101,12 @@ contains
       is_redundant = 2*size(c%closure%pairs) + size(c%closure%laws) > c%closure%n - 1
    end function is_redundant
 
-   !> Newton's method from `c%pose`, with the row `border` at rest.
-   subroutine correct(c, border, ok)
+   !> Newton's method from `c%pose`, with the row `border` at rest. `c%factors` are those of the equations' Jacobian there,
+   !> with `border` in the place of the `row` of the free drive.
+   subroutine correct(c, border, row, ok)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
+      real(wp), intent(out) :: row(:)
       logical, intent(out) :: ok
       real(wp) :: r(c%closure%n), change, before
       integer :: i, info
@@ -109,8 +115,7 @@ contains
       do i = 1, max_iterations
          call residual(c%driven, c%pose, c%held, r)
          r(c%closure%n) = 0.0_wp
-         call factor_with(c, border, info)
-         ok = info == 0
+         call factor_there()
          if (.not. ok) return
          call solve(c%factors, r)
          change = maxval(abs(r))
@@ -119,25 +124,23 @@ contains
          call add_to_links(c%closure, -r, c%pose%q)
          call set_pose(c%closure, c%pose)
          ok = change <= converged*max(1.0_wp, maxval(abs(c%pose%q)))
-         if (.not. ok) ok = change <= stalled .and. change > 0.5_wp*before
-         if (ok) exit
+         if (ok) return
+         ok = change <= stalled
+         if (ok .and. change > 0.5_wp*before) exit
          before = change
       end do
-      ok = change <= stalled
+      if (ok) call factor_there()
+
+   contains
+
+      subroutine factor_there()
+         call jacobian(c%driven, c%pose, c%factors%a)
+         row = c%factors%a(c%closure%n, :)
+         c%factors%a(c%closure%n, :) = border
+         call factor(c%factors, info)
+         ok = info == 0
+      end subroutine factor_there
    end subroutine correct
-
-   !> The factors of the equations' Jacobian with `border` as its last row, in the place of the `row` of the free drive.
-   subroutine factor_with(c, border, info, row)
-      type(curve_t), intent(inout) :: c
-      real(wp), intent(in) :: border(:)
-      integer, intent(out) :: info
-      real(wp), intent(out), optional :: row(:)
-
-      call jacobian(c%driven, c%pose, c%factors%a)
-      if (present(row)) row = c%factors%a(c%closure%n, :)
-      c%factors%a(c%closure%n, :) = border
-      call factor(c%factors, info)
-   end subroutine factor_with
 
    !> The value `x` of the free drive in the deck's unit.
    pure real(wp) function drive_value(c, x) result(value)
@@ -266,26 +269,18 @@ contains
       real(wp), intent(in) :: q(:, :), border(:)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2)), k, speed
-      real(wp), allocatable :: g(:, :, :)
-      integer :: info
+      real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2))
 
       c%pose%q = q
       call set_pose(c%closure, c%pose)
-      call correct(c, border, ok)
+      call correct(c, border, row, ok)
       if (.not. ok) return
       p%q = c%pose%q
 
-      call factor_with(c, border, info)
-      ok = info == 0
-      if (.not. ok) return
       x = 0.0_wp
       x(c%closure%n) = 1.0_wp
       call solve(c%factors, x)
       p%tangent = x/norm2(x)
-      call factor_with(c, p%tangent, info, row)
-      ok = info == 0
-      if (.not. ok) return
 
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
@@ -293,18 +288,41 @@ contains
       p%value(of_bend) = x(c%closure%n)
       x(c%closure%n) = 0.0_wp
       call solve(c%factors, x)
-      p%bend = -x
+      p%bend = dot_product(p%tangent, x)*p%tangent - x
 
       call residual(c%driven, c%pose, c%held, x)
       p%value(of_value) = x(c%closure%n)
       p%value(of_slope) = dot_product(row, p%tangent)
       p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
       p%value(of_size) = maxval(abs(p%q(:2, :)))
-
-      g = coordinates_at(c%closure, c%pose)
-      k = kantorovich(c%closure, g, c%factors, c%pose)
-      speed = distance(g, p%tangent)
-      p%reach = max_step
-      if (speed > 0.0_wp) p%reach = min(certified/max(k, tiny(k)), max_step)/speed
+      call find_reach(c, along, p)
    end subroutine find_point
+
+   !> Finds the longest certified step at `p`, found last, and the room about it; `along` (3, links): its tangent.
+   !>
+   !> A step s to q + s t + s^2 b/2 leaves the residual B^-1 F of s^3 r at most, and B^-1 B has changed there by
+   !> D s + K (|t|^2 + |b|/2) s^2 at most. With K times twice the residual these are below 1/2: then B is regular as far
+   !> about that place as its solution is away, and there is one.
+   subroutine find_reach(c, along, p)
+      type(curve_t), intent(inout) :: c
+      real(wp), intent(in) :: along(:, :)
+      type(curve_point_t), intent(inout) :: p
+      real(wp), allocatable :: y(:, :)
+      real(wp) :: k, change, speed, bend, powers(3)
+
+      call measure_slides(c%closure, c%pose, c%nonlinear)
+      y = forms_by_inverse(c%nonlinear, c%factors, p%tangent)
+      k = kantorovich(c%closure, c%nonlinear, y, c%pose)
+      change = change_along(c%closure, c%nonlinear, y, c%pose, along)
+      speed = distance(c%nonlinear, p%tangent)
+      bend = distance(c%nonlinear, p%bend)
+
+      p%room = max_step
+      p%reach = max_step
+      if (speed <= 0.0_wp) return
+      p%room = min(certified/max(k, tiny(k)), max_step)/speed
+      powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified
+      ! The sum of powers(i) s^i is 1 at most.
+      p%reach = min(max_step/speed, 1.0_wp/max(sum([powers(1), sqrt(powers(2)), powers(3)**(1.0_wp/3.0_wp)]), tiny(k)))
+   end subroutine find_reach
 end module circuit_curve

@@ -97,8 +97,8 @@ contains
       call append(a)
       if (is_sure(a)) sure = 1
       do while (n < max_points)
-         leaves = leaves .and. a%reach < 2.0_wp*least_step
-         if (a%reach >= least_step .or. leaves) then
+         leaves = leaves .and. a%room < 2.0_wp*least_step
+         if (a%room >= least_step .or. leaves) then
             ! The longest certified step that Newton's method takes.
             h = a%reach
             do
@@ -125,7 +125,7 @@ contains
             if (sure == n) then
                call append_dead_points(b)
             else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
-               k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
+               k = sure + minloc(circuit%points(sure + 1:n)%room, dim=1)
                circuit%points(k)%is_dead = .true.
             end if
          end if
@@ -150,12 +150,12 @@ contains
          if (n < 2) return
          change = circuit%points(n)
          associate (before => circuit%points(n - 1), a => circuit%points(n))
-            shrinks = a%reach/before%reach
+            shrinks = a%room/before%room
             if (shrinks >= 1.0_wp) return
             h = 2.0_wp*step_between(c, before, a)*shrinks/(1.0_wp - shrinks)
             call step_along(c, a, h, b, ok)
             if (.not. ok) return
-            ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
+            ok = b%room < alike*a%room .and. a%room < alike*b%room &
                .and. norm2(b%tangent - a%tangent) < straight
             if (.not. ok) return
             ! Halfway on the cubic through both with their tangents: the drive may have its dead point there.
@@ -164,7 +164,7 @@ contains
             change%value(of_value) = 0.5_wp*(a%value(of_value) + b%value(of_value)) &
                + 0.125_wp*h*(a%value(of_slope) - b%value(of_slope))
          end associate
-         change%reach = 0.0_wp
+         change%room = 0.0_wp
          change%is_change = .true.
          call append(change)
       end subroutine pass_change_point
@@ -210,7 +210,7 @@ contains
    pure elemental logical function is_sure(p)
       type(curve_point_t), intent(in) :: p
 
-      is_sure = abs(p%value(1))*p%reach**2 > unsure
+      is_sure = abs(p%value(1))*p%room**2 > unsure
    end function is_sure
 
    !> 1 or -1: the sense in which the drive moves at the first of `points` at which it is known; 0 where there is none.

@@ -157,7 +157,7 @@ contains
       if (.not. needed .and. (found%are_more .or. signal_received() > 0)) return
       call start_point(found%curve, position, p, ok)
       if (.not. ok) return
-      if (.not. needed .and. (p%reach < least_step .or. p%value(of_size) > found%curve%far)) return
+      if (.not. needed .and. (p%room < least_step .or. p%value(of_size) > found%curve%far)) return
       call locate(found, p, i, k)
       if (i > 0) return
       found%are_more = found%are_more .or. .not. needed .and. (n > max_circuits .or. found%work > max_work)
