@@ -28,7 +28,7 @@ module circuits
 
    !> More circuits are not looked for, nor any after so much work: points times the cube of the coordinates.
    integer, parameter :: max_circuits = 64
-   real(wp), parameter :: max_work = 1.0e9_wp
+   real(wp), parameter :: max_work = 3.0e9_wp
 
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t
@@ -63,7 +63,7 @@ module circuits
    !> A slide is followed farther than it goes in any assembly of the first instant, by this factor.
    real(wp), parameter :: beyond = 2.0_wp
    !> Angles of each link at which all assemblies are found; fewer where that takes more than so many paths.
-   integer, parameter :: link_values = 24, max_paths = 1000
+   integer, parameter :: link_values = 24, max_paths = 500
 
 contains
 
@@ -112,35 +112,66 @@ contains
       call add_assemblies(found, all_of_them%list)
    end subroutine find_circuits
 
-   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that moves. The
-   !> link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide in some link.
+   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that turns on a known
+   !> circuit. The link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide in some
+   !> link. Links that turn together are one; if no circuit is known any may turn.
    subroutine search_whole_range(m, found)
       type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(inout) :: found
+      logical :: is_left(found%curve%nonlinear%angles)
+      integer :: k
+
+      is_left = .true.
+      do
+         k = findloc(is_left .and. [(turns(k), k=1, size(is_left))], .true., dim=1)
+         if (k == 0) exit
+         call search_at_angles(m, findloc(found%curve%nonlinear%angle_of, k, dim=1), found)
+         is_left(k) = .false.
+      end do
+
+   contains
+
+      !> Whether angle number `k` changes on a known circuit.
+      pure logical function turns(k)
+         integer, intent(in) :: k
+         integer :: link, i, j
+
+         link = findloc(found%curve%nonlinear%angle_of, k, dim=1)
+         turns = size(found%list) == 0
+         do i = 1, size(found%list)
+            associate (p => found%list(i)%points)
+               turns = turns .or. any([(abs(p(j)%q(3, link) - p(1)%q(3, link)) > same, j=1, size(p))])
+            end associate
+         end do
+      end function turns
+   end subroutine search_whole_range
+
+   !> Adds the circuits through the assemblies of `m` at angles of number `link`.
+   subroutine search_at_angles(m, link, found)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link
       type(circuits_t), intent(inout) :: found
       type(mechanism_t) :: driven
       type(assemblies_t) :: more
       real(wp) :: from
-      integer :: link, k, n, i
+      integer :: k, n, i
 
       driven = m
-      do link = 1, size(m%links)
-         if (m%links(link)%ground) cycle
-         driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
-         from = 0.0_wp
-         if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
-         n = link_values
-         k = 0
-         do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
-            driven%drives(found%drive)%polynomial(1) = from + turn*real(k, wp)/real(n, wp)
-            call find_assemblies(driven, 0.0_wp, more)
-            do i = 1, size(more%list)
-               call add_circuit(found, more%list(i)%position, .false.)
-            end do
-            if (k == 0) n = min(n, max_paths/max(1, sum(more%blocks%paths)))
-            k = k + 1
+      driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
+      from = 0.0_wp
+      if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
+      n = link_values
+      k = 0
+      do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
+         driven%drives(found%drive)%polynomial(1) = from + turn*real(k, wp)/real(n, wp)
+         call find_assemblies(driven, 0.0_wp, more)
+         do i = 1, size(more%list)
+            call add_circuit(found, more%list(i)%position, .false.)
          end do
+         if (k == 0) n = min(n, max_paths/max(1, sum(more%blocks%paths)))
+         k = k + 1
       end do
-   end subroutine search_whole_range
+   end subroutine search_at_angles
 
    !> Adds the circuit through the links' `position` (3, links), in the deck's unit and from its origin, unless it is
    !> known. From a change point, where it cannot be followed, and beyond all limits only if it is `needed`.
