@@ -308,7 +308,7 @@ contains
       real(wp), intent(in) :: along(:, :)
       type(curve_point_t), intent(inout) :: p
       real(wp), allocatable :: y(:, :)
-      real(wp) :: k, change, speed, bend, powers(3)
+      real(wp) :: k, change, speed, bend, powers(3), least
 
       call measure_slides(c%closure, c%pose, c%nonlinear)
       y = forms_by_inverse(c%nonlinear, c%factors, p%tangent)
@@ -316,13 +316,12 @@ contains
       change = change_along(c%closure, c%nonlinear, y, c%pose, along)
       speed = distance(c%nonlinear, p%tangent)
       bend = distance(c%nonlinear, p%bend)
+      ! Where nothing turns a step is as long as the mechanism is far.
+      least = 1.0_wp/max(1.0_wp, p%value(of_size))
 
-      p%room = max_step
-      p%reach = max_step
-      if (speed <= 0.0_wp) return
-      p%room = min(certified/max(k, tiny(k)), max_step)/speed
       powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified
       ! The sum of powers(i) s^i is 1 at most.
-      p%reach = min(max_step/speed, 1.0_wp/max(sum([powers(1), sqrt(powers(2)), powers(3)**(1.0_wp/3.0_wp)]), tiny(k)))
+      p%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
+      p%room = 1.0_wp/max(speed/max_step, speed*k/certified, least)
    end subroutine find_reach
 end module circuit_curve
