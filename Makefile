@@ -226,9 +226,10 @@ hard: $(BUILD)/kinmat $(addprefix $(BUILD)/release/,hard print_expected)
 hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short
 
-# Circuits of 300 four-bars and crank-sliders made by chance against closed forms.
-circuits: $(BUILD)/release/circuits_by_chance
-	$<
+# Circuits of 300 four-bars, crank-sliders and six-bars and of 500 symmetric mechanisms made by chance against closed forms.
+circuits: $(addprefix $(BUILD)/release/,circuits_by_chance twins_by_chance)
+	$(BUILD)/release/circuits_by_chance
+	$(BUILD)/release/twins_by_chance 500
 
 # Dwells of 6000 random mechanisms on their dead and change points, against closed forms.
 dwells: $(BUILD)/release/dwells_by_chance
@@ -291,7 +292,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance dwells_by_chance random_blocks
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance twins_by_chance dwells_by_chance random_blocks
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

@@ -34,6 +34,7 @@ parts() {
    what is as drawn|90|tests/system/as_drawn.sh
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
+   circuits of twins|40|"$BUILD/release/twins_by_chance" 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
    all assemblies|100|tests/system/assemblies.sh

@@ -5,10 +5,8 @@
 !> such curve here. Lengths are those of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
-!> singular at change points alone. K of `root_distance`, taken from B, bounds how fast B^-1 B changes: along t, up to
-!> the distance u/K in the coordinates in which the equations are not linear, Newton and Kantorovich's ratio is at most
-!> (u/(1 - u))^2/2. For u < 1/2 the curve beside each place of t is unique: a step of that length cannot jump to another
-!> circuit.
+!> singular at change points alone. K and D of `root_distance`, taken from B, bound how fast B^-1 B changes in any
+!> direction and along t; `find_reach` takes from them how long a step cannot jump to another circuit.
 module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
@@ -30,7 +28,7 @@ module circuit_curve
    !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
    real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
 
-   !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
+   !> The bound of `find_reach`, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
    !> The longest step, in rad and lengths, and in parts of a longer slide: a curve of such pieces looks smooth.
    real(wp), parameter :: max_step = 0.1_wp
@@ -300,9 +298,9 @@ contains
 
    !> Finds the longest certified step at `p`, found last, and the room about it; `along` (3, links): its tangent.
    !>
-   !> A step s to q + s t + s^2 b/2 leaves the residual B^-1 F of s^3 r at most, and B^-1 B has changed there by
-   !> D s + K (|t|^2 + |b|/2) s^2 at most. With K times twice the residual these are below 1/2: then B is regular as far
-   !> about that place as its solution is away, and there is one.
+   !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has changed
+   !> there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular within 2 e of
+   !> that place, and one solution is there.
    subroutine find_reach(c, along, p)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: along(:, :)
@@ -320,7 +318,7 @@ contains
       least = 1.0_wp/max(1.0_wp, p%value(of_size))
 
       powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified
-      ! The sum of powers(i) s^i is 1 at most.
+      ! The sum of powers(i) h^i is 1 at most.
       p%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
       p%room = 1.0_wp/max(speed/max_step, speed*k/certified, least)
    end subroutine find_reach

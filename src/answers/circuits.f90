@@ -3,7 +3,7 @@
 !> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
 !>
 !> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
-!> instant, and all assemblies at angles of each link: a circuit between all of these is not found.
+!> instant, and all assemblies at angles of each link that turns: a circuit between all of these is not found.
 !>
 !> The links at a dead point are those that are singular where the motion begins there.
 module circuits

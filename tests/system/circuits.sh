@@ -59,6 +59,47 @@ for place in '0.8 0.6 1.6' '0.0 1.0 0.0'; do
       END { sub(/ /, "", circuits); printf "%s,", circuits; for (i = 1; i in assembly; i++) printf " %d", i; print ", " range }')"
 done
 
+# Dyads at their limits together. rows DECK LINES: of each table the range, one for all branches, by the law of cosines for
+# the dyads; branches, circuits, and assemblies, each of which is on a branch of its own.
+rows() {
+   with "$1" "$(card CIRCUITS)" > "$w/deck"
+   equal "dyads at one limit: $1" "$2" "$("$kinmat" "$w/deck" 2>&1 | awk '
+      / RANGE OF / { t++ }
+      /^ [0-9]+ +[0-9]+ .* [.][.] / {
+         rows[t]++; circuits[t] += !seen[t, 1, $1]++; assemblies[t] += !seen[t, 3, $3]++
+         if (!seen[t, 0, $4, $6]++) range[t] = range[t] $4 " .. " $6
+      }
+      END { for (i = 1; i <= t; i++) print range[i], rows[i], circuits[i], assemblies[i] }')"
+}
+arccosine() { awk -v x="$1" 'BEGIN { printf "%.12f", 360/atan2(0, -1)*atan2(sqrt(1 - x^2), x) }'; }
+end=$(limit "$(arccosine 0.4)")
+rows hart "-$end .. $end 4 2 4"
+end=$(limit "$(arccosine 0.75)")
+rows peaucellier "-$end .. $end 4 2 4"
+# Arm and rod, 1 each, reach 2: the place of the other drive is 0.4 + 0.25 sin 0.5 or 1.2, and 0.75 or 1 in the second set.
+rows pantograph "$(for place in "$(awk 'BEGIN { printf "%.15f", 0.4 + 0.25*sin(0.5) }')" 1.2 0.75 1.0; do
+   end=$(limit "$(awk -v y="$place" 'BEGIN { printf "%.15f", sqrt(4 - y^2) }')")
+   echo "-$end .. $end 4 2 4"
+done)"
+# Three stages and the platform, each assembled in two ways; all bars are in line at both ends.
+rows scissor '-2.000000000 .. 2.000000000 16 8 16'
+
+# The assembly in which the run begins has a row in every table of circuits; the decks left out take seconds.
+for deck in $(cd input && ls ./*.deck | sed 's/^..//; s/[.]deck$//' | grep -vE '^(excavator|ten_plates|jansen|andrews)$'); do
+   with "$deck" "$(card CIRCUITS)" "$(card ASSEMBLY)" > "$w/deck"
+   "$kinmat" "$w/deck" 2>&1 | awk -v deck="$deck" '
+      /^ SET OF COMPUTATIONS/ { own = 0; parts = 0 }
+      /^ ASSEMBLIES/ { parts++ }
+      /^ ASSEMBLY [0-9].* CHOSEN/ { own = $2 }
+      # Several independent mechanisms have an assembly each.
+      /^ CIRCUITS AND/ { wait = parts == 1 ? own : 0 }
+      /REDUNDANT EQUATIONS/ { wait = 0 }
+      wait && /^ [0-9]+ +[0-9]+ +[0-9]/ { n = split(substr($0, 17, 14), number, /[ ,]+/); for (i = 1; i <= n; i++) if (number[i] == own) { wait = 0; print "own" } }
+      /^ (DEAD POINTS|CHANGE POINTS|CONTINUATION)/ && wait { print deck; wait = 0 }'
+done > "$w/own"
+equal 'no table without the own row' '' "$(grep -v '^own$' "$w/own")"
+equal 'tables with the own row' yes "$([ "$(grep -c '^own$' "$w/own")" -ge 60 ] && echo yes)"
+
 # The five-bar has a table for each drive that moves.
 with five_bar "$(card CIRCUITS)" > "$w/deck"
 equal 'two drives' ' CIRCUITS AND BRANCHES, DRIVE ANGLE LEFT
