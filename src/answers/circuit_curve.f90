@@ -99,8 +99,8 @@ contains
       is_redundant = 2*size(c%closure%pairs) + size(c%closure%laws) > c%closure%n - 1
    end function is_redundant
 
-   !> Newton's method from `c%pose`, with the row `border` at rest. `c%factors` are those of the equations' Jacobian there,
-   !> with `border` in the place of the `row` of the free drive.
+   !> Newton's method from `c%pose`, with the row `border` at rest. `c%factors` are those of the equations' Jacobian
+   !> there, with `border` in the place of the `row` of the free drive.
    subroutine correct(c, border, row, ok)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
@@ -298,9 +298,9 @@ contains
 
    !> Finds the longest certified step at `p`, found last, and the room about it; `along` (3, links): its tangent.
    !>
-   !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has changed
-   !> there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular within 2 e of
-   !> that place, and one solution is there.
+   !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
+   !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
+   !> within 2 e of that place, and one solution is there.
    subroutine find_reach(c, along, p)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: along(:, :)

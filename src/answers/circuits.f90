@@ -112,9 +112,9 @@ contains
       call add_assemblies(found, all_of_them%list)
    end subroutine find_circuits
 
-   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that turns on a known
-   !> circuit. The link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide in some
-   !> link. Links that turn together are one; if no circuit is known any may turn.
+   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that turns on a
+   !> known circuit. The link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide
+   !> in some link. Links that turn together are one; if no circuit is known any may turn.
    subroutine search_whole_range(m, found)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(inout) :: found

@@ -113,8 +113,8 @@ contains
       largest = maxval([0.0_wp, x(:c%angles), hypot(x(c%angles + 1::2), x(c%angles + 2::2))])
    end function largest
 
-   !> (n, forms + 1) The forms of `c` times the inverse of the matrix with the factors `f`, in whose place of the last row
-   !> stands the `tangent`, on which the other rows are 0. If `tangent` is 0 the matrix is as it is.
+   !> (n, forms + 1) The forms of `c` times the inverse of the matrix with the factors `f`, in whose place of the last
+   !> row stands the `tangent`, on which the other rows are 0. If `tangent` is 0 the matrix is as it is.
    function forms_by_inverse(c, f, tangent) result(y)
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
@@ -163,8 +163,8 @@ contains
       end do
    end function jacobian_lipschitz
 
-   !> K at pose `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a matrix whose
-   !> first rows are those of the system; its others are linear.
+   !> K at pose `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a matrix
+   !> whose first rows are those of the system; its others are linear.
    pure real(wp) function kantorovich(s, c, y, p) result(k)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
