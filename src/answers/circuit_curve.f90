@@ -131,6 +131,7 @@ contains
 
    contains
 
+      !> Factors the bordered Jacobian at `c%pose`.
       subroutine factor_there()
          call jacobian(c%driven, c%pose, c%factors%a)
          row = c%factors%a(c%closure%n, :)
