@@ -23,14 +23,8 @@ module block_engine
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_each, &
-      is_certain, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, &
+      separation_of, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, &
       followed_state, slide_unit
-
-   !> A change of more than this, in radians or characteristic lengths, is a jump to another branch.
-   real(wp), parameter :: branch_jump = 0.5_wp
-   !> Another position is not nearer that is this many times as far from the guess and, unless the guess is as good as
-   !> `fine`, further than twice the errors of a guess that is good to 3 degrees and 3 per cent.
-   real(wp), parameter :: plausible = 3.0_wp, fine = 1.0e-4_wp, reach = 0.1_wp
 
    !> What the factors of a block's Jacobian say.
    type :: jacobian_t
@@ -41,7 +35,7 @@ module block_engine
 
    !> How the position of a block at the first instant was chosen.
    type :: choice_t
-      logical :: is_certain = .false.                   !< no other position can be nearer
+      real(wp) :: separation = 0.0_wp                   !< of the angles of other positions, at least, see `separation_of`
       logical :: is_close = .false.                     !< another one is about as near
       logical :: is_incomplete = .false.                !< a nearer one may not have been found
    end type choice_t
@@ -234,22 +228,33 @@ contains
          end do
          e%estimated(:) = e%state%u%value
          e%choice = choice_t()
-         e%choice%is_certain = e%blocks%list%direct
          call solve_each(e, e%needed, follows, c)
       end if
    end subroutine solve_blocks
 
-   !> No other position can be nearer to the guess than the one that `c` is of: two of them are at least 2/(|J^-1|
-   !> Lipschitz constant) apart.
-   pure logical function is_certain(c)
+   !> How far the angles of another position of block `i` are from those of the position in `s` that `c` is of: one of
+   !> them by so many rad, at least, with the Jacobian J and its Lipschitz constant L by 2/(|J^-1| L). Of more than two
+   !> unknowns |J^-1| may be estimated, too small by a part of their number; the slides make L larger.
+   pure real(wp) function separation_of(b, i, s, c) result(separation)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
       type(convergence_t), intent(in) :: c
-      real(wp) :: farthest
+      real(wp) :: bound
+      integer :: m, k
 
-      farthest = plausible*c%change
-      if (c%change > fine) farthest = max(farthest, reach)
-      is_certain = is_solved(c) .and. c%change <= branch_jump .and. &
-         c%kantorovich_ratio*(c%change + farthest) <= 2.0_wp*c%change
-   end function is_certain
+      separation = 0.0_wp
+      if (.not. is_solved(c) .or. c%singular) return
+      bound = 1.0_wp
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+            bound = max(bound, 1.0_wp + 0.5_wp*abs(s%u(b%slides(k)%unknown)%value))
+         end do
+      end do
+      bound = bound*b%numbers%blocks(i)%lipschitz*c%inverse
+      if (b%list(i)%shape%n > 2) bound = bound*real(b%list(i)%shape%n, wp)
+      separation = 2.0_wp/max(bound, tiny(bound))
+   end function separation_of
 
    !> Value, rate and acceleration of the drives at `t`.
    pure subroutine set_drive_values(e, t)
@@ -286,7 +291,7 @@ contains
                if (block%shape%rows > block%shape%n .and. is_solved(one)) &
                   one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
             else
-               e%choice(i)%is_certain = is_certain(one)
+               e%choice(i)%separation = separation_of(e%blocks, i, e%state, one)
             end if
             call gather(one, c)
             if (.not. is_solved(one)) return

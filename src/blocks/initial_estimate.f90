@@ -198,21 +198,23 @@ contains
       end function largest_opening
    end function estimated_directions
 
-   !> The angle at which the form `e` is least, `start` where it is about as small.
+   !> The angle at which the form `e` is least: of two sides of a guide, which fit alike, the nearer to `start`.
    pure real(wp) function least(e, start) result(u)
       real(wp), intent(in) :: e(4), start
-      real(wp) :: v, slope, lipschitz
+      real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)
+      real(wp) :: lowest, slope, lipschitz
       integer :: i
 
       if (maxval(abs(e(3:))) <= alike*sum(abs(e))) then
          u = atan2(-e(2), -e(1))
          return
       end if
-      u = start
-      do i = 1, samples
-         ! The nearer of two that are alike: rounding shall not choose.
-         v = start + merge(pi, -pi, modulo(i, 2) == 0)*real((i + 1)/2, wp)/real(samples/2, wp)
-         if (form(e, v) < form(e, u) - alike*sum(abs(e))) u = v
+      lowest = minval([(form(e, start + step*real(i, wp)), i=1, samples)])
+      do i = 1, samples + 1
+         u = start + merge(step, -step, modulo(i, 2) == 0)*real(i/2, wp)
+         if (form(e, u) > lowest + better_part**2*sum(abs(e))) cycle
+         ! Rounding shall not choose.
+         if (form(e, u) <= min(form(e, u - step), form(e, u + step)) + alike*sum(abs(e))) exit
       end do
       do i = 1, 3
          slope = form([e(2), -e(1), 2.0_wp*e(4), -2.0_wp*e(3)], u)

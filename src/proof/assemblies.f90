@@ -8,7 +8,7 @@ module assemblies
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
-   use first_instant, only: solve_first, places_of, squared_distances, same_place => alike, less => equal
+   use first_instant, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
    use blocks, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -24,10 +24,6 @@ module assemblies
    integer, parameter :: max_assemblies = 1000
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
-   !> A ratio of distances below `less` is more than rounding if the larger one is more than this: estimates as good
-   !> are meant.
-   real(wp), parameter :: fine = 1.0e-4_wp
-
    !> An assembly.
    type :: assembly_t
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
@@ -140,7 +136,7 @@ contains
             is = .not. is_solved(c) .or. any(a%blocks%moves)
          else
             associate (distance => a%list(a%chosen)%distance)
-               is = distance > fine .and. a%list(1)%distance < less*distance
+               is = is_nearer(a%list(1)%distance, distance)
             end associate
          end if
       end function is_nearer_one
