@@ -1,10 +1,10 @@
 !> The first instant: the assembly that is nearest to the initial guess, by the distance that card ASSEMBLY prints.
-!> Newton's method starts from the guess, block by block in solving order. The assembly that it finds is kept if the
-!> bound of Newton and Kantorovich leaves no other as near. Otherwise the positions of the blocks are a tree, which is
-!> searched depth first, the nearest positions of a block first: what is as far already as the nearest assembly so far is left out.
+!> Newton's method starts from the guess, block by block in solving order. Its assembly is kept if the bound of Newton
+!> and Kantorovich leaves no other one as near. Otherwise a search goes through the positions of the blocks, depth first
+!> and the nearest first. It leaves out what is further already than the nearest assembly so far.
 !>
-!> Of a block without a position on any of those chosen before, the others are assembled all the same. All blocks are
-!> assembled, also those that no table needs: what is printed chooses no assembly.
+!> All blocks are assembled, also those that no table needs: what is printed chooses no assembly. If a block has no
+!> position with any of the blocks below it, the others are assembled without it.
 module first_instant
    use kinds, only: wp
    use planar, only: without_turns
@@ -25,28 +25,15 @@ module first_instant
    !> More than any distance; its square is in range.
    real(wp), parameter :: unbounded = 0.5_wp*sqrt(huge(1.0_wp))
 
-   !> What assemblies are compared with: the places and angles of the deck, or angles that its places imply.
-   type :: guess_t
-      real(wp), allocatable :: position(:, :)           !< (3, links)
-      integer, allocatable :: places(:, :)              !< (2, links) see `places_of`
-   end type guess_t
-
    !> Positions of one block, nearest to the guess first.
    type :: candidates_t
       real(wp), allocatable :: x(:, :)                  !< (unknowns of the block, positions)
       real(wp), allocatable :: distance(:)              !< (positions) see `squared_distances`
       real(wp) :: beyond = unbounded                    !< the distance of positions not looked for, at least
       logical :: are_all = .true.                       !< no nearer one can be missing
-      integer :: chosen = 0                             !< the number of that in use; 0: not looked for yet
+      integer :: chosen = 0                             !< the number of that in use; 0: none
+      type(convergence_t) :: ending                     !< how the search for a position ended
    end type candidates_t
-
-   !> The nearest assembly that was found so far.
-   type :: nearest_t
-      real(wp) :: distance = unbounded
-      logical :: is_cut = .false.                       !< the search was ended before its end
-      type(candidates_t), allocatable :: found(:)       !< (blocks)
-      type(convergence_t), allocatable :: failure(:)    !< (blocks) how the search ended where there is no position
-   end type nearest_t
 
    !> All positions are enumerated of blocks of so many unknowns in each of both groups: eight in all, 70 paths.
    integer, parameter :: max_group = 4
@@ -84,136 +71,112 @@ contains
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
-      type(guess_t) :: guess, deck_guess
-      type(nearest_t) :: nearest, deck_nearest
+      type(candidates_t), dimension(size(e%blocks%list)) :: found, by_deck
       type(convergence_t) :: rest
-      logical :: is_implied(size(e%estimate, 2)), is_complete
-      integer :: k, i
+      real(wp) :: guess(3, size(e%estimate, 2)), turn(0:e%blocks%orientations), nearest
+      logical :: is_complete, is_implied(size(guess, 2))
+      integer :: places(2, size(guess, 2)), k, i
 
       call solve_blocks(e, t, .false., c)
       if (.not. e%blocks%solvable) return
       rest = nothing_gathered
-      if (is_solved(c) .and. size(e%needed) < size(e%blocks%list)) call solve_each(e, &
-         pack([(i, i=1, size(e%blocks%list))], [(all(e%needed /= i), i=1, size(e%blocks%list))]), .false., rest)
+      if (is_solved(c)) call solve_each(e, pack([(i, i=1, size(found))], [(all(e%needed /= i), i=1, size(found))]), &
+         .false., rest)
       is_complete = is_solved(c) .and. is_solved(rest)
-      call make_guess(e, guess, is_implied)
+      places = places_of(e)
+
+      ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
+      turn = 0.0_wp
+      associate (class => e%orientation_of, offset => e%blocks%numbers%equations%axes%angle_offset)
+         do k = size(class), 1, -1
+            if (class(k) > 0) turn(class(k)) = without_turns(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
+         end do
+         is_implied = abs(turn(class)) > alike
+         guess = e%estimate
+         guess(3, :) = guess(3, :) + turn(class)
+      end associate
       if (is_complete .and. .not. any(is_implied)) then
-         if (is_alone(e, guess)) return
+         if (is_alone(e, places, guess)) return
       end if
 
       e%choice = choice_t()
-      if (any(is_implied)) then
-         deck_guess = guess_t(e%estimate, guess%places)
-         call find_nearest(e, deck_guess, is_complete, deck_nearest)
-      end if
-      call find_nearest(e, guess, is_complete, nearest)
-      do i = 1, size(nearest%found)
-         associate (one => nearest%found(i), choice => e%choice(i))
+      nearest = unbounded
+      if (any(is_implied)) call find_nearest(e, places, e%estimate, is_complete, by_deck, nearest)
+      call find_nearest(e, places, guess, is_complete, found)
+      do i = 1, size(found)
+         associate (one => found(i), choice => e%choice(i))
             if (one%chosen == 0) cycle
-            choice%is_incomplete = .not. one%are_all .or. (nearest%is_cut .and. size(one%distance) > 1)
+            choice%is_incomplete = .not. one%are_all
             if (one%chosen == 1 .and. size(one%distance) > 1) &
                choice%is_close = one%distance(1) > about_equal*one%distance(2)
          end associate
       end do
-      if (any(is_implied)) then
-         ! By the angles of the deck another assembly may be nearer.
-         if (is_nearer(deck_nearest%distance, sqrt(sum(squares_of(e, deck_guess), mask=guess%places > 0)))) &
-            e%choice(pack(guess%places(1, :), is_implied))%is_incomplete = .true.
-      end if
+      if (is_nearer(nearest, distance_of(e, places, e%estimate))) &
+         e%choice(pack(places(1, :), is_implied))%is_incomplete = .true.
       c = nothing_gathered
-      k = findloc(nearest%found(e%needed)%chosen, 0, dim=1)
+      k = findloc(found(e%needed)%chosen, 0, dim=1)
       if (k == 0) then
          call solve_each(e, e%needed, .false., c)
       else
          call solve_each(e, e%needed(:k - 1), .false., c)
-         if (is_solved(c)) call gather(nearest%failure(e%needed(k)), c)
+         if (is_solved(c)) call gather(found(e%needed(k))%ending, c)
       end if
    end subroutine solve_first
 
-   !> Makes `guess`, with which the positions of `e` compete: the estimate of the deck, in which places may imply other
-   !> angles of some links: `is_implied` (links).
-   subroutine make_guess(e, guess, is_implied)
-      type(block_engine_t), intent(in) :: e
-      type(guess_t), intent(out) :: guess
-      logical, intent(out) :: is_implied(:)
-      real(wp) :: turn(0:e%blocks%orientations)
-      integer :: k
-
-      guess = guess_t(e%estimate, places_of(e))
-      turn = 0.0_wp
-      associate (class => e%orientation_of, offset => e%blocks%numbers%equations%axes%angle_offset)
-         ! The angle of a class is that of its first link.
-         do k = size(class), 1, -1
-            if (class(k) > 0) turn(class(k)) = &
-               without_turns(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
-         end do
-         is_implied = abs(turn(class)) > alike
-         guess%position(3, :) = guess%position(3, :) + turn(class)
-      end associate
-   end subroutine make_guess
-
-   !> Whether no other assembly can be about as near to `guess` as the one that `e` has: of the first block that differs
+   !> Whether no other assembly can be about as near to `guess` as the one that `e` has: in the first block that differs
    !> an angle is off by the separation of its positions, at least.
-   logical function is_alone(e, guess) result(is)
+   logical function is_alone(e, places, guess) result(is)
       type(block_engine_t), intent(in) :: e
-      type(guess_t), intent(in) :: guess
-      real(wp) :: square(2, size(e%estimate, 2)), behind
+      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      real(wp), intent(in) :: guess(:, :)               !< (3, links) x and y from the origin of the chain, rad
+      real(wp) :: square(2, size(guess, 2)), behind
       integer :: i
 
       square = squares_of(e, guess)
       behind = 0.0_wp
       is = .true.
       do i = size(e%blocks%list), 1, -1
-         behind = behind + sum(square, mask=guess%places == i)
-         if (e%blocks%list(i)%direct) cycle
-         is = about_equal*(e%choice(i)%separation - sqrt(sum(square(1, :), mask=guess%places(1, :) == i))) >= sqrt(behind)
+         behind = behind + sum(square, mask=places == i)
+         if (.not. e%blocks%list(i)%direct) is = about_equal*(e%choice(i)%separation &
+            - sqrt(sum(square(1, :), mask=places(1, :) == i))) >= sqrt(behind)
          if (.not. is) return
       end do
    end function is_alone
 
-   !> (2, links) See `squared_distances`: of the values that `e` has, from `guess`.
-   function squares_of(e, guess) result(square)
-      type(block_engine_t), intent(in) :: e
-      type(guess_t), intent(in) :: guess
-      real(wp) :: square(2, size(e%estimate, 2))
-      type(motion_t) :: q
-      logical :: finite
-
-      q = new_motion(size(square, 2))
-      call move_links(e%chain, e%state, e%length, q, finite, .true.)
-      square = squared_distances(q%position, guess%position, e%blocks%numbers%span)
-   end function squares_of
-
-   !> Puts the assembly that is `nearest` to `guess` into the values of `e`; if there is none, the positions of the
-   !> blocks that have one. `is_complete`: `e` has an assembly, and further ones do not count.
-   subroutine find_nearest(e, guess, is_complete, nearest)
+   !> Puts the assembly that is nearest to `guess` into the values of `e`; if there is none, the positions of the blocks
+   !> that have one.
+   subroutine find_nearest(e, places, guess, is_complete, found, distance)
       type(block_engine_t), intent(inout) :: e
-      type(guess_t), intent(in) :: guess
-      logical, intent(in) :: is_complete
-      type(nearest_t), intent(out) :: nearest
-      type(candidates_t) :: found(size(e%blocks%list))
-      type(convergence_t) :: failure(size(found))       !< how the search for a position ended where there is none
-      logical :: is_given_up(size(found))               !< other positions of the blocks below do not help
-      integer :: latest(size(found))                    !< the last block below that iterates; 0: none
-      integer :: seen(size(found))                      !< how many choices there were when its positions were found
-      integer, dimension(0:e%blocks%unknowns) :: open, changed, last !< 1: not found; the choice that changed it; `latest`
-      real(wp) :: spent(0:size(found))                  !< the square of the distance of all blocks up to this one
+      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      real(wp), intent(in) :: guess(:, :)               !< (3, links) x and y from the origin of the chain, rad
+      logical, intent(in) :: is_complete                !< `e` has an assembly: further ones do not count
+      type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions
+      real(wp), intent(out), optional :: distance       !< of the assembly; `unbounded`: there is none
+      type(candidates_t) :: nearest(size(found))        !< with the nearest assembly so far
       real(wp) :: values(0:e%blocks%unknowns)           !< of the nearest assembly
-      real(wp) :: limit                                 !< distance from which on assemblies do not count
+      real(wp) :: limit                                 !< the distance from which on assemblies do not count
+      real(wp) :: spent(0:size(found))                  !< the square of the distance of all blocks up to this one
+      integer :: latest(size(found))                    !< the last block below that iterates; 0: none
+      integer :: seen(size(found))                      !< the number of the choice after which its positions were found
+      integer, dimension(0:e%blocks%unknowns) :: changed, open, last !< number of the choice; 1: not found; see `latest`
+      logical :: is_given_up(size(found)), is_found     !< no other positions help it; an assembly is found
       integer, allocatable :: below(:)
       integer :: i, k, solves, choices
 
       values = e%state%u%value
       limit = unbounded
-      if (is_complete) limit = sqrt(sum(squares_of(e, guess), mask=guess%places > 0))
+      if (is_complete) limit = distance_of(e, places, guess)
       if (is_complete) limit = limit + alike*max(1.0_wp, limit)
       last = 0
       do i = 1, size(found)
-         latest(i) = largest_known(e%blocks, i, last)
-         last(own_of(i)) = merge(latest(i), i, e%blocks%list(i)%direct)
-         call set_values(e%blocks, i, e%estimated(own_of(i)), e%state)
+         associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+            latest(i) = largest_known(e%blocks, i, last)
+            last(own) = merge(latest(i), i, e%blocks%list(i)%direct)
+            call set_values(e%blocks, i, e%estimated(own), e%state)
+         end associate
       end do
       is_given_up = .false.
+      is_found = .false.
       open = 0
       changed = 0
       seen = -1
@@ -222,64 +185,62 @@ contains
       solves = 0
       i = 1
       do
-         k = 0
          if (i > size(found)) then
-            if (.not. allocated(nearest%found) .or. is_nearer(sqrt(spent(i - 1)), limit)) call note_assembly()
-            if (all(found%chosen > 0)) k = last_promising([(k, k=1, size(found))])
-            if (k == 0) exit
-         else if (largest_known(e%blocks, i, open) > 0) then
-            call leave_open()
-            cycle
+            ! An assembly, or all that can be assembled.
+            nearest = found
+            values = e%state%u%value
+            is_found = .true.
+            if (any(found%chosen == 0)) exit
+            limit = sqrt(spent(size(found)))
+            i = last_promising([(k, k=1, size(found))])
+            if (i == 0) exit
+            found(i + 1:)%chosen = 0
          else
-            open(own_of(i)) = 0
-            if (found(i)%chosen == 0) call look_for_positions()
-            if (last_promising([i]) > 0) then
-               call take_next_position()
-               cycle
-            end if
-            nearest%is_cut = solves > max_solves
-            if (limit < unbounded) then
-               if (.not. nearest%is_cut) k = last_promising([(k, k=1, i - 1)])
-               if (k == 0) exit
-            else
-               ! Back to the last of the blocks below that has another position. If none helps, this one is left open.
-               if (.not. (is_given_up(i) .or. nearest%is_cut)) then
-                  below = blocks_below(e%blocks, i)
+            associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+               open(own) = 0
+               if (largest_known(e%blocks, i, open) == 0) then
+                  if (found(i)%chosen == 0) call look_for_positions()
+                  if (last_promising([i]) == i) then
+                     found(i)%chosen = found(i)%chosen + 1
+                     call set_values(e%blocks, i, found(i)%x(:, found(i)%chosen), e%state)
+                     spent(i) = spent(i - 1) + found(i)%distance(found(i)%chosen)**2
+                     choices = choices + 1
+                     changed(own) = choices
+                     i = i + 1
+                     cycle
+                  end if
+
+                  ! Back to the last block that has another position, of those below where that alone helps.
+                  below = [(k, k=1, i)]
+                  if (size(found(i)%distance) == 0 .or. .not. limit < unbounded) below = blocks_below(e%blocks, i)
                   below = below(:size(below) - 1)
-                  k = last_promising(below)
-                  is_given_up(i) = k == 0
-                  if (k == 0 .and. any(found(below)%chosen > 1)) then
-                     found%chosen = 0
-                     i = 1
+                  k = 0
+                  if (solves < max_solves .and. .not. is_given_up(i)) k = last_promising(below)
+                  if (k == 0 .and. limit < unbounded) exit
+                  if (k > 0 .or. (.not. is_given_up(i) .and. any(found(below)%chosen > 1))) then
+                     is_given_up(i) = k == 0
+                     i = max(1, k)
+                     found(merge(i + 1, 1, k > 0):)%chosen = 0
                      cycle
                   end if
                end if
-               if (k == 0) call leave_open()
-               if (k == 0) cycle
-            end if
+               found(i)%chosen = 0
+               spent(i) = spent(i - 1)
+               open(own) = 1
+               call set_values(e%blocks, i, e%estimated(own), e%state)
+               i = i + 1
+            end associate
          end if
-         ! The blocks after it begin again.
-         found(k + 1:)%chosen = 0
-         i = k
       end do
-      if (.not. allocated(nearest%found)) then
-         found%chosen = 1
-         call note_assembly()
-      end if
+      if (is_found) found = nearest
+      if (.not. is_found) found%chosen = 1
       do i = 1, size(found)
-         call set_values(e%blocks, i, values(own_of(i)), e%state)
+         if (solves >= max_solves .and. size(found(i)%distance) > 1) found(i)%are_all = .false.
+         call set_values(e%blocks, i, values(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)), e%state)
       end do
-      nearest%failure = failure
+      if (present(distance)) distance = merge(limit, unbounded, is_found .and. all(found%chosen > 0))
 
    contains
-
-      !> The unknowns of block `k`.
-      pure function own_of(k) result(own)
-         integer, intent(in) :: k
-         integer, allocatable :: own(:)
-
-         own = e%blocks%unknown(e%blocks%list(k)%first:e%blocks%list(k)%last)
-      end function own_of
 
       !> Finds the positions of block `i`, unless those that are known still hold.
       subroutine look_for_positions()
@@ -287,7 +248,7 @@ contains
 
          budget = sqrt(max(0.0_wp, limit**2 - spent(i - 1)))
          if (largest_known(e%blocks, i, changed) <= seen(i) .and. about_equal*found(i)%beyond >= budget) return
-         call find_candidates(e, i, guess, budget, found(i), failure(i))
+         call find_candidates(e, i, places, guess, budget, found(i))
          seen(i) = choices
          solves = solves + 1
       end subroutine look_for_positions
@@ -311,48 +272,16 @@ contains
          end do
          k = 0
       end function last_promising
-
-      !> Takes the next position of block `i`.
-      subroutine take_next_position()
-         associate (one => found(i))
-            one%chosen = one%chosen + 1
-            call set_values(e%blocks, i, one%x(:, one%chosen), e%state)
-            spent(i) = spent(i - 1) + one%distance(one%chosen)**2
-         end associate
-         choices = choices + 1
-         changed(own_of(i)) = choices
-         i = i + 1
-      end subroutine take_next_position
-
-      !> Leaves block `i` without a position.
-      subroutine leave_open()
-         found(i)%chosen = 0
-         spent(i) = spent(i - 1)
-         open(own_of(i)) = 1
-         call set_values(e%blocks, i, e%estimated(own_of(i)), e%state)
-         i = i + 1
-      end subroutine leave_open
-
-      !> Notes the assembly that `e` has as the nearest so far.
-      subroutine note_assembly()
-         nearest%found = found
-         values = e%state%u%value
-         if (any(found%chosen == 0)) return
-         nearest%distance = sqrt(spent(size(found)))
-         limit = nearest%distance
-      end subroutine note_assembly
    end subroutine find_nearest
 
    !> Finds the positions `found` of block `i`, for the values that `e` has of earlier blocks. Others than that of
-   !> Newton's method are not looked for if all of them are further from `guess` than the distance `budget`. `c`: how
-   !> the search ended; where there is no position, with the closure error that remains.
-   subroutine find_candidates(e, i, guess, budget, found, c)
+   !> Newton's method are not looked for if all of them are further from `guess` than the distance `budget`. `places`,
+   !> `guess`: see `find_nearest`. If there is no position, found%ending has the closure error that remains.
+   subroutine find_candidates(e, i, places, guess, budget, found)
       type(block_engine_t), intent(inout) :: e
-      integer, intent(in) :: i
-      type(guess_t), intent(in) :: guess
-      real(wp), intent(in) :: budget
+      integer, intent(in) :: i, places(:, :)
+      real(wp), intent(in) :: guess(:, :), budget
       type(candidates_t), intent(out) :: found
-      type(convergence_t), intent(out) :: c
       type(block_positions_t) :: every
       real(wp), dimension(e%blocks%list(i)%shape%n) :: start, least
       real(wp) :: angles
@@ -361,11 +290,11 @@ contains
       allocate (found%x(size(start), 0), found%distance(0))
       start = e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
       call set_values(e%blocks, i, start, e%state)
-      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-      if (is_solved(c)) call note_position(values_of(e%blocks, i, e%state), c%singular)
+      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, found%ending)
+      if (is_solved(found%ending)) call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
       if (e%blocks%list(i)%direct) return
-      if (is_solved(c)) then
-         found%beyond = separation_of(e%blocks, i, e%state, c) - angles
+      if (is_solved(found%ending)) then
+         found%beyond = separation_of(e%blocks, i, e%state, found%ending) - angles
          if (about_equal*found%beyond >= budget) return
          found%beyond = unbounded
       end if
@@ -381,12 +310,12 @@ contains
       call set_values(e%blocks, i, start, e%state)
       call levenberg_marquardt_solve(e%blocks, i, e%state)
       least = values_of(e%blocks, i, e%state)
-      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-      if (is_solved(c)) then
-         call note_position(values_of(e%blocks, i, e%state), c%singular)
+      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, found%ending)
+      if (is_solved(found%ending)) then
+         call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
       else
          call set_values(e%blocks, i, least, e%state)
-         call find_closure_error(e%blocks, i, e%state, c)
+         call find_closure_error(e%blocks, i, e%state, found%ending)
       end if
 
    contains
@@ -397,7 +326,7 @@ contains
       subroutine note_position(x, is_singular)
          real(wp), intent(in) :: x(:)
          logical, intent(in) :: is_singular
-         real(wp) :: y(size(x)), square(2, size(guess%places, 2)), distance
+         real(wp) :: y(size(x)), square(2, size(places, 2)), distance
          integer :: k, first
 
          associate (is_angle => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last) <= e%blocks%orientations)
@@ -412,8 +341,8 @@ contains
          call add_turns(e%blocks, i, e%state)
          y = values_of(e%blocks, i, e%state)
          square = squares_of(e, guess)
-         angles = sqrt(sum(square(1, :), mask=guess%places(1, :) == i))
-         distance = sqrt(sum(square, mask=guess%places == i))
+         angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
+         distance = sqrt(sum(square, mask=places == i))
          do k = 1, size(found%distance)
             if (is_nearer(distance, found%distance(k))) exit
             if (is_nearer(found%distance(k), distance)) cycle
@@ -452,6 +381,28 @@ contains
 
       is = one < other - rounding*max(other, far_place)
    end function is_nearer
+
+   !> (2, links) See `squared_distances`: how far the links are from `guess` (3, links), at the values that `e` has.
+   function squares_of(e, guess) result(square)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: guess(:, :)
+      real(wp) :: square(2, size(guess, 2))
+      type(motion_t) :: q
+      logical :: finite
+
+      q = new_motion(size(guess, 2))
+      call move_links(e%chain, e%state, e%length, q, finite, .true.)
+      square = squared_distances(q%position, guess, e%blocks%numbers%span)
+   end function squares_of
+
+   !> The distance from `guess` (3, links) of the assembly that `e` has, of all links that a block moves: `places`.
+   real(wp) function distance_of(e, places, guess) result(distance)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: places(:, :)
+      real(wp), intent(in) :: guess(:, :)
+
+      distance = sqrt(sum(squares_of(e, guess), mask=places > 0))
+   end function distance_of
 
    !> (2, links) How far each link at `position` (3, links) is from that of `guess` (3, links): the square of the angle,
    !> in rad, and of the distance, in lengths of `span`.

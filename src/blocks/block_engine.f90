@@ -35,7 +35,7 @@ module block_engine
 
    !> How the position of a block at the first instant was chosen.
    type :: choice_t
-      real(wp) :: separation = 0.0_wp                   !< of the angles of other positions, at least, see `separation_of`
+      real(wp) :: separation = 0.0_wp                   !< of other positions, at least: see `separation_of`
       logical :: is_close = .false.                     !< another one is about as near
       logical :: is_incomplete = .false.                !< a nearer one may not have been found
    end type choice_t
