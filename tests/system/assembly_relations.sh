@@ -1,10 +1,12 @@
 #!/bin/sh
 # Card ASSEMBLY and runs, as relations: the position that a run finds at the first instant is among the assemblies listed, or the
 # listing says that some may be missing; each assembly, pasted, is the first instant of a run; equations that say again what
-# others say leave the assemblies that there are without them.
+# others say leave the assemblies that there are without them. A run begins in the nearest assembly, or the listing says that a
+# nearer one may exist.
 #
-#    assembly_relations.sh                          every set of input/, and 20 random decks with redundant equations
+#    assembly_relations.sh                          every set of input/, 20 random decks with redundant equations, 500 of dyads
 #    assembly_relations.sh --random COUNT [FIRST]   COUNT of these, from seed FIRST on; decks that fail are kept
+#    assembly_relations.sh --nearest COUNT [FIRST]  COUNT chains of random dyads
 . tests/counting.sh
 # Of the largest coordinate, or rad.
 level=1e-9
@@ -73,12 +75,41 @@ random() {
    equal 'some may be missing: in few decks only' yes "$([ $((50*$(grep -c . "$w/missing"))) -le "$1" ] && echo yes)"
 }
 
+# nearest COUNT FIRST: the assemblies in which runs of random dyads begin, by DISTANCE; seed = FIRST - 1 + number of the set
+nearest() {
+   for assembly in '' 1; do
+      awk -v first="$2" -v sets="$1" -v assembly=$assembly -f tests/system/random_dyads.awk > "$w/${assembly:-run}.deck"
+      solve "${assembly:-run}"
+   done
+   awk -f tests/system/nearest.awk "$w/run.deck" "$w/1.lst" "$w/1.csv" "$w/run.lst" "$w/run.csv" > "$w/found"
+   equal 'dyads: each begins in the nearest assembly, or says that a nearer one may exist' '' "$(sed '$d' "$w/found")"
+   set -- "$1" $(tail -n 1 "$w/found")
+   equal 'dyads: most are compared' yes "$([ $((100*$2)) -ge $((95*$1)) ] && echo yes)"
+   equal 'dyads: some begin in another one' yes "$([ "$3" -gt 0 ] && [ $((10*$3)) -le "$2" ] && echo yes)"
+   equal 'dyads: at most 1 of 100 says so needlessly' yes "$([ $((100*$4)) -le "$2" ] && echo yes)"
+}
+
+# first_instants: decks with the places and angles of their nearest assemblies, which another program found
+first_instants() {
+   while read -r deck link x y phi; do
+      "$kinmat" --quiet "tests/system/decks/$deck.deck" --csv "$w/first.csv" -o "$w/first.lst"
+      equal "$deck, $link: the first instant" '' "$(awk -F , -v link="$link" -v x="$x" -v y="$y" -v phi="$phi" -v level=$level '
+         function off(a, b) { a -= b; b = (b < 0 ? -b : b) + 1; return (a < 0 ? -a : a) > level*b }
+         $2 == 0 && $4 == "LINK" && $5 == link { found = 1; if (off($6, x) || off($7, y) || off($8, phi)) print $6, $7, $8 }
+         END { if (!found) print "not found" }' "$w/first.csv")"
+      equal "$deck: nothing is said of a nearer one" 0 "$(grep -c 'A NEARER ASSEMBLY' "$w/first.lst")"
+   done < tests/system/decks/first_instants.txt
+}
+
 case $1 in
 --random) random "$2" "${3:-1}" ;;
+--nearest) nearest "$2" "${3:-1}" ;;
 *)
    for deck in input/*.deck; do
       for set in $(seq "$(grep -c '^END' "$deck")"); do relate "$(basename "$deck" .deck) $set" "$deck" "$set"; done
    done
-   random 20 1 ;;
+   random 20 1
+   nearest 500 1
+   first_instants ;;
 esac
 conclude
