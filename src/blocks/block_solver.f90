@@ -169,9 +169,9 @@ contains
          end if
          c%step = largest_size(block%shape%n, w%r)
          ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
-         ! it is their gap.
-         if (c%step > 0.5_wp*before .and. (c%residual <= rounding_level*max(size_of, numbers%coarse) .or. &
-            (block%shape%rows > block%shape%n .and. c%step <= small_turn))) then
+         ! it is their gap. A step so small that no longer falls is rounding, whatever sums have left it.
+         if (c%step > 0.5_wp*before .and. (c%step <= small_turn .or. &
+            c%residual <= rounding_level*max(size_of, numbers%coarse))) then
             c%ended = ended_stalled
          else
             call move(b, block, numbers, w%r, s, c%step, tolerance, size_of, is_right)

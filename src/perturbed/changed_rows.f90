@@ -168,7 +168,6 @@ contains
                c = convergence_t()
                call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
                place%ratio = max(place%ratio, c%kantorovich_ratio)
-               place%change = max(place%change, c%change)
                place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open
                if (c%singular) lack = missing_rates
                if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
@@ -182,6 +181,10 @@ contains
             worst = max(worst, lack)
             if (lack > missing_nothing) missing(e%blocks%unknown(block%first:block%last)) = lack
          end associate
+      end do
+      ! That of a drive's own unknown counts too: full turns are no return.
+      do k = 1, ubound(e%state%u, 1)
+         place%change = max(place%change, abs(e%state%u(k)%value - place%start(k)%value/slide_unit(e, k)))
       end do
       call get_motion(e, q, finite)
       call forget_links(q)

@@ -129,12 +129,12 @@ contains
          changes = 0.0_wp
          do k = 1, directions
             call find_changed(k, roundings, rows)
-            is_small = anyway .or. s%place%ratio <= small_ratio
+            is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
-            if (s%place%is_singular .and. any(rows%known < 0)) then
-               ! On a dead point one of two opposite changes has a position.
+            if (any(rows%known < found%solved%known)) then
+               ! The opposite change is as likely, and as large; on a dead point one of the two has a position.
                call find_changed(k, -roundings, other)
-               where (rows%known < 0) rows = other
+               where (rows%known < found%solved%known) rows = other
             end if
             do i = 1, size(rows)
                changes(:, :, i) = max(changes(:, :, i), change(rows(i), found%solved(i), part))
