@@ -14,7 +14,7 @@ module changed_rows
    use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
       slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use rounded_numbers, only: directions
+   use rounded_numbers, only: directions, own_directions
    use link_motion, only: mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
@@ -83,7 +83,7 @@ contains
       integer, intent(out) :: i
       type(structure_t) :: structure
 
-      if (.not. allocated(list)) allocate (list(0:merge(2*directions, 0, size(m%links) <= most_links)))
+      if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
       i = merge(k, 0, k <= ubound(list, 1))
       associate (p => list(i))
          if (p%is_ready) return

@@ -10,7 +10,8 @@ module error_estimate
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
    use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
-   use rounded_numbers, only: directions, caution, put_off, put_sums_off
+   use rounded_numbers, only: directions, own_directions, caution, own_caution, calculation_caution, &
+      put_off, put_sums_off
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
@@ -19,7 +20,7 @@ module error_estimate
    !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
    real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
    !> A sum is off by so many roundings of its largest number. So the estimates of `make errors` are above all the true
-   !> errors, and 16 times these in the mean.
+   !> errors, and 7 to 10 times these in the mean.
    real(wp), parameter :: of_sum = 0.9_wp
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
@@ -31,8 +32,8 @@ module error_estimate
       logical :: in_doubt = .false.          !< it is so much that digits may be lost
       !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
       real(wp), allocatable :: changes(:, :, :)
-      !> (3, 0:2, requests) --errors: what one rounding of all numbers changes at most, with the roundings of the
-      !> calculation itself: rates of links that turn as one have no other error.
+      !> (3, 0:2, requests) --errors: how far numbers are known, with the roundings of the calculation itself: rates of
+      !> links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
    end type error_estimate_t
@@ -41,8 +42,8 @@ module error_estimate
    type :: estimator_t
       type(sizes_t) :: sizes
       type(at_hand_t) :: place
-      !> (0:2*directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in each direction
-      !> by `many` or `few` roundings; off in each direction by one.
+      !> (0:directions + own_directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in
+      !> each direction by `many` or `few` roundings; off in each further direction by one.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
@@ -59,13 +60,13 @@ contains
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found. `always`: also where no digit of a table is
-   !> in doubt.
-   subroutine estimate_errors(s, m, engine, q, always, found)
+   !> in doubt. `told`: its errors are told themselves (--errors).
+   subroutine estimate_errors(s, m, engine, q, always, told, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: engine
       type(motion_t), intent(in) :: q
-      logical, intent(in) :: always
+      logical, intent(in) :: always, told
       type(error_estimate_t), intent(inout) :: found
       logical :: is_small
 
@@ -85,8 +86,15 @@ contains
       s%place%stays = .false.
       call find_changes(many, s%place%is_singular, found%changes, is_small)
       if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
-      found%own = 0.0_wp
-      if (always .and. .not. s%place%is_singular) call find_changes(1.0_wp, .true., found%own, is_small)
+      found%own = caution*min(found%changes, nothing_known/caution)
+      if (told .and. .not. s%place%is_singular) then
+         call find_changes(1.0_wp, .true., found%own, is_small)
+         ! As far as they exceed the largest change by numbers alone, the calculation has made them.
+         associate (own => found%own, by_numbers => found%changes)
+            own = max(own_caution*own, &
+               calculation_caution*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
+         end associate
+      end if
       call add_sums()
 
    contains
@@ -99,7 +107,7 @@ contains
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
-         call make_ready(s%perturbed, merge(k, k + directions, abs(roundings) > 1.0_wp), m, engine, i)
+         call make_ready(s%perturbed, k, m, engine, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
                associate (blocks => engine%blocks)
@@ -113,8 +121,9 @@ contains
          end associate
       end subroutine find_changed
 
-      !> The `changes` (3, 0:2, requests) of the rows by a rounding, from those by so many `roundings`. `is_small`: they
-      !> are so small that they are of first order, if not all of them are asked for `anyway`.
+      !> The largest `changes` (3, 0:2, requests) of the rows by a rounding, from those by so many `roundings`; by one
+      !> rounding, in further directions, the root of their mean square. `is_small`: they are so small that they are of
+      !> first order, if not all of them are asked for `anyway`.
       subroutine find_changes(roundings, anyway, changes, is_small)
          real(wp), intent(in) :: roundings
          logical, intent(in) :: anyway
@@ -122,12 +131,14 @@ contains
          logical, intent(out) :: is_small
          type(row_t), dimension(size(found%solved)) :: rows, other
          real(wp) :: part
-         integer :: k, i
+         integer :: first, last, k, i
 
+         first = merge(1, directions + 1, roundings > 1.0_wp)
+         last = merge(directions, directions + own_directions, roundings > 1.0_wp)
          ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
          part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
          changes = 0.0_wp
-         do k = 1, directions
+         do k = first, last
             call find_changed(k, roundings, rows)
             is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
@@ -137,7 +148,11 @@ contains
                where (rows%known < found%solved%known) rows = other
             end if
             do i = 1, size(rows)
-               changes(:, :, i) = max(changes(:, :, i), change(rows(i), found%solved(i), part))
+               associate (largest => changes(:, :, i), one => change(rows(i), found%solved(i), part))
+                  if (roundings > 1.0_wp) largest = max(largest, one)
+                  if (.not. roundings > 1.0_wp) largest = min(nothing_known, &
+                     hypot(largest, one/sqrt(real(own_directions, wp))))
+               end associate
             end do
          end do
       end subroutine find_changes
@@ -227,7 +242,7 @@ contains
       call find_row(m, q, m%requests(i), row)
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
-      where (error < nothing_known) error = max(error, caution*s%own(:, :, i)) + difference(row, s%solved(i))
+      where (error < nothing_known) error = s%own(:, :, i) + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
 

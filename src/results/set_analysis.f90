@@ -160,7 +160,7 @@ contains
                call find_row(own, q, request_of(s%now, list(i)), rows(i))
             end do
             if (.not. present(always)) return
-            call estimate_errors(s%estimators(c), own, a%engine, q, always, estimate)
+            call estimate_errors(s%estimators(c), own, a%engine, q, always, .false., estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
             do i = 1, size(list)
@@ -179,7 +179,7 @@ contains
 
       do c = 1, size(s%list)
          associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
-            call estimate_errors(s%estimators(c), own, a%engine, q, always, s%now%errors(c))
+            call estimate_errors(s%estimators(c), own, a%engine, q, always, always, s%now%errors(c))
             if (allocated(own%tolerances)) &
                call find_sensitivities(s%estimators(c), own, a%engine, q, s%now%errors(c), s%now%sensitivities(c))
          end associate

@@ -20,7 +20,7 @@ program fuzz_mechanisms
    implicit none
 
    type :: sums_t
-      integer :: passed(3) = 0, failed = 0, instants = 0, numbers = 0, lost = 0, unknown = 0, flagged = 0
+      integer :: passed(3) = 0, failed = 0, instants = 0, numbers = 0, lost = 0, unknown = 0, flagged = 0, above = 0
       real(qp) :: worst(0:2) = 0.0_qp
    end type sums_t
 
@@ -84,6 +84,7 @@ contains
          sums%lost = sums%lost + v%lost
          sums%unknown = sums%unknown + v%unknown
          sums%flagged = sums%flagged + v%flagged
+         sums%above = sums%above + v%above
          if (allocated(v%text)) then
             sums%failed = sums%failed + 1
             write (output_unit, '(a,i0,2a)') 'FAILED: SEED ', seed, ': ', v%text
@@ -102,9 +103,8 @@ contains
       integer, intent(in) :: unit
       type(sums_t), intent(in) :: s
 
-      write (unit, '(a,9(1x,i0),3f9.4)') 'SUMS', s%passed, s%failed, s%instants, s%numbers, s%lost, s%unknown, &
-         s%flagged, &
-         s%worst
+      write (unit, '(a,9(1x,i0),3f9.4,1x,i0)') 'SUMS', s%passed, s%failed, s%instants, s%numbers, s%lost, s%unknown, &
+         s%flagged, s%worst, s%above
    end subroutine write_sums
 
    !> Runs one deck and judges its results.

@@ -76,12 +76,14 @@ last=$((first + count - 1))
 grep '^FAILED' "$work/results" | sort -k 3 -n
 awk '
    $1 == "SUMS" { for (i = 1; i <= 9; i++) sum[i] += $(1 + i)
+      above += $14
       for (i = 0; i < 3; i++) if ($(11 + i) > worst[i]) worst[i] = $(11 + i) }
    $1 == "CRASHED" { sum[4]++ }
    END {
       printf "chains of dyads %d, with triads and tetrads %d, with wide groups %d\n", sum[1], sum[2], sum[3]
       printf "instants %d, numbers %d; rows beyond limits %d, without a known truth %d, flagged near a singularity %d\n", \
          sum[5], sum[6], sum[7], sum[8], sum[9]
+      printf "numbers off by more than the error told %d\n", above
       printf "largest errors, of what is allowed: positions %.3f, velocities %.3f, accelerations %.3f\n", \
          worst[0], worst[1], worst[2]
       printf "%d passed, %d failed\n", sum[1] + sum[2] + sum[3], sum[4]

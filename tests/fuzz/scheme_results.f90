@@ -49,6 +49,7 @@ module scheme_results
       integer :: instants = 0, numbers = 0     !< compared
       integer :: lost = 0, unknown = 0         !< rows beyond a limit; of groups whose truth is not known
       integer :: flagged = 0                   !< rows flagged that have a truth, not far from a singularity
+      integer :: above = 0                     !< numbers that are off by more than the error told
       real(qp) :: worst(0:2) = 0.0_qp          !< largest errors, in units of what is allowed
    end type verdict_t
 
@@ -189,6 +190,8 @@ contains
          allowed = of_told*row%error(i) + bits*abs(truth(c)) + nothing*unit(c)
          if (.not. row%is_told(i)) allowed = untold*max(abs(truth(c)), unit(c))
          off = abs(row%value(i) - truth(c))/max(allowed, tiny(allowed))
+         if (row%is_told(i) .and. abs(row%value(i) - truth(c)) > row%error(i) + bits*abs(truth(c)) + nothing*unit(c)) &
+            v%above = v%above + 1
          v%worst(k) = max(v%worst(k), off)
          if (.not. off <= 1.0_qp) call blame(v, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
             told(row%value(i))//' FOR '//told(truth(c))//', ERROR TOLD '//told(row%error(i)))
