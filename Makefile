@@ -52,7 +52,7 @@ included := $(sort $(shell find src -name '*.inc'))
 helpers := $(filter-out $(sources),$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
-command := main
+command := main allocation
 # document_texts is made from the documents.
 modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_texts
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))

@@ -13,7 +13,7 @@
 !> other's: of 2000 sets in two threads, two listings had words cut short.
 module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
-   use failures, only: capitals, status_rejected, status_system, status_signal
+   use failures, only: capitals, status_system, status_signal
    use numerals, only: whole
    use processes, only: waitpid, no_hang, usleep, fork_process, interrupt_child, memfd_create, lseek, &
       from_here, change_lock, locked, unlocked
@@ -90,14 +90,12 @@ contains
          do k = 1, started
             if (iand(ended(k), 127) == signal_pipe) then
                status = status_signal + signal_pipe
-            else if (iand(ended(k), 127) == 0 .and. ended(k) /= ishft(status_rejected, 8)) then
+            else if (iand(ended(k), 127) == 0) then
                status = max(status, ishft(iand(ended(k), 65535), -8))
             else if (status < status_system) then
-               ! Only the Fortran library ends a child as if the deck were rejected: memory is short. All parts before
-               ! its own are done.
-               message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s)))
-               if (iand(ended(k), 127) == 0) message = message//' HAS FAILED'
-               if (iand(ended(k), 127) > 0) message = message//' WAS ENDED BY SIGNAL '//whole(iand(ended(k), 127))
+               ! All parts before its own are done.
+               message = ' *** THE PROCESS FOR'//text_of(s, min(count_of(s%done) + 1, part_count(s))) &
+                  //' WAS ENDED BY SIGNAL '//whole(iand(ended(k), 127))
                status = status_system
             end if
          end do

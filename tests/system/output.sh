@@ -212,6 +212,24 @@ printf '$ A COMMENT\rTITLE   LOST\r\n' | cat - two > returns
 "$kinmat" returns > out 2> err
 told 'a carriage return that would hide a card' 1 $? \
    ' *** FILE returns IS NOT A DECK: LINE 1 HAS A CARRIAGE RETURN INSIDE; END LINES WITH LF OR CR-LF'
+tr '\n' '\r' < two | "$kinmat" --check > out 2> err
+told 'lines that end in CR' 1 $? \
+   ' *** STANDARD INPUT IS NOT A DECK: LINE 1 HAS A CARRIAGE RETURN INSIDE; END LINES WITH LF OR CR-LF'
+for line in '\r' '\r\n'; do
+   printf "$line" | "$kinmat" > out 2> err
+   told "a deck of $line alone" 1 $? ' *** E001  THE DECK IS EMPTY'
+done
+
+# Memory is short, at several limits: from where one deck of two sets can be read, to where 20,000 of them cannot.
+awk '{ deck = deck $0 "\n" } END { for (i = 1; i <= 10000; i++) printf "%s", deck }' two > many
+memory=16000
+until (ulimit -v $memory; exec "$kinmat" --check two) > out 2> err; do memory=$((memory + 4000)); done
+for more in 4000 8000 12000 16000 24000 32000; do
+   for jobs in 1 2; do
+      (ulimit -v $((memory + more)); exec "$kinmat" --check many --jobs $jobs) > out 2> err
+      told "$more kB more than enough for two sets, --jobs $jobs" 3 $? ' *** NOT ENOUGH MEMORY FOR THE DECK'
+   done
+done
 
 # Decks that cannot be read.
 "$kinmat" /proc/self/mem > out 2> err

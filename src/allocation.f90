@@ -1,0 +1,63 @@
+!> malloc, calloc and realloc of the command and of all libraries that it calls: if memory is short, the process ends
+!> with a message and exit status 3. Code that gfortran makes for an assignment uses memory without a look whether
+!> there is any.
+!>
+!> The dynamic linker finds these procedures before those of the C library. This file is linked with main and does not
+!> belong to the library: another program that uses the modules keeps its own.
+module allocation
+   use, intrinsic :: iso_c_binding, only: c_size_t, c_ptr, c_null_ptr, c_associated
+   use failures, only: status_system
+   use processes, only: end_process
+   use system_calls, only: write_bytes
+   implicit none
+   private
+
+   interface
+      !> calloc(3) of the C library.
+      type(c_ptr) function libc_calloc(count, length) bind(c, name='__libc_calloc')
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: count, length
+      end function libc_calloc
+      !> realloc(3) of the C library; malloc(3) for a null `place`.
+      type(c_ptr) function libc_realloc(place, length) bind(c, name='__libc_realloc')
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: place
+         integer(c_size_t), value :: length
+      end function libc_realloc
+   end interface
+
+contains
+
+   !> Allocates `length` bytes, or ends the process.
+   type(c_ptr) function malloc(length) bind(c) result(place)
+      integer(c_size_t), value :: length  !< bytes
+
+      place = libc_realloc(c_null_ptr, length)
+      if (.not. c_associated(place)) call end_without_memory
+   end function malloc
+
+   !> Allocates `count` elements of `length` bytes, all 0, or ends the process.
+   type(c_ptr) function calloc(count, length) bind(c) result(place)
+      integer(c_size_t), value :: count, length  !< elements, bytes
+
+      place = libc_calloc(count, length)
+      if (.not. c_associated(place)) call end_without_memory
+   end function calloc
+
+   !> Changes the size of the memory at `before` to `length` bytes, of which 0 free it, or ends the process.
+   type(c_ptr) function realloc(before, length) bind(c) result(place)
+      type(c_ptr), value :: before
+      integer(c_size_t), value :: length  !< bytes
+
+      place = libc_realloc(before, length)
+      if (.not. c_associated(place) .and. length /= 0) call end_without_memory
+   end function realloc
+
+   !> Ends the process with a message that needs no memory.
+   subroutine end_without_memory
+      integer(c_size_t) :: ignored
+
+      ignored = write_bytes(2, ' *** NOT ENOUGH MEMORY FOR THE DECK'//new_line('a'))
+      call end_process(status_system)
+   end subroutine end_without_memory
+end module allocation
