@@ -27,9 +27,9 @@ COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-unin
    -ffp-contract=off
 # real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
 # Two parts at the link are enough for two processors, and have less to exchange than the many of the default.
-# Neighbours are not computed in pairs (SLP): to load as a pair what was stored one by one takes 2 to 9 per cent of a step.
+# Neighbours are not computed in pairs: to load as a pair what was stored one by one takes up to 9 per cent of a step.
 # Procedures begin with a line of the processor's cache: otherwise what stands before them decides on up to 8 per cent of a step.
-RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-slp-vectorize -falign-functions=64 -flto=auto --param=lto-partitions=2 -ffat-lto-objects,$(if $(filter quad,$(KIND)),-O0,-O1))
+RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-vectorize -falign-functions=64 -flto=auto --param=lto-partitions=2 -ffat-lto-objects,$(if $(filter quad,$(KIND)),-O0,-O1))
 # Links in two seconds what the optimization at link time takes ten for.
 no_lto  := -fno-lto -fno-use-linker-plugin
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
@@ -117,14 +117,19 @@ less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
 $(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
 $(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)
 # Loops over lanes are of few turns: without counting them, and without calls to copy so little, a step takes a tenth less.
-lane_flags := -fpeel-loops -fno-tree-loop-distribute-patterns
+lane_flags := -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -fno-tree-loop-distribute-patterns
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
 $(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
+# The procedures of a step, each called a few times at every instant, are put into one another at any length.
+step_flags := --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
+step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation))
+$(patsubst %,$(BUILD)/release/%.o,$(step)): private release += $(step_flags)
+$(patsubst %,$(BUILD)/timed/%.o,$(step)): private timed += $(step_flags)
 $(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)
 $(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) $(command))): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
-$(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
+$(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-vectorize,$(RELEASE))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	$(quiet)cp $< $@
