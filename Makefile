@@ -121,9 +121,9 @@ lane_flags := -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -f
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
 $(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
-# The procedures of a step, each called a few times at every instant, are put into one another at any length.
+# Procedures of a step, and of a row of the listing, are called a few times each: they are put into one another at any length.
 step_flags := --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
-step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation))
+step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation) numerals known_digits listing_tables listing)
 $(patsubst %,$(BUILD)/release/%.o,$(step)): private release += $(step_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(step)): private timed += $(step_flags)
 $(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)

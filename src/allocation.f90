@@ -5,7 +5,7 @@
 !> The dynamic linker finds these procedures before those of the C library. This file is linked with main and does not
 !> belong to the library: another program that uses the modules keeps its own.
 module allocation
-   use, intrinsic :: iso_c_binding, only: c_size_t, c_ptr, c_null_ptr, c_associated
+   use, intrinsic :: iso_c_binding, only: c_size_t, c_ptr, c_associated
    use failures, only: status_system
    use processes, only: end_process
    use system_calls, only: write_bytes
@@ -13,12 +13,17 @@ module allocation
    private
 
    interface
+      !> malloc(3) of the C library.
+      type(c_ptr) function libc_malloc(length) bind(c, name='__libc_malloc')
+         import :: c_ptr, c_size_t
+         integer(c_size_t), value :: length
+      end function libc_malloc
       !> calloc(3) of the C library.
       type(c_ptr) function libc_calloc(count, length) bind(c, name='__libc_calloc')
          import :: c_ptr, c_size_t
          integer(c_size_t), value :: count, length
       end function libc_calloc
-      !> realloc(3) of the C library; malloc(3) for a null `place`.
+      !> realloc(3) of the C library.
       type(c_ptr) function libc_realloc(place, length) bind(c, name='__libc_realloc')
          import :: c_ptr, c_size_t
          type(c_ptr), value :: place
@@ -32,7 +37,7 @@ contains
    type(c_ptr) function malloc(length) bind(c) result(place)
       integer(c_size_t), value :: length  !< bytes
 
-      place = libc_realloc(c_null_ptr, length)
+      place = libc_malloc(length)
       if (.not. c_associated(place)) call end_without_memory
    end function malloc
 
