@@ -267,8 +267,10 @@ fuzz-short: $(BUILD)/debug/fuzz
 fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
 	FUZZ_METHOD=$(METHOD) BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
 
-# Extremes of N mechanisms made by chance, from seed SEED on, against runs in steps 16 times finer.
-fuzz-extremes: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
+# Extremes of 3000 laws of RISE and 400 fast cranks against closed forms; of N mechanisms made by chance, from seed SEED on,
+# against runs in steps 16 times finer.
+fuzz-extremes: $(addprefix $(BUILD)/,kinmat release/extremes_by_chance release/fuzz_mechanisms)
+	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh --laws 3000 400 $(or $(SEED),1)
 	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh $(or $(N),200) $(or $(SEED),1)
 
 # Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on; and of runs and assemblies.
@@ -297,7 +299,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance twins_by_chance dwells_by_chance random_blocks
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance random_blocks
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

@@ -32,7 +32,8 @@ parts() {
    units|786|tests/system/units.sh
    tolerances|49|tests/system/tolerances.sh
    what is as drawn|90|tests/system/as_drawn.sh
-   extremes|34|tests/system/answers.sh
+   extremes|42|tests/system/answers.sh
+   extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    circuits of twins|40|"$BUILD/release/twins_by_chance" 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60

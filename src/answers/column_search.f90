@@ -13,15 +13,15 @@ module column_search
    use set_motion, only: find_row_in_set
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: node_t, sample_t, beside_joint
-   use zero_search, only: column_t, find_zero, find_turn, differ_in_sign, noise_part
-   use extremes, only: extremes_t, track_t, offer_sample, note_velocity, note_interval, alike
+   use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
+   use extremes, only: extremes_t, track_t, offer_sample, note_velocity, note_interval, alike, never_better
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_turn` shortens it.
-   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 5.0e-4_wp, max_part = 1.0_wp/8.0_wp
+   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 5.0e-4_wp, max_part = 1.0_wp/4.0_wp
    !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
    real(wp), parameter :: errors_by_rates = 122.0_wp
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
@@ -35,8 +35,6 @@ module column_search
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
-   !> Part of an interval that no table shows.
-   real(wp), parameter :: beside_end = 1.0e-6_wp
    !> Lengths that differ by this part are one.
    real(wp), parameter :: alike_part = 1.0e-9_wp
 
@@ -98,38 +96,43 @@ contains
    !> simple.
    subroutine look_for_turns(track)
       type(track_t), intent(inout) :: track
-      real(wp) :: jerk(2), noise(2), f(3), clear(3)
+      real(wp) :: curve(0:8), jerk(2), noise(3), f(3)
       integer :: i, k
-      logical :: simple
+      logical :: pair, simple
 
       associate (a => track%nodes(1), middle => track%nodes(2), b => track%nodes(3))
-         track%turns = .not. (b%is_known .and. is_pair(track, a, middle, b))
-         if (track%turns) return
+         pair = is_pair(track, a, middle, b)
+         track%turns = .not. (b%is_known .and. pair)
+         if (.not. b%is_known) return
          do i = 1, size(track%coordinates)
             associate (one => track%coordinates(i))
-               call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, jerk, noise, simple)
+               call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, curve, jerk, noise, simple)
                track%turns = track%turns .or. .not. simple
                do k = 1, 2
                   f = [a%samples(i)%f(k), middle%samples(i)%f(k), b%samples(i)%f(k)]
-                  clear = merge(f, one%last(k), abs(f) > noise(k))
-                  call compare(clear, one%last(k))
+                  call compare(f, noise(k), one%last(k))
                end do
-               ! Where accelerations are alike it is that of rounding.
+               ! Where accelerations are alike a small one is that of rounding.
                if (max(f(1), f(2), f(3)) - min(f(1), f(2), f(3)) > 2.0_wp*max(alike*one%size_of(2), noise(2))) &
-                  call compare([jerk, jerk(2)], one%last(3))
+                  noise(3) = 0.0_wp
+               if (pair) call compare(jerk, noise(3), one%last(3))
             end associate
          end do
       end associate
 
    contains
 
-      !> Takes three values after the `last` one.
-      subroutine compare(v, last)
-         real(wp), intent(in) :: v(3)
+      !> Takes values `v` after the `last` one with a clear sign; those up to `noise` have none.
+      subroutine compare(v, noise, last)
+         real(wp), intent(in) :: v(:), noise
          real(wp), intent(inout) :: last
+         integer :: n
 
-         track%turns = track%turns .or. differ_in_sign(min(last, v(1), v(2), v(3)), max(last, v(1), v(2), v(3)))
-         last = v(3)
+         do n = 1, size(v)
+            if (abs(v(n)) <= noise) cycle
+            track%turns = track%turns .or. differ_in_sign(last, v(n))
+            last = v(n)
+         end do
       end subroutine compare
    end subroutine look_for_turns
 
@@ -198,42 +201,55 @@ contains
       end associate
    end subroutine search_waiting
 
-   !> Finds the derivatives `jerk` of the acceleration of a coordinate at the ends of a part with the samples `a`,
-   !> `middle` and `b`; `size_of`: its characteristic values. They are those of the polynomial of degree 8 with the
-   !> values, rates and accelerations (Hermite), which has an error of 2E-6 of the ninth derivative, but where rounding
-   !> explains the difference from rates and accelerations alone, with an error of 7E-4 of the seventh. `noise`: what
-   !> rounding may leave open, at most, of rate and acceleration. `simple`: the cubic with the accelerations and jerks
-   !> at the ends has about the acceleration in the middle, and one extreme inside at most.
-   pure subroutine find_jerk(a, middle, b, size_of, jerk, noise, simple)
+   !> Finds the polynomial of a coordinate in a part with the samples `a`, `middle` and `b`, and its third derivatives
+   !> `jerk` at the ends. It is that of degree 8 with the values, rates and accelerations (Hermite), whose `jerk` has an
+   !> error of 2E-6 of the ninth derivative, but where rounding explains the difference from rates and accelerations
+   !> alone, with an error of 7E-4 of the seventh. `curve`: its coefficients, of the time from the middle in halves of
+   !> the part. `size_of`: characteristic values. `noise`: what rounding may leave open, at most, of rate, acceleration
+   !> and jerk. `simple`: the cubic with the accelerations and jerks at the ends has about the acceleration in the
+   !> middle, and one extreme inside at most.
+   pure subroutine find_jerk(a, middle, b, size_of, curve, jerk, noise, simple)
       type(sample_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: size_of(0:2)
-      real(wp), intent(out) :: jerk(2), noise(2)
+      real(wp), intent(out) :: curve(0:8), jerk(2), noise(3)
       logical, intent(out) :: simple
-      real(wp), dimension(0:2) :: first, half, last, left
-      real(wp) :: mean, change, by_values, open, h, most, step
+      real(wp), dimension(0:2) :: first, half, last, left, largest, odd, even
+      real(wp) :: mean, change, open, h, most, step
 
       h = b%t - a%t
-      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*size_of
+      ! Of the size of numbers, and of a rounding of the time.
+      largest = max(abs(a%f), abs(middle%f), abs(b%f))
+      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*max(size_of, largest)
+      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))*largest(1:)
       left = max(a%error, middle%error, b%error, left)
-      noise = left(1:)
-      first = a%f*[1.0_wp, h, h*h]
-      half = middle%f*[1.0_wp, h, h*h]
-      last = b%f*[1.0_wp, h, h*h]
-      open = max(left(0), noise_part*max(abs(first(0)), abs(half(0)), abs(last(0))))
+      noise(:2) = left(1:)
+      noise(3) = errors_by_rates*(noise(1)/abs(h) + noise(2))/abs(h)
+      first = a%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
+      half = middle%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
+      last = b%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
 
+      ! What the coefficients 3, 5, 7 and 4, 6, 8 make of values, rates and accelerations at the ends.
+      curve(:2) = half*[1.0_wp, 1.0_wp, 0.5_wp]
+      odd = 0.5_wp*[last(0) - first(0), last(1) + first(1), last(2) - first(2)] - half(1)*[1.0_wp, 1.0_wp, 0.0_wp]
+      even = 0.5_wp*[last(0) + first(0), last(1) - first(1), last(2) + first(2)] - half(2)*[0.5_wp, 1.0_wp, 1.0_wp]
+      even(0) = even(0) - half(0)
+      curve(7) = odd(2) - 7.0_wp*odd(1) + 15.0_wp*odd(0)
+      if (abs(curve(7)) <= 15.0_wp*left(0)) curve(7) = 0.0_wp
+      curve(7) = curve(7)/8.0_wp
+      curve(5) = (odd(2) - 2.0_wp*odd(1) - 28.0_wp*curve(7))/10.0_wp
+      curve(3) = (odd(1) - 5.0_wp*curve(5) - 7.0_wp*curve(7))/3.0_wp
+      curve(8) = even(2) - 9.0_wp*even(1) + 24.0_wp*even(0)
+      if (abs(curve(8)) <= 48.0_wp*left(0)) curve(8) = 0.0_wp
+      curve(8) = curve(8)/8.0_wp
+      curve(6) = (even(2) - 3.0_wp*even(1) - 32.0_wp*curve(8))/12.0_wp
+      curve(4) = (even(1) - 6.0_wp*curve(6) - 8.0_wp*curve(8))/4.0_wp
       ! The mean of both jerks and half their change, times h^3.
-      mean = 32.0_wp*half(1) - 16.0_wp*(first(1) + last(1)) + 5.0_wp*(last(2) - first(2))
-      by_values = 420.0_wp*(last(0) - first(0)) - 114.0_wp*(first(1) + last(1)) - 192.0_wp*half(1) &
-         + 12.0_wp*(last(2) - first(2))
-      if (abs(by_values - mean) > 840.0_wp*open) mean = by_values
-      change = 30.0_wp*(first(1) - last(1)) + 7.0_wp*(first(2) + last(2)) + 16.0_wp*half(2)
-      by_values = 768.0_wp*(first(0) - 2.0_wp*half(0) + last(0)) - 174.0_wp*(last(1) - first(1)) &
-         + 15.0_wp*(first(2) + last(2)) - 48.0_wp*half(2)
-      if (abs(by_values - change) > 3072.0_wp*open) change = by_values
+      mean = 48.0_wp*curve(3) + 480.0_wp*curve(5) + 1680.0_wp*curve(7)
+      change = 192.0_wp*curve(4) + 960.0_wp*curve(6) + 2688.0_wp*curve(8)
       jerk = [mean - change, mean + change]/h**3
 
       ! In accelerations; what is less than `open` counts for nothing.
-      open = overlooked*size_of(2) + errors_by_rates*(noise(1)/abs(h) + noise(2))
+      open = overlooked*size_of(2) + noise(3)*abs(h)
       first(2) = a%f(2)
       half(2) = middle%f(2)
       last(2) = b%f(2)
@@ -274,7 +290,7 @@ contains
       type(node_t), intent(in) :: a, b
       type(node_t), intent(in), optional :: between
       type(node_t) :: middle
-      real(wp) :: shortest, jerk(2, size(x%tracks(c)%coordinates)), noise(2)
+      real(wp) :: shortest, jerk(2), curve(0:8, size(x%tracks(c)%coordinates)), noise(3, size(x%tracks(c)%coordinates))
       logical :: simple(size(x%tracks(c)%coordinates)), is_last
       integer :: i
 
@@ -296,14 +312,14 @@ contains
             return
          end if
          do i = 1, size(simple)
-            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, jerk(:, i), &
-               noise, simple(i))
+            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, curve(:, i), &
+               jerk, noise(:, i), simple(i))
          end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
             if (.not. all(simple)) call note_interval(x%open, x%way, a%t, b%t, shortest)
             call take_node(x, c, middle, .false.)
-            call search_columns(x, s, c, a, middle, b, jerk)
+            call search_columns(x, s, c, a, middle, b, curve, noise(3, :))
          else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, middle)
@@ -314,33 +330,45 @@ contains
    end subroutine search_part
 
    !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`.
-   !> Their accelerations have the derivatives `jerk` (2, coordinates) at the ends.
-   subroutine search_columns(x, s, c, a, middle, b, jerk)
+   !> Their polynomials have the coefficients `curve` (0:8, coordinates), see `find_jerk`, and rounding may leave the
+   !> `noise` of their third derivatives open.
+   subroutine search_columns(x, s, c, a, middle, b, curve, noise)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, middle, b
-      real(wp), intent(in) :: jerk(:, :)
+      real(wp), intent(in) :: curve(0:, :), noise(:)
       type(sample_t), allocatable :: path(:), known(:)
       type(sample_t) :: found
       type(column_t) :: column
-      integer :: i, k, order, last
+      real(wp) :: smooth(2), jerk(2)
+      integer :: i, k, n, order, last
 
+      ! The motion is smooth from the last joint before to the next one, or to the ends of the run so far.
+      associate (joints => x%tracks(c)%joints, beside => x%way*beside_joint(x%run, a%t))
+         smooth = [s%now%t0, s%now%motions(c)%t]
+         n = count((joints - a%t)*x%way <= 0.0_wp)
+         if (n > 0) smooth(1) = joints(n) + beside
+         n = count((joints - b%t)*x%way < 0.0_wp)
+         if (n < size(joints)) smooth(2) = x%way*min(x%way*smooth(2), x%way*(joints(n + 1) - beside))
+      end associate
       do i = 1, size(x%tracks(c)%coordinates)
          associate (one => x%tracks(c)%coordinates(i))
             path = [a%samples(i), middle%samples(i), b%samples(i)]
             column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
-               max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))))
+               max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))), smooth, middle=middle%t, &
+               half=0.5_wp*(b%t - a%t), curve=curve(:, i))
             do k = 0, 2
                column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
+               column%inside(:, k) = never_better(one, k)
             end do
             ! An extreme of the acceleration; of the velocity, one on either side of that at most; of the coordinate,
-            ! one on either side of each of these. Where accelerations are alike, none is told, nor one that is so near
-            ! an end that it is as good as there.
-            if (differ_in_sign(jerk(1, i), jerk(2, i)) .and. maxval(path%f(2)) - minval(path%f(2)) &
-               > 2.0_wp*max(alike*one%size_of(2), column%noise(2)) .and. minval(abs(jerk(:, i))) &
-               > beside_end*maxval(abs(jerk(:, i)))) then
-               call find_turn(s, column, path, jerk(:, i), found)
+            ! one on either side of each of these. Where accelerations are alike and rounding explains the change of
+            ! their derivative, none is told.
+            jerk = [on_curve(column, 3, a%t), on_curve(column, 3, b%t)]
+            if (differ_in_sign(jerk(1), jerk(2)) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
+               .or. maxval(path%f(2)) - minval(path%f(2)) > 2.0_wp*max(alike*one%size_of(2), column%noise(2)))) then
+               call find_turn(s, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call take_found(2)
             end if

@@ -16,7 +16,8 @@ module extremes
    private
    public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
       rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
-      is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike
+      is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike, &
+      never_better
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -223,7 +224,8 @@ contains
    end subroutine offer_sample
 
    !> The value `e` of derivative number `k` of the coordinate `c` may be the least or the greatest. One that is located
-   !> replaces that of a node less than a `step` beside it.
+   !> replaces that of a node less than a `step` beside it. So does a node that is alike but by more than rounding: the
+   !> time is open by their distance then.
    pure subroutine offer(c, k, e, step)
       type(coordinate_t), intent(inout) :: c
       integer, intent(in) :: k
@@ -231,7 +233,7 @@ contains
       real(wp), intent(in) :: step
       real(wp) :: gain, open
       integer :: which
-      logical :: better
+      logical :: better, near
 
       do which = least, greatest
          associate (best => c%found(which, k))
@@ -239,6 +241,9 @@ contains
             gain = (e%value - best%value)*outward(which)
             open = alike*c%size_of(k) + best%error + e%error
             better = .not. best%exists .or. gain > open
+            near = gain > noise_part*max(c%size_of(k), abs(e%value)) + best%error + e%error &
+               .and. abs(e%t - best%t) < step .and. .not. (better .or. best%is_located .or. e%is_located)
+            better = better .or. near
             if (e%is_located .and. .not. (better .or. best%is_located)) better = gain >= -open &
                .and. abs(e%t - best%t) < step
             ! Of a value of which almost nothing is known, the least that it can be counts.
@@ -247,10 +252,27 @@ contains
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
             if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
-            if (better) best = e
+            if (.not. better) cycle
+            open = merge(abs(e%t - best%t), 0.0_wp, near)
+            best = e
+            best%t_error = max(best%t_error, open)
          end associate
       end do
    end subroutine offer
+
+   !> Finds the values between which derivative number `k` of the coordinate `c` is no new extreme, as `offer` sees it;
+   !> the first is above the second where one may be, or where dwells need its place.
+   pure function never_better(c, k) result(inside)
+      type(coordinate_t), intent(in) :: c
+      integer, intent(in) :: k
+      real(wp) :: inside(least:greatest)
+
+      associate (e => c%found(:, k))
+         inside = e%value + outward*merge(alike*c%size_of(k) + e%error, -badly_known*c%size_of(k), e%is_located)
+         if ((k == 0 .and. c%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
+            .and. e%error <= badly_known*c%size_of(k))) inside = -huge(inside)*outward
+      end associate
+   end function never_better
 
    !> Takes the velocity of the coordinate `c` in the next `sample` along the run: where its sign has changed the
    !> coordinate has reversed, at its slowest place between.

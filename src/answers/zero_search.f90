@@ -1,5 +1,6 @@
-!> The time between two known ones at which a number of a row, or a derivative of it, is zero: by values of the motion
-!> alone, in a bracket that holds the zero from the first to the last.
+!> The time between two known ones at which a number of a row, or a derivative of it, is zero: by motions at times
+!> between, in a bracket that holds the zero from the first to the last. The polynomial of what is known there says
+!> where to begin, and mostly the first motion shows that the zero is no new extreme.
 module zero_search
    use kinds, only: wp
    use points, only: row_t
@@ -7,15 +8,28 @@ module zero_search
    use nodes, only: sample_t
    implicit none
    private
-   public :: column_t, find_zero, find_turn, differ_in_sign, noise_part
+   public :: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_iterations = 100
-   !> Five times at which the fourth difference is more than this part of the second are brought nearer by this factor;
-   !> so many of them at most.
-   real(wp), parameter :: fine = 1.0e-5_wp, shorter = 0.5_wp
+   !> Halvings that find a zero of the polynomial.
+   integer, parameter :: curve_halvings = 26
+   !> A step of Newton's method that is shorter than this part of the bracket ends at the zero, but for its square.
+   real(wp), parameter :: short_part = 1.0e-5_wp
+   !> The derivative of what an acceleration differs by from the polynomial, in that difference over the length.
+   real(wp), parameter :: error_by_length = 16.0_wp
+   !> The stencil at an extreme of an acceleration becomes shorter by this factor, or longer by its square; so many are
+   !> tried at most.
+   real(wp), parameter :: shorter = 0.5_wp
+   !> Their polynomial leaves this part of the fifth derivative, which is about the power 3/2 of the fourth over the
+   !> second.
+   real(wp), parameter :: truncated = 1.0_wp/30.0_wp
+   !> So much of a time, in the largest of the run, that remains is less than any digit of the time or of a drive.
+   real(wp), parameter :: negligible = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_stencils = 16
+   !> Part of an interval that no table shows.
+   real(wp), parameter :: beside_end = 1.0e-6_wp
    !> Steps of the iteration for the extreme of their polynomial.
    integer, parameter :: turn_steps = 6
    !> A bracket as narrow as so many roundings of the time is closed.
@@ -28,15 +42,53 @@ module zero_search
    !> estimate of errors: a hundred times as much is no digit of a table.
    real(wp), parameter :: well_known = 2.0_wp**20*epsilon(1.0_wp)
 
-   !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
-   !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives.
+   !> A column (1 to 3) in the row of a request of the set, and what is known of it where a zero is searched for.
    type :: column_t
       integer :: request = 0, column = 0
-      real(wp) :: step = 0.0_wp
-      real(wp) :: noise(0:2) = 0.0_wp
+      real(wp) :: step = 0.0_wp           !< of the first stencil that gives the third derivative, in the unit of time
+      real(wp) :: range(2) = 0.0_wp       !< times between which it may be longer, since the motion is smooth there
+      real(wp) :: noise(0:2) = 0.0_wp     !< rounding errors of its derivatives
+      real(wp) :: inside(2, 0:2) = 0.0_wp !< an extreme between these values is no new one
+      !> The coefficients of its polynomial, of the time from the middle of an interval in halves of that; 0: not known.
+      real(wp) :: middle = 0.0_wp, half = 1.0_wp, curve(0:8) = 0.0_wp
    end type column_t
 
 contains
+
+   !> Derivative number `k` of the polynomial of `c` at the time `t`.
+   pure real(wp) function on_curve(c, k, t) result(f)
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: k
+      real(wp), intent(in) :: t
+      integer :: n, i
+
+      f = 0.0_wp
+      do n = ubound(c%curve, 1), k, -1
+         f = f*((t - c%middle)/c%half) + c%curve(n)*real(product([(i, i=n - k + 1, n)]), wp)
+      end do
+      f = f/c%half**k
+   end function on_curve
+
+   !> Where between the times t(1) and t(2) derivative number `order` of `c`, less `level`, is zero: by the polynomial
+   !> of `c`; if that has no sign change, by a straight line between the values `g` (2).
+   pure real(wp) function guess(c, order, level, t, g)
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: order
+      real(wp), intent(in) :: level, t(2), g(2)
+      real(wp) :: ends(2), first
+      integer :: n
+
+      ends = t
+      first = on_curve(c, order, t(1)) - level
+      if (differ_in_sign(first, on_curve(c, order, t(2)) - level)) then
+         do n = 1, curve_halvings
+            guess = ends(1) + 0.5_wp*(ends(2) - ends(1))
+            ends(merge(2, 1, differ_in_sign(first, on_curve(c, order, guess) - level))) = guess
+         end do
+      else
+         guess = t(2) - g(2)*((t(2) - t(1))/(g(2) - g(1)))
+      end if
+   end function guess
 
    !> The column `c` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
    subroutine look_at_column(s, c, t, sample, with_errors)
@@ -53,9 +105,8 @@ contains
    end subroutine look_at_column
 
    !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
-   !> opposite signs there. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
-   !> 1971). Where a time between has no motion, the nearest known one is the zero. `zero`%known is -1 where the
-   !> signs were the same.
+   !> opposite signs there. Newton's method, in a bracket that is halved where it does not get on. Where a time between
+   !> has no motion, the nearest known one is the zero. `zero`%known is -1 where the signs were the same.
    subroutine find_zero(s, c, order, level, a, b, zero)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -64,41 +115,55 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
       type(sample_t) :: at
-      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope, clear(2)
+      real(wp) :: t, ends(2), g(2), last, last_g, slope, step, width, clear(2)
       integer :: n
 
       if (min(a%known, b%known) < 2) return
-      t1 = a%t
-      t2 = b%t
-      g1 = a%f(order) - level
-      g2 = b%f(order) - level
-      if (.not. differ_in_sign(g1, g2)) return
+      ends = [a%t, b%t]
+      g = [a%f(order), b%f(order)] - level
+      if (.not. differ_in_sign(g(1), g(2))) return
       width = 0.0_wp
-      clear = merge([t1, g1], [t2, g2], abs(g1) > abs(g2))
-      last = t2
+      clear = merge([a%t, g(1)], [b%t, g(2)], abs(g(1)) > abs(g(2)))
+      last = b%t
+      last_g = huge(1.0_wp)
+      t = guess(c, order, level, ends, g)
       do n = 1, max_iterations
-         t = t2 - g2*((t2 - t1)/(g2 - g1))
-         if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
-         if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
-         last = t
+         if (.not. (t - ends(1))*(ends(2) - t) > 0.0_wp) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
+         if (abs(ends(2) - ends(1)) <= closed*spacing(maxval(abs(ends)))) exit
          call look_at_column(s, c, t, at)
          if (at%known < 2) then
-            width = abs(t2 - t1)
-            t = t2
+            width = abs(ends(2) - ends(1))
+            t = last
             exit
          end if
-         g = at%f(order) - level
-         ! What is left is rounding: further steps only follow it.
-         if (abs(g) <= rounding_part*c%noise(order)) exit
-         if (abs(g) > above_noise*c%noise(order)) clear = [t, g]
-         if (differ_in_sign(g, g2)) then
-            t1 = t2
-            g1 = g2
-         else
-            g1 = 0.5_wp*g1
-         end if
-         t2 = t
-         g2 = g
+         associate (f => at%f(order) - level)
+            ends(merge(2, 1, differ_in_sign(f, g(1)))) = t
+            if (order < 2) then
+               slope = at%f(order + 1)
+            else if (n == 1) then
+               slope = on_curve(c, 3, t)
+            else
+               slope = (f - last_g)/(t - last)
+            end if
+            step = 0.0_wp
+            if (abs(slope) > 0.0_wp) step = -f/slope
+            if (order > 0 .and. abs(step) <= short_part*abs(b%t - a%t)) then
+               zero = at
+               zero%t = t + step
+               if (order == 2) zero%f(2) = 0.0_wp
+               zero%f(1) = at%f(1) + 0.5_wp*step*(at%f(2) + zero%f(2))
+               zero%f(0) = at%f(0) + 0.5_wp*step*(at%f(1) + zero%f(1))
+               if (is_inside(c, order - 1, zero%f(order - 1), 0.0_wp)) return
+            end if
+            ! What is left is rounding: further steps only follow it.
+            if (abs(f) <= rounding_part*c%noise(order) .or. abs(step) <= closed*spacing(t)) exit
+            if (abs(f) <= c%noise(order) .and. abs(f) > 0.5_wp*abs(last_g)) exit
+            if (abs(f) > above_noise*c%noise(order)) clear = [t, f]
+            last = t
+            t = t + step
+            if (abs(f) > 0.5_wp*abs(last_g)) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
+            last_g = f
+         end associate
       end do
       ! The slope from the zero to the last value that is more than noise.
       slope = 0.0_wp
@@ -107,52 +172,70 @@ contains
       call settle(s, c, order, [a%t, b%t], t, slope, 1.0_wp, c%noise(order), width, zero)
    end subroutine find_zero
 
-   !> The extreme `turn` of the acceleration of column `c` between the first and the last of three `points`, at which
-   !> its derivative `jerk` (2) has different signs: that of the polynomial through accelerations at five times about
-   !> it, beginning where the parabola of the derivative with the change of the accelerations is zero. Where the fourth
-   !> difference counts, the times are too far apart. `turn`%known is -1 where it is not found.
-   subroutine find_turn(s, c, points, jerk, turn)
+   !> The extreme `turn` of the acceleration of column `c` between `a` and `b`, at which the third derivative of its
+   !> polynomial has different signs: that of the polynomial through accelerations at five times about it. Where the
+   !> fourth difference counts, the times are too far apart; where rounding counts, they are too near. `turn`%known is
+   !> -1 where it is not found.
+   subroutine find_turn(s, c, a, b, turn)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
-      type(sample_t), intent(in) :: points(:)
-      real(wp), intent(in) :: jerk(2)
+      type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
-      real(wp) :: f(-2:2), d(4), t, step, length, bend, steep, u, noise
+      real(wp) :: f(-2:2), d(4), t, step, u, left, noise, slope, run, found(5)
       integer :: i, k
 
-      associate (a => points(1), b => points(3))
-         length = b%t - a%t
-         bend = 3.0_wp*(2.0_wp*(b%f(2) - a%f(2))/length - jerk(1) - jerk(2))
-         steep = jerk(2) - jerk(1) + bend
-         t = -2.0_wp*length*jerk(1)/(steep + sign(sqrt(max(0.0_wp, steep**2 + 4.0_wp*bend*jerk(1))), jerk(2)))
+      associate (length => b%t - a%t)
+         t = guess(c, 3, 0.0_wp, [a%t, b%t], [-1.0_wp, 1.0_wp])
+         ! What is so near an end is as good as there.
+         if (min(abs(t - a%t), abs(b%t - t)) <= beside_end*abs(length)) return
+         call look_at_column(s, c, t, at)
+         if (at%known < 2) return
+         slope = abs(on_curve(c, 4, t))
+         if (slope > 0.0_wp) then
+            if (is_inside(c, 2, at%f(2), 0.5_wp*(error_by_length*(at%f(2) - on_curve(c, 2, t))/length)**2/slope)) then
+               turn = at
+               return
+            end if
+         end if
+
+         run = max(abs(s%now%t0), abs(s%now%t1))
          step = sign(c%step, length)
+         found = 0.0_wp
          do i = 1, max_stencils
-            ! From `a`, at five times that are all between the ends.
-            t = step*min(max(t/step, 2.0_wp), length/step - 2.0_wp)
+            ! At five times that are all in the range.
+            if (4.0_wp*abs(step) > abs(c%range(2) - c%range(1))) exit
+            u = min(max((t - c%range(1))/step, 2.0_wp), (c%range(2) - c%range(1))/step - 2.0_wp) - (t - c%range(1))/step
+            t = t + u*step
             do k = -2, 2
-               call look_at_column(s, c, a%t + (t + k*step), at)
-               if (at%known < 2) return
+               call look_at_column(s, c, t + k*step, at)
+               if (at%known < 2) exit
                f(k) = at%f(2)
             end do
+            if (at%known < 2) exit
             d = [(8.0_wp*(f(1) - f(-1)) - f(2) + f(-2))/12.0_wp, &
                (16.0_wp*(f(1) + f(-1)) - 30.0_wp*f(0) - f(2) - f(-2))/12.0_wp, &
                0.5_wp*(f(2) - f(-2)) - f(1) + f(-1), f(2) + f(-2) - 4.0_wp*(f(1) + f(-1)) + 6.0_wp*f(0)]
-            if (.not. abs(d(2)) > 0.0_wp) return
+            if (.not. abs(d(2)) > 0.0_wp) exit
             noise = max(c%noise(2), noise_part*maxval(abs(f)))
             u = 0.0_wp
             do k = 1, turn_steps
                u = -(d(1) + u**2*(0.5_wp*d(3) + u*d(4)/6.0_wp))/d(2)
-               u = min(max(u, -t/step), (length - t)/step)
+               u = min(max(u, (a%t - t)/step), (b%t - t)/step)
             end do
             t = t + u*step
-            if (abs(d(4)) > max(fine*abs(d(2)), noise)) then
+            left = truncated*abs(step)*abs(d(4)/d(2))**1.5_wp
+            if (abs(d(4)) > noise .and. left > max(negligible*run, rounding_part*noise*abs(step/d(2)))) then
+               if (found(2) > 0.0_wp) exit
                step = shorter*step
             else if (abs(u) <= 2.0_wp) then
-               call settle(s, c, 2, [a%t, b%t], a%t + t, abs(d(2))/step**2, abs(step), noise/abs(step), 0.0_wp, turn)
-               return
+               found = [t, abs(d(2))/step**2, abs(step), noise/abs(step), left]
+               if (rounding_part*found(4) <= well_known*run*found(2)) exit
+               step = step/shorter
             end if
          end do
+         if (found(2) > 0.0_wp) &
+            call settle(s, c, 2, [a%t, b%t], found(1), found(2), found(3), found(4), found(5), turn)
       end associate
    end subroutine find_turn
 
@@ -178,6 +261,15 @@ contains
          if (zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
       end do
    end subroutine settle
+
+   !> Derivative number `k` of `c` is no new extreme where it has the value `f`, of which so much is `open`.
+   pure logical function is_inside(c, k, f, open)
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: k
+      real(wp), intent(in) :: f, open
+
+      is_inside = f - open > c%inside(1, k) .and. f + open < c%inside(2, k)
+   end function is_inside
 
    !> One is positive, the other negative.
    pure logical function differ_in_sign(x, y)

@@ -5,6 +5,7 @@
 #
 #    tests/fuzz/fuzz_extremes.sh COUNT [FIRST [STEPS]]     STEPS of TIME in a run, 96 if not given
 #    tests/fuzz/fuzz_extremes.sh --deck DECK STEPS         one deck
+#    tests/fuzz/fuzz_extremes.sh --laws RISES CRANKS [FIRST]   random laws of drives against closed forms: see extremes_by_chance
 export LC_ALL=C OPENBLAS_NUM_THREADS=1
 BUILD=${BUILD:-build}
 work=$BUILD/extremes
@@ -66,9 +67,22 @@ compare() {
    rm -f "$work/$1.fine.deck" "$work/$1.csv" "$work/$1.lst" "$work/$1.err" "$work/$1.out"
 }
 
+# laws KIND FIRST COUNT: the tables of so many laws against closed forms
+laws() {
+   "$BUILD/release/extremes_by_chance" decks "$@" > "$work/$1.deck"
+   "$kinmat" --quiet "$work/$1.deck" > "$work/$1.lst"
+   "$BUILD/release/extremes_by_chance" judge "$@" "$work/$1.lst"
+}
+
 case $1 in
 --deck)
    compare "$(basename "$2" .deck)" "$2" "$3"
+   exit
+   ;;
+--laws)
+   { laws rises "${4:-1}" "$2"; laws cranks "${4:-1}" "$3"; } | tee "$work/laws" | grep -v ' passed, '
+   awk '/ passed, .* failed$/ { passed += $1; failed += $3 }
+      END { printf "%d passed, %d failed\n", passed, failed; exit (failed > 0) }' "$work/laws"
    exit
    ;;
 esac

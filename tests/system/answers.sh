@@ -64,6 +64,38 @@ sed "s/^TIME .*/$(card TIME 24 '' '' 12.0 0.0)/" input/stroke.deck > "$w/deck"
 "$kinmat" "$w/deck" > "$w/listing" 2>&1
 equal 'backwards' "$(strokes < "$w/small")" "$(extremes "$w/listing" | strokes 1)"
 
+# found ROW COLUMN: the value in that row and column (0 to 8) of the table in $w/listing, with its time
+found() { extremes "$w/listing" | awk -v row="$1" -v at="$((10 + 12*$2))" '/^  (MIN|MAX|AT T)  / { cell = substr($0, at, 12); gsub(/ /, "", cell)
+   if ($1 == row) value = cell; else if (value != "" && $1 == "AT") { print value " AT " cell; exit } }'; }
+# A RISE shorter than a step, at rest and on a crank that turns: its greatest velocity, 2 or 1.875 times lift over duration, is
+# in its middle. The accelerations at its ends are rounding.
+for rise in '0.37 0.03 0.5 12' '0.55 0.02 0.5 10'; do
+   set -- $rise
+   { card GROUND G; card LINK S; card POINT P G; card POINT Q S; card PRISM P Q J; card DRIVE SLIDE J '' 0.0
+      card RISE CYCLOID '' '' "$1" "$2" "$3"; card TIME "$4" '' '' 0.0 1.0; card EXTREMES PAIRS J; card END; } > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/listing"
+   equal "a rise of $2 in $4 steps" "$(awk -v a="$1" -v d="$2" -v l="$3" 'BEGIN { printf "%.5f AT %.6f", 2*l/d, a + d/2 }')" "$(found MAX 1)"
+done
+{ card UNITS M RAD S; card GROUND G; card LINK C; card JOINT O G C 0.0 0.0; card DRIVE ANGLE C '' 0.0 -1.4322948
+   card RISE 3-4-5 '' '' 1.3693661 0.10832686 -0.68935590; card TIME 12 '' '' 0.0 2.0; card EXTREMES LINKS C; card END; } > "$w/deck"
+"$kinmat" "$w/deck" > "$w/listing"
+equal 'a short rise on a turning crank' "$(awk 'BEGIN { printf "%.5f AT %.6f", -1.4322948 - 1.875*0.68935590/0.10832686, 1.3693661 + 0.10832686/2 }')" \
+   "$(found MIN 5)"
+# Accelerations of a fast crank that differ by little: their times are those of the sine, as far as digits are known.
+{ card UNITS M DEG S; card GROUND BASE; card LINK L1 '' '' '' '' 166.02; card POINT P3 BASE; card POINT Q4 L1; card REVOLUTE P3 Q4 J2
+   card DRIVE ANGLE L1 '' 166.02374 57.29578; card RISE CYCLOID '' '' -1.9522E-01 0.001 -26.94576
+   card ADD HARMONIC '' '' 11.459156 114.591559 28.64789; card TIME 24 '' '' 0.0 6.28; card EXTREMES LINKS L1; card END; } > "$w/deck"
+"$kinmat" "$w/deck" > "$w/listing"
+for turn in 'MIN 1' 'MAX 3'; do
+   set -- $turn
+   equal "a fast crank: $1 of its acceleration" 1 "$(found "$1" 8 | awk -v n="$2" '{ t = (n*atan2(1, 0) - 0.5)/2; known = $3; sub(/[?]+$/, "", known)
+      sub(/[.].*/, "", $3); digit = 10^-(length(known) - 2); d = known - t
+      print (length(known) >= 6 && (d < 0 ? -d : d) <= digit) }')"
+done
+# An acceleration that turns just before the end of a rise, on an instant: by real128.
+"$kinmat" tests/system/decks/rise_ends_on_instant.deck > "$w/listing"
+equal 'an acceleration beside the end of a rise' '4.44766 AT 0.327168' "$(found MAX 6)"
+
 # In other units of length and time the numbers have the same digits.
 awk '/^(LINK|POINT) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
       printf "%s%-16.6E%-16.6E%s\n", head, x*1e9, y*1e9, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
