@@ -167,7 +167,8 @@ contains
          character(:), allocatable :: path
 
          path = next_word()
-         if (len(path) == 0) then
+         ! A file whose name begins with - is ./-NAME.
+         if (len(path) == 0 .or. (index(path, '-') == 1 .and. path /= '-')) then
             call reject('OPTION '//word//' NEEDS A FILE NAME')
          else if (allocated(file%text)) then
             call reject('OPTION '//word//' IS GIVEN TWICE')

@@ -20,7 +20,8 @@ module job
    use command_line
    use outputs, only: outputs_t, open_outputs, open_table, close_outputs, is_over
    use shares, only: run_shares, next_part, write_in_turn
-   use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, remarks_text
+   use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold, &
+      remarks_text
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
@@ -451,11 +452,11 @@ contains
          call note_flag(row, a)
 
          ! Only what is shown needs samples.
-         if (due .and. (lists .or. any(o%asked([out_csv, out_table])))) call sample_set(a, o%options%errors)
+         if (o%asked(out_table) .or. (due .and. (lists .or. o%asked(out_csv)))) call sample_set(a, o%options%errors)
          if (lists .and. (due .or. has_words(a%now))) &
             call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
-         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table), o%table, a%now)
+         if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now)
          if (o%asked(out_log)) then
             do n = 1, size(a%list)
                call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch)
@@ -465,9 +466,11 @@ contains
 
          call take_instant(asked, a, k, due)
          if (.not. is_over(o)) cycle
+         if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return
       end do
+      if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
       if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
       if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))

@@ -19,9 +19,12 @@ module column_search
    private
    public :: find_node, find_next, add_node, search_waiting
 
-   !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
-   !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_turn` shortens it.
-   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 5.0e-4_wp, max_part = 1.0_wp/4.0_wp
+   !> The step of the stencil at a zero, in steps of TIME. If it proves too long, `find_turn` shortens it.
+   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp
+   !> In short steps of TIME the stencil may be longer: until a link moves by this, in rad or lengths.
+   real(wp), parameter :: difference_angle = 5.0e-4_wp
+   !> The longest step of the stencil, as a part of the interval.
+   real(wp), parameter :: max_part = 1.0_wp/4.0_wp
    !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
    real(wp), parameter :: errors_by_rates = 122.0_wp
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
@@ -29,11 +32,11 @@ module column_search
    real(wp), parameter :: misses_by = 1.0_wp/8.0_wp, steeper_by = 3.0_wp
    !> Smaller features of an acceleration, in characteristic ones, are passed over: no table shows them.
    real(wp), parameter :: overlooked = sqrt(epsilon(1.0_wp))
-   !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes
-   !> 40.
+   !> Smallest part that is halved, in steps of TIME.
    real(wp), parameter :: shortest_part = 2.0_wp**(-20)
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
+   !> Most halvings in a step (a pole of the motion needs 40).
    integer, parameter :: max_halvings = 120
    !> Lengths that differ by this part are one.
    real(wp), parameter :: alike_part = 1.0e-9_wp

@@ -5,11 +5,10 @@
 !> its sign, or an acceleration is not a simple curve. Where nothing of that has happened no number has an extreme. The
 !> engine and the lanes of `lane_runs` are watched alike.
 !>
-!> A step is divided where not all of the motion exists: at change points and at a limit of the motion, and it has such
-!> an end at an instant without all of its motion. Each piece has nodes up to beside that place, and the one-sided
-!> limits there may be extremes. What is closer is not searched, and the table says so. On each side of a change point
-!> a number is a smooth function of the time that is left, at a limit of the motion of the root s of that: x0 + x1 s +
-!> x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the polynomial through these five in s^2 or
+!> Pieces of a step end at change points, limits of motion and instants without velocities. Each piece has nodes up to
+!> beside that place, and the one-sided limits there may be extremes. What is closer is not searched, and the table says
+!> so. On each side of a change point a number is a smooth function of the time that is left, at a limit of the motion
+!> of the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the polynomial through these five in s^2 or
 !> in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module extreme_search
    use kinds, only: wp
@@ -38,8 +37,8 @@ module extreme_search
       1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
    real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
       four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
-   !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
-   !> numbers below the second, in characteristic ones.
+   !> A number that grows by more than this factor when s is halved is UNBOUNDED: 1/s doubles, s^(-2/3) grows by 1.59.
+   !> Numbers below the second, in characteristic ones, are bounded.
    real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
 
 contains

@@ -19,14 +19,13 @@ module extremes
       is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike, &
       never_better
 
-   !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
-   !> that no table shows may be as large: the earlier one counts.
+   !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
+   !> errors below a table's last digit reach it.
    real(wp), parameter :: alike = 10.0_wp*safe_growth*epsilon(1.0_wp)
    !> Derivatives that no estimate of errors is made for may be off by so much, in these units: with 1/p for the inverse
    !> of a block's Jacobian, roundings grow by 1/p^2 < `safe_growth` in velocities and by 1/p^3 in accelerations.
    real(wp), parameter :: unseen(0:2) = alike*[1.0_wp, 1.0_wp, sqrt(safe_growth)]
-   !> An error is an estimate: only a variation that is so many times as large is known to be one. A table shows no
-   !> digit of a smaller one, for its last digit is worth a hundred errors.
+   !> A variation counts if it exceeds this many estimated errors; a smaller one has no digit in a table.
    real(wp), parameter :: above_errors = 10.0_wp
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp

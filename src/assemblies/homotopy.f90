@@ -36,7 +36,7 @@ module homotopy
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
    real(dp), parameter :: least_power = 0.04_dp
-   !> Tenths of t before a path that fails tells where it goes; fewer if it is so near to infinity and falls so fast.
+   !> Powers of ten that t must fall before a failed path is sorted; fewer near infinity, if it falls so fast.
    integer, parameter :: least_tenths = 4
    real(dp), parameter :: far = 1.0e-3_dp, sure_power = 0.5_dp
    !> Ends that differ by less, in parts of z, are one.

@@ -22,7 +22,7 @@ module block_rank
    !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decompositions take the cube of this number of operations.
-   integer, parameter :: max_rows = 1500
+   integer, parameter, public :: max_rows = 1500
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: values_t

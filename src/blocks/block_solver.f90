@@ -34,8 +34,8 @@ module block_solver
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
-   !> So is a Kantorovich ratio from here on, where 1 over the least pivot stands for |J^-1|: with more than two
-   !> unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
+   !> Kantorovich ratio from which the inverse is estimated. The ratio takes 1/(least pivot) for |J^-1|: with more than
+   !> two unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
    !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
    real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_growth = 0.1_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.

@@ -22,8 +22,8 @@ module predictor
    private
    public :: history_t, remember, predict, is_even, largest_change, order_weights, uncertain_part
 
-   !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
-   !> prediction that agrees with a position may do so by chance.
+   !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
+   !> change may end at another assembly and still look right.
    real(wp), parameter :: largest_change = 1.0_wp
    real(wp), parameter, public :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter, public :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp

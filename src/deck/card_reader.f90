@@ -10,7 +10,7 @@ module card_reader
    use numerals, only: whole
    implicit none
    private
-   public :: parsed_card_t, read_card, read_star
+   public :: parsed_card_t, read_card, read_star, refuse_field, find_long_label
 
    !> A card as it was read. It is kept even if it is wrong, so that other cards find its names.
    type :: parsed_card_t
@@ -46,7 +46,7 @@ contains
       type(error_code_t) :: code
       character(:), allocatable :: name
       logical :: cut(size(card_fields))
-      integer :: before, last, i
+      integer :: before, last, i, near
 
       before = errors%count
       parsed%card = card
@@ -63,12 +63,25 @@ contains
       if (errors%count == before .and. parsed%form == form_unknown) then
          name = field_text(card, card_fields(card_name))
          parsed%form = find_form(name)
-         code = merge(card_unknown, card_indented, parsed%form == form_unknown)
-         if (name == '') code = field_blank
-         call add_field_error(errors, code, card, card_fields(card_name))
+         near = nearest_word(capitals(name), forms%layout(:label_length))
+         if (name == '') then
+            call add_field_error(errors, field_blank, card, card_fields(card_name))
+         else if (parsed%form /= form_unknown) then
+            call add_field_error(errors, card_indented, card, card_fields(card_name))
+         else if (find_form(name(:index(name//' ', ' ') - 1)) /= form_unknown) then
+            call refuse_free(card, parsed%form, errors)
+         else if (near > 0) then
+            code = card_unknown
+            code%layout = near
+            call add_field_error(errors, code, card, card_fields(card_name), near_name(form_name(near)))
+         else
+            call add_field_error(errors, card_unknown, card, card_fields(card_name))
+         end if
+      else if (errors%count == before .and. is_free(parsed, errors%is_free)) then
+         call refuse_free(card, parsed%form, errors)
       end if
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
-      parsed%valid = errors%count == before
+      parsed%valid = errors%count == before .and. parsed%form /= form_unknown
       if (.not. parsed%valid .or. parsed%form == form_title) return
       ! The reals, and the labels that the card does not take, may hold the beginning of a number.
       call find_cuts(card, card_fields, 'L'//forms(parsed%form)%labels//'---', cut, errors)
@@ -80,6 +93,43 @@ contains
       end do
       parsed%valid = errors%count == before
    end subroutine read_card
+
+   !> Whether `parsed`, whose name is right, has single blanks in place of columns, and a label with a blank. If no card
+   !> was so before (`in_free_deck`), only after a name that fills its field.
+   pure logical function is_free(parsed, in_free_deck)
+      type(parsed_card_t), intent(in) :: parsed
+      logical, intent(in) :: in_free_deck
+      integer :: i
+
+      is_free = .false.
+      associate (text => parsed%card%text, border => card_fields(card_name)%last)
+         if (.not. in_free_deck .and. (text(border:border) <= ' ' .or. text(border + 1:border + 1) > ' ')) return
+         if (index(trim(text(border + 1:)), '  ') == 0) &
+            is_free = any([(index(trim(parsed%label(i)), ' ') > 0, i=label_a, label_c)])
+      end associate
+   end function is_free
+
+   !> Adds the error of the first `card` of the deck in free format: about its second word. Further such cards have no
+   !> error. The `form` of all is unknown.
+   subroutine refuse_free(card, form, errors)
+      type(card_t), intent(in) :: card
+      integer, intent(out) :: form
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: code
+      integer :: first, finish
+
+      form = form_unknown
+      if (errors%is_free) return
+      errors%is_free = .true.
+      first = verify(card%text, ' ')
+      finish = first + index(card%text(first:), ' ') - 2
+      code = card_free
+      code%layout = find_form(card%text(first:finish))
+      first = finish + verify(card%text(finish + 1:), ' ')
+      finish = first + index(card%text(first:)//' ', ' ') - 2
+      call add_error(errors, code, card, card_fields(merge(card_name, label_a, first < card_fields(label_a)%first)), &
+         first, card%text(first:finish))
+   end subroutine refuse_free
 
    !> Makes the text of the TITLE card `card` printable: with ? for a letter that is not ASCII, cut at the last column.
    !> Both are remarks.
@@ -163,11 +213,14 @@ contains
    end subroutine check_characters
 
    !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
-   !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues
-   !> beyond the border. It is also cut if it is a real number together with what follows the border; that is checked
-   !> where `taken(i:i)` is -: field i takes no label, and may hold the beginning of a number. Two full labels side by
-   !> side are not cut, nor are two reals that cannot be one number: two full ones, or any two if the second has a sign,
-   !> which is a remark.
+   !> cut by a border, and adds an error for each border. `taken(i:i)` is - if field i takes no label, and may hold a
+   !> number or its beginning. Text on both sides of a border is in one of these cases:
+   !> - a label fills its field: not cut;
+   !> - a number fills its field, and is one number with the text after the border: cut;
+   !> - two numbers fill their fields: not cut, a remark if the second has no sign;
+   !> - a number fills its field, and the second neither fills its own nor has a sign: an error with both readings;
+   !> - a number does not fill its field, and the second has a sign: not cut, a remark;
+   !> - any other text that does not fill its field: cut.
    subroutine find_cuts(card, fields, taken, cut, errors)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: fields(:)
@@ -188,9 +241,20 @@ contains
          fills = start <= fields(i)%first + merge(1, 0, numeric)
          if (fills .and. .not. numeric) cycle
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
-         if (fills) then
-            if (.not. is_real(card%text(start:finish))) cycle
-         else if (scan(card%text(border + 1:border + 1), '+-') == 1) then
+         if (fills .and. .not. is_real(card%text(start:finish))) then
+            ! Text that is no number has an error of its own.
+            if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
+               .not. is_real(card%text(border + 1:finish))) cycle
+            ! Programs leave out the plus sign of a number with an exponent.
+            if (finish >= fields(i + 1)%last - merge(1, 0, scan(card%text(border + 1:finish), 'EeDd') > 0)) then
+               call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
+            else
+               cut(i:i + 1) = .true.
+               call add_error(errors, numbers_touch, card, fields(i + 1), border + 1, card%text(border + 1:finish), &
+                  readings(card%text(start:border), card%text(border + 1:finish)))
+            end if
+            cycle
+         else if (.not. fills .and. scan(card%text(border + 1:border + 1), '+-') == 1) then
             ! The sign must not be that of the exponent of a number before it; after a label a number must follow.
             if (merge(scan(card%text(border:border), 'EeDd') == 0, is_real(card%text(border + 1:finish)), numeric)) then
                call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
@@ -198,10 +262,30 @@ contains
             end if
          end if
          cut(i:i + 1) = .true.
-         call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), whole(border) &
-            //' AND '//whole(border + 1))
+         if (.not. numeric .and. finish - start >= label_length) then
+            call add_error(errors, label_long, card, fields(i), start, card%text(start:finish))
+         else
+            call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), whole(border) &
+               //' AND '//whole(border + 1))
+         end if
       end do
    end subroutine find_cuts
+
+   !> The two numbers `first` and `second`, which touch at a border, and the two that they are if the border was missed
+   !> by one column.
+   pure function readings(first, second) result(text)
+      character(*), intent(in) :: first, second
+      character(:), allocatable :: text
+      integer :: n
+
+      n = len(first)
+      text = first//' AND '//second
+      if (is_real(first//second(:1)) .and. is_real(second(2:))) then
+         text = text//', OR '//first//second(:1)//' AND '//second(2:)
+      else if (is_real(first(:n - 1)) .and. is_real(first(n:)//second)) then
+         text = text//', OR '//first(:n - 1)//' AND '//first(n:)//second
+      end if
+   end function readings
 
    !> Whether `text` is a real number without an error.
    pure logical function is_real(text)
@@ -222,6 +306,7 @@ contains
       type(error_code_t) :: error
       character(1) :: taken
       integer :: i, last, place
+      logical :: is_long
 
       do i = label_a, label_c
          if (cut(i)) parsed%label(i) = ''
@@ -236,34 +321,92 @@ contains
             else if (taken == 'W' .or. taken == 'w') then
                parsed%whole_given = .true.
                call read_whole(label(:last), parsed%whole, error, place)
-               if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
+               if (error%number > 0) call refuse_number(parsed, parsed%card, i, field, error, place, errors)
             else if (index(label(:last), ' ') > 0) then
                parsed%names_certain = .false.
-               call add_field_error(errors, label_blank_inside, parsed%card, field)
+               call refuse_long_label(parsed, i, errors, is_long)
+               if (.not. is_long) call add_field_error(errors, label_blank_inside, parsed%card, field)
             end if
          end associate
       end do
    end subroutine read_labels
 
-   !> Adds the error of text in field number `i`, which the card `parsed` does not take: it may belong to a name or a
-   !> whole number in the field before, which is longer than a label.
+   !> Adds the error of text in field number `i`, which the card `parsed` does not take.
    subroutine refuse_field(parsed, i, errors)
       type(parsed_card_t), intent(inout) :: parsed
       integer, intent(in) :: i
       type(input_errors_t), intent(inout) :: errors
-      integer :: first, finish
+      logical :: is_found
 
-      associate (text => parsed%card%text, border => card_fields(i)%first)
-         if (i > label_a .and. i <= label_c + 1 .and. index(text(border - 1:border), ' ') == 0) then
-            parsed%names_certain = .false.
-            first = first_column(parsed%card, card_fields(i - 1))
-            finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
-            call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
-         else
-            call add_field_error(errors, field_unused, parsed%card, card_fields(i))
-         end if
-      end associate
+      call refuse_long_label(parsed, i, errors, is_found)
+      if (.not. is_found) call add_field_error(errors, field_unused, parsed%card, card_fields(i))
    end subroutine refuse_field
+
+   !> Adds the error of the number in field `i` of `parsed`, which is `field` of `card`; number `place` of its
+   !> characters is the first wrong one.
+   subroutine refuse_number(parsed, card, i, field, error, place, errors)
+      type(parsed_card_t), intent(inout) :: parsed
+      type(card_t), intent(in) :: card
+      integer, intent(in) :: i, place
+      type(field_t), intent(in) :: field
+      type(error_code_t), intent(in) :: error
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: code
+      character(:), allocatable :: text
+      integer :: comma
+      logical :: is_found
+
+      text = field_text(card, field)
+      if (text(1:1) >= 'A' .and. card%number == parsed%card%number) then
+         call refuse_long_label(parsed, i, errors, is_found)
+         if (is_found) return
+      end if
+      code = error
+      comma = index(text, ',')
+      if (comma > 0) then
+         if (is_real(text(:comma - 1)//'.'//text(comma + 1:))) code = merge(number_comma, number_fraction, i >= real_1)
+      end if
+      call add_field_error(errors, code, card, field, place=place)
+   end subroutine refuse_number
+
+   !> Adds the error of a label that is longer than its field, if there is one before field `i` of `parsed`: its end is
+   !> in the next field, or has moved the labels after it.
+   subroutine refuse_long_label(parsed, i, errors, is_found)
+      type(parsed_card_t), intent(inout) :: parsed
+      integer, intent(in) :: i
+      type(input_errors_t), intent(inout) :: errors
+      logical, intent(out) :: is_found
+      character(:), allocatable :: word
+      integer :: first, border
+
+      is_found = .false.
+      do border = min(i, real_1), label_b, -1
+         call find_long_label(parsed%card, border, first, word)
+         is_found = word /= ''
+         if (is_found) exit
+      end do
+      if (.not. is_found) return
+      parsed%names_certain = .false.
+      call add_error(errors, label_long, parsed%card, card_fields(border - 1), first, word)
+   end subroutine refuse_long_label
+
+   !> The `word` of `card` that begins at column `first`, in the label field before field `i`, and goes on in field `i`;
+   !> '' if there is none.
+   pure subroutine find_long_label(card, i, first, word)
+      type(card_t), intent(in) :: card
+      integer, intent(in) :: i
+      integer, intent(out) :: first
+      character(:), allocatable, intent(out) :: word
+
+      word = ''
+      first = 0
+      if (i <= label_a .or. i > real_1) return
+      associate (border => card_fields(i)%first)
+         first = first_column(card, card_fields(i - 1))
+         if (index(card%text(first:border), ' ') == 0) &
+            word = card%text(first:border + index(card%text(border:card_fields(i)%last)//' ', ' ') - 2)
+      end associate
+   end subroutine find_long_label
 
    !> Reads real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below it.
    subroutine read_real_field(parsed, card, field, i, errors)
@@ -289,6 +432,6 @@ contains
       call read_real(card%text(first_column(card, field):last), parsed%real(i), error, place)
       if (abs(parsed%real(i)) > max_real) error = number_overflow
       if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
-      if (error%number > 0) call add_field_error(errors, error, card, field, place=place)
+      if (error%number > 0) call refuse_number(parsed, card, label_c + i, field, error, place, errors)
    end subroutine read_real_field
 end module card_reader

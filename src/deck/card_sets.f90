@@ -5,11 +5,12 @@ module card_sets
    use planar, only: direction, rotated
    use mechanism
    use cards
-   use card_reader, only: parsed_card_t
+   use card_reader, only: parsed_card_t, find_long_label
    use input_errors
    use card_numbers, only: angle_in_radians
    use drawn_values, only: take_drawn, coincides
    use name_table, only: name_table_t, put_name, find_name
+   use names, only: subject_name
    use numerals, only: whole
    implicit none
    private
@@ -215,18 +216,54 @@ contains
       integer, intent(in) :: kind, k, i
       integer, intent(out) :: n
       character(5), parameter :: kinds(request_link:request_pair) = ['LINK ', 'POINT', 'PAIR ']
-      character(:), allocatable :: hint
-      integer :: other
+      character(:), allocatable :: hint, word
+      integer :: other, near, border, first
 
       n = 0
       if (set%cards(k)%label(i) == '') return
       n = find_name(set%named(kind)%table, set%cards(k)%label(i))
       if (n > 0 .or. .not. set%names_certain) return
+      if (set%errors%count >= max_printed) then
+         call add_card_error(set, unknown(kind), k, i)
+         return
+      end if
+
       hint = ''
       do other = request_pair, request_link, -1
          if (find_name(set%named(other)%table, set%cards(k)%label(i)) > 0) hint = '(A '//trim(kinds(other))//' HAS IT)'
       end do
-      call add_card_error(set, unknown(kind), k, i, hint)
+      if (hint == '') then
+         near = nearest_word(set%cards(k)%label(i), &
+            [(subject_name(set%mechanism, kind, other), other=1, size(set%named(kind)%card))])
+         if (near > 0) hint = near_name(subject_name(set%mechanism, kind, near))
+      end if
+      ! A name that goes on in the next field, or that began in the field before, if none of its parts is a name.
+      do border = i, min(i + 1, label_c)
+         call find_long_label(set%cards(k)%card, border, first, word)
+         if (word == '' .or. is_name(border - 1) .or. is_name(border)) cycle
+         ! A name is near to itself with the last letter of the long one before it.
+         if (hint /= '' .and. find_name(set%named(kind)%table, set%cards(k)%label(i)(2:)) == 0) cycle
+         call add_error(set%errors, label_long, set%cards(k)%card, card_fields(border - 1), first, word)
+         set%names_certain = .false.
+         return
+      end do
+      if (kind == request_link .and. set%number_of(form_ground) == 0) &
+         hint = trim(hint//' (GIVE IT A GROUND OR LINK CARD; NO LINK IS GROUND)')
+      call add_card_error(set, unknown(kind), k, i, adjustl(hint))
+
+   contains
+
+      !> Whether `label` of card `k` is the name of another card, or the word of a drive.
+      pure logical function is_name(label)
+         integer, intent(in) :: label
+
+         is_name = .false.
+         if (any(definers%form == set%cards(k)%form .and. definers%label == label)) return
+         associate (name => set%cards(k)%label(label))
+            is_name = any(drive_words == name) .or. &
+               any([(find_name(set%named(other)%table, name) > 0, other=request_link, request_pair)])
+         end associate
+      end function is_name
    end subroutine look_up
 
    !> The place in `words` of label A of card `k`; 0 if it is none of them, an error of a card without others.

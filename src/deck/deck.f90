@@ -8,7 +8,7 @@ module deck
    use cards
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
-   use deck_remarks, only: check_unused, check_angles, check_drawing, build_echo
+   use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card
    use failures, only: failure_t, fail, status_rejected
    use input_errors
@@ -155,6 +155,7 @@ contains
             call check_unused(set)
             call check_centres(set)
             call check_angles(set)
+            if (set%errors%count == progress%errors_before) call check_drives(set)
             if (set%errors%count == progress%errors_before) call check_drawing(set)
             call build_echo(set)
          end if

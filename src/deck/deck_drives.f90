@@ -5,7 +5,7 @@ module deck_drives
    use kinds, only: wp
    use planar, only: pi
    use mechanism
-   use card_reader, only: parsed_card_t
+   use card_reader, only: parsed_card_t, refuse_field
    use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
    use splines, only: new_spline
    use drawn_values, only: drawn_drive
@@ -98,22 +98,25 @@ contains
       !> Builds the drive of the DRIVE card `k`: its kind, what it drives, and its polynomial.
       subroutine build_drive()
          real(wp) :: minute
-         integer :: kind, links(3), label
+         integer :: kind, links(3), label, before
+         logical :: takes_rpm
 
          associate (card => set%cards(k), m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
             call match_word(set, k, drive_words, kind)
             if (kind == 0) return
             drive%kind = kind
             drive%polynomial = card%real*unit_of(drive)
-            if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
+            takes_rpm = kind == drive_angle .and. card%label(label_c) == turns_a_minute
+            if (takes_rpm) then
                minute = minute_in(m%time_unit)
                drive%turns = minute > 0.0_wp
                if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
                if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
-            else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
-               call add_card_error(set, field_unused, k, label_c)
             end if
+            before = set%errors%count
             call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
+            if (card%label(label_c) /= '' .and. .not. (kind == drive_relangle .or. takes_rpm) .and. card%valid .and. &
+               set%errors%count == before) call refuse_field(card, label_c, set%errors)
             if (kind == drive_relangle) then
                call look_up(set, request_link, k, label_c, drive%second)
                if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)

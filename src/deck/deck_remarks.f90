@@ -7,15 +7,17 @@ module deck_remarks
    use mechanism
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening
+   use drives, only: drive_motion, bounds_t, bounds_of, middle_of
+   use names, only: drive_name, listed
    use scales, only: solver_length
    use numerals, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
    use cards
-   use input_errors, only: link_unused
+   use input_errors, only: link_unused, add_remark
    implicit none
    private
-   public :: check_unused, check_angles, check_drawing, build_echo
+   public :: check_unused, check_angles, check_drives, check_drawing, build_echo
 
    !> The echo: its characters in a line, and in a real.
    integer, parameter :: line_length = 119, real_width = 25
@@ -32,9 +34,14 @@ module deck_remarks
    !> Digits of a number as drawn, as far as its kind has them.
    integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
 
+   !> So often is TIME halved to find the greatest rate of a law.
+   integer, parameter :: halvings = 12
+
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
    real(wp), parameter :: drawn_digits = 1.0e-4_wp
+   !> Axes that are turned by less, in rad, have no other angle in a remark.
+   real(wp), parameter :: same_direction = 1.0e-9_wp
 
 contains
 
@@ -89,6 +96,85 @@ contains
          end do
       end do
    end subroutine check_angles
+
+   !> A remark on all drives if none moves within TIME, and on the first that turns an angle once or more in a step of
+   !> TIME. If VARY cards change a drive or TIME, drives may rest.
+   subroutine check_drives(set)
+      type(card_set_t), intent(inout) :: set
+      real(wp), parameter :: turn = 2.0_wp*pi
+      !> The part of a law's values that roundings of its bounds do not reach.
+      real(wp), parameter :: rounding = max(1.0e-9_wp, 1.0e3_wp*epsilon(1.0_wp)), about_one = 1.0_wp - rounding
+      real(wp) :: step, rate
+      logical :: varies
+      integer :: k
+
+      if (set%mechanism%steps < 0 .or. size(set%mechanism%drives) == 0) return
+      varies = .false.
+      do k = 1, set%count
+         if (set%cards(k)%form == form_vary) varies = varies .or. &
+            any(set%cards(set%cards(k)%below)%form == [form_drive, form_add, form_rise, form_time])
+      end do
+      associate (m => set%mechanism, drives => set%mechanism%drives)
+         if (all([(rests(drives(k)), k=1, size(drives))]) .and. .not. varies) &
+            call add_drive_remark(remark_rest, [(drive_name(m, drives(k)), k=1, size(drives))], '')
+         step = abs(m%t1 - m%t0)/m%steps
+         do k = 1, size(drives)
+            if (driven_kinds(drives(k)%kind) /= request_link) cycle
+            rate = 0.0_wp
+            call find_fastest(drives(k), min(m%t0, m%t1), max(m%t0, m%t1), halvings, about_one*turn/step, rate)
+            if (rate*step < about_one*turn) cycle
+            call add_drive_remark(remark_turns, [drive_name(m, drives(k))], &
+               rounded(rate*step/turn, 3, 1.0_wp, 1.0e8_wp))
+            return
+         end do
+      end associate
+
+   contains
+
+      !> Whether `drive` does not move within TIME, but for roundings of its law.
+      pure logical function rests(drive)
+         type(drive_t), intent(in) :: drive
+         type(bounds_t) :: b
+
+         associate (m => set%mechanism)
+            b = bounds_of(drive, m%t0, m%t1)
+            rests = max(-b%low(1), b%high(1))*abs(m%t1 - m%t0) <= rounding*max(abs(b%low(0)), abs(b%high(0)))
+         end associate
+      end function rests
+
+      !> Adds the remark `kind` about the drives with these `names`, at the card of the first of them. `value` ends it.
+      subroutine add_drive_remark(kind, names, value)
+         integer, intent(in) :: kind
+         character(*), intent(in) :: names(:), value
+         integer :: card
+
+         do card = 1, set%count
+            if (set%cards(card)%form /= form_drive) cycle
+            if (drive_name(set%mechanism, set%mechanism%drives(set%cards(card)%subject)) == names(1)) exit
+         end do
+         call add_remark(set%errors, kind, set%cards(card)%card, 1, listed(names, set%mechanism%polish), value)
+      end subroutine add_drive_remark
+   end subroutine check_drives
+
+   !> Raises `rate` to the greatest |rate| of `law` between the times `from` and `to`, if it is above `least`, within a
+   !> thousandth: true bounds exclude parts of the time, which is halved up to `depth` times. Units as of `law`.
+   pure recursive subroutine find_fastest(law, from, to, depth, least, rate)
+      type(drive_t), intent(in) :: law
+      real(wp), intent(in) :: from, to, least
+      integer, intent(in) :: depth
+      real(wp), intent(inout) :: rate
+      type(bounds_t) :: b
+      real(wp) :: f(3), most
+
+      b = bounds_of(law, from, to)
+      most = max(-b%low(1), b%high(1))
+      if (most < least .or. (rate >= least .and. most < 1.001_wp*rate)) return
+      f = drive_motion(law, middle_of(from, to))
+      rate = max(rate, abs(f(2)))
+      if (depth == 0) return
+      call find_fastest(law, from, middle_of(from, to), depth - 1, least, rate)
+      call find_fastest(law, middle_of(from, to), to, depth - 1, least, rate)
+   end subroutine find_fastest
 
    !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
    !> TITLE, and one for each default that no card replaces.
@@ -171,8 +257,8 @@ contains
       end subroutine add_head
    end subroutine build_echo
 
-   !> A remark on each pair whose numbers or points contradict the drawing of `set`, if it is one. The set has no
-   !> errors.
+   !> Remarks on each pair of `set`, if it is a drawing, whose numbers or points contradict it, and on each guide whose
+   !> alpha is no direction of the drawing. The set has no errors.
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: length, opening, turn
@@ -192,16 +278,28 @@ contains
                associate (phi => m%links(pair_links(m, pair))%position(3))
                   turn = without_turns(phi(2) - phi(1) - pair%beta)
                end associate
-               if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) then
-                  if (m%degrees) text = drawn_text(in_degrees(turn))//' DEG'
-                  if (.not. m%degrees) text = drawn_text(turn)//' RAD'
-               end if
+               if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) text = angle_text(turn)
+               turn = without_turns(m%links(m%points(pair%point_i)%link)%position(3))
+               if (abs(turn) > same_direction .and. set%cards(k)%form == form_prism) call add_remark(set%errors, &
+                  remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
+                  angle_text(pair%alpha)//', '//angle_text(pair%alpha + turn))
             end if
             if (abs(opening) > drawn_digits*length) text = drawn_text(opening)//' '//trim(m%length_unit)
          end associate
          if (text /= '') call add_card_remark(set, remark_open, k, merge(label_a, label_c, &
             set%cards(k)%form == form_joint), text)
       end do
+
+   contains
+
+      !> The angle `x` (rad) in the deck's unit.
+      function angle_text(x) result(text)
+         real(wp), intent(in) :: x
+         character(:), allocatable :: text
+
+         if (set%mechanism%degrees) text = drawn_text(in_degrees(x))//' DEG'
+         if (.not. set%mechanism%degrees) text = drawn_text(x)//' RAD'
+      end function angle_text
    end subroutine check_drawing
 
    !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an

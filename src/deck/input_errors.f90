@@ -8,7 +8,7 @@ module input_errors
    use numerals, only: whole
    implicit none
    private
-   public :: error_code_t, input_errors_t, add_error, add_field_error, error_report, add_remark
+   public :: error_code_t, input_errors_t, add_error, add_field_error, error_report, add_remark, near_name
 
    !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
    integer, parameter, public :: max_printed = 50
@@ -28,6 +28,7 @@ module input_errors
    !> The errors of a deck.
    type :: input_errors_t
       integer :: count = 0               !< with those that are not printed
+      logical :: is_free = .false.       !< a card in free format has its error: further ones are not repeated
       character(:), allocatable :: lines !< the messages, joined by new_line('a'); none: not allocated
       integer :: remarked = 0            !< remarks about the open set, with those for which there is no room
       type(remark_t) :: remarks(max_printed + 1)   !< the last says how many there is no room for
@@ -43,6 +44,8 @@ module input_errors
    ! A card as a whole, and its characters.
    type(error_code_t), parameter, public :: &
       card_unknown = error_code_t(10, 'IS NOT THE NAME OF A CARD'), &
+      card_free = &
+         error_code_t(11, 'IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65'), &
       card_indented = error_code_t(12, 'DOES NOT BEGIN IN COLUMN 1: MOVE THE CARD TO THE LEFT'), &
       card_repeated = error_code_t(13, 'IS ALLOWED ONLY ONCE IN A SET; FIRST ON CARD'), &
       past_last_column = error_code_t(14, 'IS BEYOND COLUMN 80'), &
@@ -55,6 +58,8 @@ module input_errors
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
    type(error_code_t), parameter, public :: &
       number_other = error_code_t(20, 'IS NOT A NUMBER'), &
+      number_comma = error_code_t(21, 'IS NOT A NUMBER: WRITE A POINT FOR THE COMMA'), &
+      numbers_touch = error_code_t(22, 'TOUCHES THE NUMBER BEFORE IT: KEEP A BLANK BETWEEN', own_layout), &
       number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
       number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'IS NOT A REAL NUMBER: WRITE A DECIMAL POINT OR AN EXPONENT (5.0)'), &
@@ -193,6 +198,14 @@ contains
       if (present(value)) errors%remarks(n)%value = value
       if (n > max_printed) errors%remarks(n) = remark_t(remark_more, text=whole(errors%remarked - max_printed))
    end subroutine add_remark
+
+   !> The end of the error of a name that does not exist: the nearest one.
+   pure function near_name(name) result(text)
+      character(*), intent(in) :: name
+      character(:), allocatable :: text
+
+      text = '(NEAREST NAME: '//trim(name)//')'
+   end function near_name
 
    !> All messages, lines joined by new_line('a'); '' if there is no error.
    pure function error_report(errors) result(report)

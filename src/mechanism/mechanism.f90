@@ -63,6 +63,9 @@ module mechanism
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
+      enumerator :: remark_alpha                !< the axes of a guide's link are turned against those of the drawing
+      enumerator :: remark_rest                 !< no drive moves; `text` names one of them, or several
+      enumerator :: remark_turns                !< a drive turns once or more between two instants
       enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 
@@ -70,8 +73,8 @@ module mechanism
    type :: remark_t
       integer :: kind = 0                      !< remark_title_long, ...
       integer :: card = 0, column = 0          !< number of the card in the deck, and column
-      character(24) :: text = ''
-      character(40) :: value = ''              !< a number with its unit; '' if the sentence has none
+      character(112) :: text = ''              !< of the card, or names of drives
+      character(40) :: value = ''              !< numbers with their units; '' if the sentence has none
    end type remark_t
 
    !> A rigid link, with axes of its own.

@@ -22,6 +22,7 @@ module motion
       enumerator :: diagnostic_close            !< at `t` the motion is blocked, and no limit is told
       enumerator :: diagnostic_beyond           !< the instant lies beyond the limit of motion at `t`, told before
       enumerator :: diagnostic_begins           !< a motion begins, and positions before do not say in which assembly
+      enumerator :: diagnostic_surplus          !< a drive is too many, one of those with the numbers `links`
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 

@@ -5,7 +5,8 @@
 module listing
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_title_long, remark_more, request_t, request_link
+   use mechanism, only: settings_t, mechanism_t, remark_title_long, remark_rest, remark_turns, remark_more, &
+      request_t, request_link
    use names, only: drive_name, listed, more
    use motion
    use structure, only: findings_t
@@ -13,7 +14,7 @@ module listing
    use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use independent, only: set_t, request_of
-   use set_motion, only: set_motion_t, is_flagged, has_words, find_row_in_set, doubt_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t, is_flagged, find_row_in_set, doubt_in_set, spread_t, spread_in_set
    use listing_layout, only: layout_t, digits_t, new_layout, put_folded, angle_unit, choose_time_digits, unit_of
    use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row
    use text_output, only: output_t, put, add
@@ -22,7 +23,8 @@ module listing
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, words_of_mark
+   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold
+   public :: words_of_mark
    public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remarks_text
 
    !> Why there is not all of a motion, by its mark.
@@ -44,7 +46,7 @@ module listing
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_title_long:remark_more) = &
       [say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_jumps, say_open, say_more]
+      say_radians, say_jumps, say_open, say_alpha, say_rests, say_fast, say_more]
 
 contains
 
@@ -104,7 +106,9 @@ contains
 
    !> The tables of instant number `step` (0, 1, ...) of the motions `s`, as far as the deck asks for them there;
    !> digits that rounding leaves open are masked. Then what there is to say of the instant. `table`: as the instant
-   !> before has left it; after remarks the next instant has its heads again.
+   !> before has left it; after remarks the next instant has its heads again. Beyond a limit of motion that the instant
+   !> before has told a part has no words and no rows without values. Instants that have nothing else wait in `table`
+   !> for one line.
    subroutine listing_instant(o, l, s, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -115,17 +119,24 @@ contains
       type(request_t) :: request
       type(spread_t) :: x
       type(digits_t), allocatable :: d       ! filled for rows with tolerances only, because that takes long
+      real(wp) :: limits(s%count)
+      logical :: begun, is_told(s%count), has_news
       integer :: i, c
-      logical :: begun
 
+      limits = [(limit_before(s%motions(c)), c=1, s%count)]
+      is_told = .false.
+      if (allocated(table%limits)) is_told = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
+      has_news = any([((s%motions(c)%mark /= mark_none .or. allocated(s%motions(c)%diagnostics)) .and. &
+         .not. is_told(c), c=1, s%count)])
+      table%limits = limits
       begun = .false.
       table%masked = .false.
       do i = 1, size(s%rows)
          request = request_of(s, i)
          if (.not. is_listed(s, request, step)) cycle
-         if (.not. begun) call put_instant(o, l, s%motions(1)%t, step, table)
-         begun = .true.
          call find_row_in_set(s, i, row)
+         if (is_told(s%rows(i)%part) .and. row%known < 0) cycle
+         if (.not. begun) call begin_instant()
          associate (part => s%rows(i)%part)
             call put_heads(o, l, part, merge(l%links_table, row%kind, row%kind == request_link), table)
             call put_row(o, l, l%own(part), s%polish, row, request%angle_alone, doubt_in_set(row, s, i), table)
@@ -146,8 +157,13 @@ contains
             call put_row(o, l, d, s%polish, row, request%angle_alone, root_of_squares(x%tolerances, x%error), table)
          end associate
       end do
-      if (.not. begun .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table)
-      if (table%masked .or. has_words(s)) table%kind = no_table
+      if (.not. begun .and. any(is_told) .and. .not. has_news) then
+         if (table%first < 0) table%first = step
+         table%last = step
+         return
+      end if
+      if (.not. begun .and. is_flagged(s)) call begin_instant()
+      if (table%masked .or. has_news) table%kind = no_table
       call put_marks()
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       do c = 1, s%count
@@ -156,22 +172,32 @@ contains
 
    contains
 
+      !> The line over the tables, after that of the instants before it without values.
+      subroutine begin_instant()
+         call put_untold(o, s%polish, table)
+         if (any(limits < huge(1.0_wp) .and. .not. is_told)) table%told = step
+         call put_instant(o, l, s%motions(1)%t, step, table)
+         begun = .true.
+      end subroutine begin_instant
+
       !> Why some part of `s` has not all of its motion, each line once: of a limit of motion before it the time, of
       !> singular positions the links.
       subroutine put_marks()
          character(:), allocatable :: line, lines, text
-         integer :: k, i
+         integer :: k
 
          lines = ''
          do c = 1, s%count
             associate (q => s%motions(c), m => s%parts(c))
-               if (q%mark == mark_none) cycle
+               if (q%mark == mark_none .or. is_told(c)) cycle
                line = words_of_mark(q%mark, q%singularity, s%polish)
-               if (q%mark == mark_not_converged .and. allocated(q%diagnostics)) then
-                  do i = 1, size(q%diagnostics)
-                     if (any(q%diagnostics(i)%kind == [diagnostic_limit, diagnostic_beyond])) &
-                        line = phrase(say_beyond, s%polish)//' '//time(m, q%diagnostics(i)%t)
+               if (q%mark == mark_inconsistent .and. allocated(q%diagnostics)) then
+                  do k = 1, size(q%diagnostics)
+                     if (q%diagnostics(k)%kind == diagnostic_surplus) &
+                        call put_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
                   end do
+               else if (limits(c) < huge(1.0_wp)) then
+                  line = phrase(say_beyond, s%polish)//' '//time(m, limits(c))
                else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
                   text = links(m, q%singular_links)
@@ -185,6 +211,35 @@ contains
          end do
       end subroutine put_marks
    end subroutine listing_instant
+
+   !> The time of the limit beyond which the motion `q` has no position; huge if that is not why, or if it has one.
+   pure real(wp) function limit_before(q) result(time)
+      type(motion_t), intent(in) :: q
+      integer :: i
+
+      time = huge(1.0_wp)
+      if (q%mark /= mark_not_converged .or. .not. allocated(q%diagnostics)) return
+      do i = 1, size(q%diagnostics)
+         if (any(q%diagnostics(i)%kind == [diagnostic_limit, diagnostic_beyond])) time = q%diagnostics(i)%t
+      end do
+   end function limit_before
+
+   !> The line of the instants of `table` that have none yet; nothing if there are no such instants.
+   subroutine put_untold(o, polish, table)
+      type(output_t), intent(inout) :: o
+      logical, intent(in) :: polish
+      type(listing_state_t), intent(inout) :: table
+      character(:), allocatable :: instants
+
+      if (table%first < 0) return
+      instants = phrase(say_instant, polish)//' '//whole(table%last)
+      if (table%first < table%last) instants = phrase(say_instants, polish)//' '//whole(table%first)//' ' &
+         //phrase(say_to, polish)//' '//whole(table%last)
+      call put(o, '')
+      call put(o, ' '//instants//': '//phrase(say_as, polish)//' '//whole(table%told))
+      table%kind = no_table
+      table%first = -1
+   end subroutine put_untold
 
    !> Why there is not all of a motion, by its `mark`, and where that is mark_singular by its `singularity`.
    pure function words_of_mark(mark, singularity, polish) result(words)
@@ -239,6 +294,7 @@ contains
       character(:), allocatable :: text
       character(:), allocatable :: words
       integer :: i
+      logical :: is_one
 
       text = ''
       if (.not. allocated(m%remarks)) return
@@ -248,7 +304,13 @@ contains
             if (r%kind == remark_more) then
                words = words//' '//trim(r%text)
             else
-               if (r%text /= '') words = '"'//trim(r%text)//'" '//words
+               if (any(r%kind == [remark_rest, remark_turns])) then
+                  is_one = index(r%text, ', ') == 0
+                  if (r%kind == remark_rest .and. .not. is_one) words = phrase(say_rest, m%polish)
+                  words = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(r%text)//' '//words
+               else if (r%text /= '') then
+                  words = '"'//trim(r%text)//'" '//words
+               end if
                words = phrase(say_card, m%polish)//' '//whole(r%card)//'  '//phrase(say_column, m%polish)//' ' &
                   //whole(r%column)//': '//words
             end if
@@ -266,7 +328,7 @@ contains
       integer :: i
 
       do i = 1, size(list)
-         if (list(i)%kind /= diagnostic_beyond) &
+         if (all(list(i)%kind /= [diagnostic_beyond, diagnostic_surplus])) &
             call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
       end do
    end subroutine put_diagnostics
@@ -286,6 +348,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
+      integer :: k
 
       text = ''
       select case (r%kind)
@@ -323,6 +386,9 @@ contains
       case (diagnostic_method)
          text = phrase(say_method, m%polish)
          if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text
+      case (diagnostic_surplus)
+         text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(r%links(k))), &
+            k=1, count(r%links > 0))], m%polish)//more(r%more, m%polish)
       case (diagnostic_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

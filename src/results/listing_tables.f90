@@ -28,6 +28,9 @@ module listing_tables
       integer :: part = 0                  !< of the last of them
       integer :: lines = 0                 !< since the heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
+      integer :: told = 0                  !< the last instant that told why it has no values
+      integer :: first = -1, last = -1     !< instants after it without values, which have no line yet; -1: none
+      real(wp), allocatable :: limits(:)   !< (parts) the limit of motion before the last instant; huge: none
    end type listing_state_t
 
 contains

@@ -62,6 +62,7 @@ module phrases
       say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM', &
          'RUCH NIEOKRESLONY, NAPEDZAJ JEDNO Z NICH'), &
       say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
+      say_surplus = phrase_t('A DRIVE IS TOO MANY, REMOVE ONE OF:', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z:'), &
       say_drive = phrase_t('DRIVE', 'NAPED'), &
       say_below = phrase_t('BELOW', 'PONIZEJ'), &
       say_at_limit = phrase_t('AT THE LIMIT', 'NA KRESIE RUCHU'), &
@@ -198,6 +199,8 @@ module phrases
       say_variants = phrase_t('VARIANTS', 'WARIANTY'), &
       say_end_variant = phrase_t('END OF VARIANT', 'KONIEC WARIANTU'), &
       say_instants = phrase_t('INSTANTS', 'CHWILE'), &
+      say_to = phrase_t('TO', 'DO'), &
+      say_as = phrase_t('AS INSTANT', 'JAK CHWILA'), &
       say_are_solved = phrase_t('SOLVED', 'ROZWIAZANE'), &
       say_first_flag = phrase_t('FIRST FLAG', 'ZAZN. PIERWSZA'), &
       say_at_time = phrase_t('AT T', 'W T'), &
@@ -223,6 +226,14 @@ module phrases
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
       say_open = phrase_t('ITS NUMBERS CONTRADICT THE DRAWING; CLOSURE ERROR THERE:', &
          'LICZBY SPRZECZNE Z RYSUNKIEM; BLAD ZAMKNIECIA NA RYSUNKU:'), &
+      say_alpha = phrase_t('ALPHA FROM THE AXES OF THE LINK, AND FROM THE AXES OF THE DRAWING:', &
+         'ALFA OD OSI OGNIWA I OD OSI RYSUNKU:'), &
+      say_rests = phrase_t('DOES NOT MOVE WITHIN TIME: THE RATE BELONGS IN REAL-2', &
+         'NIE RUSZA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2'), &
+      say_rest = phrase_t('DO NOT MOVE WITHIN TIME: THE RATE BELONGS IN REAL-2', &
+         'NIE RUSZAJA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2'), &
+      say_fast = phrase_t('HAS A TURN OR MORE BETWEEN TWO INSTANTS (CHECK THE UNITS), TURNS:', &
+         'MA OBROT LUB WIECEJ MIEDZY CHWILAMI (SPRAWDZ JEDNOSTKI), OBROTY:'), &
       say_jumps = phrase_t('HAS JUMPS OF ACCELERATION: VALUES AFTER THE JUMP ARE PRINTED', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')

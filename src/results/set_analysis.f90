@@ -10,7 +10,10 @@ module set_analysis
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
-   use motion, only: diagnostic_t, diagnostic_unused, motion_t, new_motion
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, motion_t, new_motion, &
+      mark_inconsistent
+   use block_rank, only: values_t, decomposed, max_rows
+   use block_state, only: state_t
    use independent, only: request_of
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
@@ -28,6 +31,7 @@ module set_analysis
       class(motion_prover_t), allocatable :: provers(:)     !< (parts)
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
+      logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
    end type set_analysis_t
 
 contains
@@ -52,6 +56,7 @@ contains
 
       associate (n => s%now%count)
          allocate (s%list(n))
+         allocate (s%told_drives(n), source=.false.)
          allocate (estimator_t :: s%estimators(n))
          allocate (motion_prover_t :: s%provers(n))
       end associate
@@ -94,6 +99,7 @@ contains
          call make_estimator(s%estimators(1), own)
       end associate
       s%certificate_counts = certificate_counts_t()
+      s%told_drives = .false.
    end subroutine renew_set_analysis
 
    !> Solves instant `t` of the set.
@@ -104,6 +110,7 @@ contains
 
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
+         if (s%now%motions(c)%mark == mark_inconsistent) call tell_surplus_drives(s, c)
       end do
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
@@ -120,6 +127,38 @@ contains
          end if
       end associate
    end subroutine advance_set
+
+   !> Adds to the motion of independent mechanism number `c`, the first whose redundant equations are inconsistent, the
+   !> drives of which one may be too many; nothing if there are none. Without such a drive one redundant equation fewer
+   !> is left: it has a part in the equations y J = 0 between the rows of the Jacobian J.
+   subroutine tell_surplus_drives(s, c)
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
+      real(wp), parameter :: least_part = 1.0e-3_wp
+      logical :: is_surplus(size(s%now%parts(c)%drives))
+      type(state_t) :: state
+      type(values_t) :: v
+      integer :: k
+
+      if (s%told_drives(c)) return
+      s%told_drives(c) = .true.
+      associate (b => s%list(c)%engine%blocks, q => s%now%motions(c))
+         if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
+         state = s%list(c)%engine%state
+         v = decomposed(b, 1, state)
+         is_surplus = .false.
+         do k = 1, v%rows
+            associate (row => b%rows(b%list(1)%first_row + k - 1))
+               if (row%pair == 0 .and. row%drive > 0) &
+                  is_surplus(row%drive) = norm2(v%left(k, v%rank + 1:)) > least_part
+            end associate
+         end do
+         if (.not. any(is_surplus)) return
+         if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
+         q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, is_surplus)]
+      end associate
+   end subroutine tell_surplus_drives
 
    !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
    !> time `t` between the instants; nothing else changes. rows%known is -1 without a motion. `error` (3, 0:2, rows):

@@ -8,9 +8,9 @@ module structure
    use cards, only: forms, form_ground
    use failures, only: failure_t, fail, status_rejected
    use numerals, only: whole
-   use names, only: drive_name, listed
+   use names, only: drive_name, listed, more
    use grouping, only: once
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, method_newton
+   use mechanism, only: mechanism_t, pair_links, pair_revolute, pair_prismatic, method_newton
    use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
@@ -145,6 +145,7 @@ contains
          //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
          'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', f%free == 1)))
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
+      text = text//joined_links(m, f)
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
          //' DEGREES OF FREEDOM, DRIVES ARE '//whole(f%drives))
@@ -168,6 +169,33 @@ contains
 
       text = word//trim(merge(' ', 'S', size(names) == 1))//' '//listed(names, .false.)
    end function counted
+
+   !> Names, in lines that each begin with new_line('a'), the two links of each pair of the links that still can move,
+   !> and of the pairs that are too many: a JOINT card may have a wrong link. '' without JOINT cards.
+   function joined_links(m, f) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(in) :: f
+      character(:), allocatable :: text
+      integer, parameter :: pairs_a_line = 4, most = 40
+      integer :: i, n, ends(2)
+
+      text = ''
+      if (.not. any(m%points%drawn)) return
+      n = 0
+      do i = 1, size(m%pairs)
+         ends = pair_links(m, m%pairs(i))
+         if (.not. (any(f%many_pairs == i) .or. any(f%loose == ends(1)) .or. any(f%loose == ends(2)))) cycle
+         n = n + 1
+         if (n > most) cycle
+         if (mod(n, pairs_a_line) == 1) then
+            text = text//new_line('a')//' LINKS     |'
+         else
+            text = text//', '
+         end if
+         text = text//trim(m%pairs(i)%name)//' ('//listed(m%links(ends)%name, .false.)//')'
+      end do
+      text = text//more(max(0, n - most), .false.)
+   end function joined_links
 
    !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, f) result(text)

@@ -156,14 +156,18 @@ for document in docs/howto/*.md; do
    for block in '```deck' '```sh' '!['; do equal "$document: $block" yes "$(grep -qF "$block" "$document" && echo yes)"; done
 done
 
-# Tables: each row has the cells of its head, and each error has a cause and a cure.
-for document in $documents src/README.md; do
+# Tables: each row is one line with the cells of its head, and each error has a cause and a cure.
+for document in $documents CHANGELOG.md src/README.md; do
    equal "$document: rows of tables with other cells than their heads" '' "$(awk '
       /^[|]/ { line = $0; gsub(/\\[|]/, "", line); gsub(/`[^`]*`/, "x", line); n = gsub(/[|]/, "", line)
          if (!cells) cells = n
-         if (n != cells) print FNR
+         if (n != cells || !/[|]$/) print FNR
          next }
-      { cells = 0 }' "$document")"
+      /^```/ { fenced = !fenced }
+      cells && !fenced && NF { print FNR }
+      { cells = 0 }
+      # Rows of a table are no text with a gap in it for each column.
+      !fenced && /^    / && !/=/ && gsub(/[^ ]   +[^ ]/, "") > 3 { print FNR }' "$document")"
 done
 equal 'docs/messages.md: errors without cause or cure' '' "$(grep -E '^[|] E[0-9]+ ' docs/messages.md | grep -E '[|] *[|]')"
 

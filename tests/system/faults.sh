@@ -47,13 +47,15 @@ three_cranks() {
 }
 
 # said LISTING: the remarks, each after the number of its instant, but for that of equations that repeat others
-said() { awk '/ S (IS LESS THAN|JEST MNIEJSZE NIZ) / { next } /^ (INSTANT|CHWILA) / { k = $2 } /^ (\*\*\*|---) / { print k ":" $0 } /^ (LARGEST|NAJW)/' "$1"; }
+# and those of drives that rest or turn fast, which many of these decks have on purpose
+on_purpose='WITHIN TIME: THE RATE|W CZASIE RUCHU: PREDKOSC|A TURN OR MORE BETWEEN|OBROT LUB WIECEJ'
+said() { awk -v on_purpose="$on_purpose" '/ S (IS LESS THAN|JEST MNIEJSZE NIZ) / || $0 ~ on_purpose { next } /^ (INSTANT|CHWILA) / { k = $2 } /^ (\*\*\*|---) / { print k ":" $0 } /^ (LARGEST|NAJW)/' "$1"; }
 
 # told NAME STATUS WORDS: the deck in $w/deck, its status and all that is said of it
 told() {
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
    equal "$1: status" "$2" $?
-   equal "$1: words" "$3" "$(cat "$w/err"; said "$w/out")"
+   equal "$1: words" "$3" "$(grep -vE "$on_purpose" "$w/err"; said "$w/out")"
    equal "$1: NaN, Inf or asterisks" '' "$(grep -nEiw 'nan|inf|infinity|[*]{4,}' "$w/out")"
    "$debug" "$w/deck" > "$w/debug.out" 2> "$w/debug.err"
    same "$1: debug build" "$w/out" "$w/debug.out"
@@ -120,12 +122,15 @@ drawn() { head_of DRAWING; card LINK CRANK; card LINK COUPLER; card LINK ROCKER;
 left=' *** E103  SET 1: W = 12 COORDINATES LESS R = 9 EQUATIONS LEAVE S = 3 DEGREES OF FREEDOM, DRIVES ARE'
 drawn card JOINT B0 ROCKER BASE 4.0 > "$w/deck"
 told 'no pair of coupler and rocker' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 2 DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS
+ LINKS     |A (CRANK, COUPLER), B0 (ROCKER, BASE)
 $left 1"
 drawn card JOINT B COUPLER ROCKER 3.0 2.5 > "$w/deck"
 told 'no pair of rocker and base' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 2 DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS
+ LINKS     |A (CRANK, COUPLER), B (COUPLER, ROCKER)
 $left 1"
 sed 's/^TIME/'"$(drive ANGLE ROCKER '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
 told 'a driven link at the end' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
+ LINKS     |A (CRANK, COUPLER), B (COUPLER, ROCKER)
 $left 2"
 # The point of a joint is that of its first link that is not ground: a guide meant for the other one. A press.
 press() { head_of PRESS MM; for link in CRANK COUPLER UPPER LOWER RAM; do card LINK $link; done; card JOINT O BASE CRANK 500.0 400.0
@@ -136,6 +141,8 @@ guided() { card JOINT R "$@" 0.0 0.0; card PRISM TOP R GUIDE -90.0; }
 press guided LOWER RAM > "$w/deck"
 told 'a guide at a joint that holds the other link' 1 " *** E101  SET 1: LINK RAM: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS O, A, K, K2, T, GUIDE AND DRIVE ANGLE CRANK
+ LINKS     |O (BASE, CRANK), A (CRANK, COUPLER), K (COUPLER, UPPER), K2 (UPPER, LOWER)
+ LINKS     |T (BASE, UPPER), R (LOWER, RAM), GUIDE (BASE, LOWER)
  *** E103  SET 1: W = 18 COORDINATES LESS R = 17 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1"
 press guided RAM LOWER > "$w/deck"
 "$kinmat" --check "$w/deck" > "$w/out" 2> "$w/err"
@@ -278,7 +285,9 @@ $below"
 
 # Redundant and inconsistent. Least squares: two drives or guides that differ by e are open by e/2 each, the last is named.
 swing two_drives SLIDE GUIDE '' 0.51 0.25 > "$w/deck"
-told 'one slide driven to two places' 2 "0:$open
+spare=' *** A DRIVE IS TOO MANY, REMOVE ONE OF:'
+told 'one slide driven to two places' 2 "0:$spare SLIDE GUIDE, SLIDE GUIDE
+0:$open
 0: *** DRIVE SLIDE GUIDE: CLOSURE ERROR $(small 0.005) M
 1:$open
 1: *** DRIVE SLIDE GUIDE: CLOSURE ERROR $(small 0.005) M
@@ -287,6 +296,7 @@ $largest 1.E-02"
 { head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 20.0
    card ADD POWER '' '' 0.2 3.0; until_time 4 4.0; } > "$w/deck"
 told 'drives that part on the way' 2 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+1:$spare ANGLE CRANK, ANGLE CRANK
 1:$open
 1: *** DRIVE ANGLE CRANK: CLOSURE ERROR $(small 0.1) DEG
 2:$open
@@ -298,7 +308,8 @@ told 'drives that part on the way' 2 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRA
 $largest 1.E-01"
 { head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 22.0; until_time 1 1.0
    } > "$w/deck"
-told 'drives that agree in position alone' 2 "0:$open
+told 'drives that agree in position alone' 2 "0:$spare ANGLE CRANK, ANGLE CRANK
+0:$open
 0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
 1:$open
 1: *** DRIVE ANGLE CRANK: CLOSURE ERROR $(small 1) DEG
@@ -351,9 +362,7 @@ told 'in Polish: too long' 2 "0: *** ROWNANIA NADLICZBOWE SA SPRZECZNE
 limit="acos((9.0 + 16.0 - 16.0)/24.0)*180/pi"
 { head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; until_time 6 6.0; } > "$w/deck"
 told 'coupler and rocker in line' 2 "4:$(past "$limit/20")
-4: *** DRIVE ANGLE CRANK = $(found "$limit") DEG, LINKS COUPL, ROCK AT THE LIMIT, COLLINEAR
-5:$(past "$limit/20")
-6:$(past "$limit/20")"
+4: *** DRIVE ANGLE CRANK = $(found "$limit") DEG, LINKS COUPL, ROCK AT THE LIMIT, COLLINEAR"
 equal 'coupler and rocker in line: the steps before' 4 "$(grep -c '^ COUPL .*[0-9]$' "$w/out")"
 # What lies beyond a limit is known to be out of reach, in whatever order it is asked for; and is not sought again.
 over=$(past "$limit/20")
@@ -364,7 +373,6 @@ told 'beyond a limit, to and fro' 2 "1:$over
 1: *** $ends
 3:$over
 3: *** $ends
-4:$over
 6:$over
 6: *** $ends"
 locking card TIME 40000 '' '' 0.0 400.0 > "$w/deck"
@@ -378,13 +386,11 @@ told 'a piston beyond its reach' 2 "2:$(past 2.5)
 2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR"
 { head_of PISTON MM; slider 100.0 300.0 60.0 50.0; drive SLIDE GUIDE '' 330.0 20.0; until_time 3 6.0; } > "$w/deck"
 told 'a piston beside its guide, in millimetres' 2 "2:$(past '(sqrt(160000 - 2500) - 330)/20')
-2: *** DRIVE SLIDE GUIDE = $(found 'sqrt(160000 - 2500)') MM, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR
-3:$(past '(sqrt(160000 - 2500) - 330)/20')"
+2: *** DRIVE SLIDE GUIDE = $(found 'sqrt(160000 - 2500)') MM, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR"
 { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.0
    card ADD HARMONIC '' '' 0.6 30.0 0.0; until_time 3 3.0; } > "$w/deck"
 told 'a piston that swings' 2 "2:$(past 'asin(5/6)*180/pi/30')
-2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR
-3:$(past 'asin(5/6)*180/pi/30')"
+2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR"
 { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 -0.2; card AT '' '' '' 0.0 -2.0 -3.0; card END; } > "$w/deck"
 told 'time runs backwards' 2 "2:$(past -2.5)
 2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR"
@@ -406,8 +412,7 @@ told 'the second of two mechanisms locks' 2 "2:$(past "$limit/20")
    -e '/^TIME/d' -e '/^END/d'; until_time 2 12.0; } > "$w/deck"
 limit='(sqrt(0.6336/2.56) - 2*sqrt(1 - 1.9264/2.56/1.44))'
 told 'a limit that is no line' 2 "1:$(past "($limit + 0.95)/0.02" 5)
-1: *** DRIVE X C = $(found "$limit") M, LINKS CRANK, BAR AT THE LIMIT
-2:$(past "($limit + 0.95)/0.02" 5)"
+1: *** DRIVE X C = $(found "$limit") M, LINKS CRANK, BAR AT THE LIMIT"
 # Coupler 4 driven, crank 2 and rocker 3 parallel at the limit: 16 + 16 - 32 cos p = 1.
 { head_of PARALLEL; four_bar '' 0.0 2.0 4.0 3.0 4.0 60.0 10.0 90.0; drive ANGLE COUPL '' 20.0 -10.0; until_time 1 1.0; } > "$w/deck"
 limit='acos(31/32)*180/pi'
@@ -435,10 +440,7 @@ tangent() { head_of TANGENT "$1"; link CRANK; link BLOCK "$2"; link SLIDER "$2";
 at_pole() { echo "$1:$(past "$2*9" $3)
 $1: *** DRIVE ANGLE CRANK = $(found "$2*90") DEG, LINK SLIDER AT THE LIMIT"; }
 tangent M 1.0 "$(card TIME 12 '' '' 0.0 12.0)" > "$w/deck"
-told 'an instant on the pole of a slide' 2 "$(at_pole 9 1 5)
-10:$(past 9 5)
-11:$(past 9 5)
-12:$(past 9 5)"
+told 'an instant on the pole of a slide' 2 "$(at_pole 9 1 5)"
 equal 'an instant on the pole of a slide: those before' '9 solved, 0 off' "$("$kinmat" --no-listing --csv - "$w/deck" | awk -F, '
    $5 == "SLIDER" && $7 != "" { n++; a = 10*$3*atan2(0, -1)/180; d = $7 - sin(a)/cos(a); off += d*d > 1e-24*(1 + $7*$7) }
    END { print n " solved, " off + 0 " off" }')"
@@ -626,8 +628,7 @@ equal 'a small dyad: the error told' yes "$(awk -F, '$2 == 0 { d = $8 + 17.49494
 for method in DENSE MATRIX; do
    { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; card METHOD "$method"; until_time 3 4.5; } > "$w/deck"
    told "METHOD $method: a piston beyond its reach" 2 "2:$(past 2.5)
-2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR
-3:$(past 2.5)"
+2: *** DRIVE X B = $(found 4) M, LINKS CRANK, ROD AT THE LIMIT, COLLINEAR"
    { head_of REACH; slider 1.0 3.0 60.0 0.0; drive X B '' 4.5 0.0; card METHOD "$method"; until_time 1 1.0; } > "$w/deck"
    told "METHOD $method: a piston beyond its reach from the start" 2 "0:$none
 0: *** DRIVE X B: CLOSURE ERROR $(small 0.5) M
@@ -650,9 +651,7 @@ done
 { head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; card METHOD DENSE
    until_time 6 6.0; } > "$w/deck"
 told 'METHOD DENSE: coupler and rocker in line' 2 "4:$(past "$limit/20")
-4: *** DRIVE ANGLE CRANK = $(found "$limit") DEG, LINKS COUPL, ROCK AT THE LIMIT, COLLINEAR
-5:$(past "$limit/20")
-6:$(past "$limit/20")"
+4: *** DRIVE ANGLE CRANK = $(found "$limit") DEG, LINKS COUPL, ROCK AT THE LIMIT, COLLINEAR"
 # At crank angle 0 the rate of the iteration of 1987 is above 1 on Andrews' mechanism (make study-1987).
 sed -e '/^METHOD/d' -e 's/^TIME .*/METHOD  MATRIX\nAT                              0.0/' input/andrews.deck > "$w/deck"
 told 'a method that does not converge' 2 "0:$none
@@ -802,15 +801,11 @@ explained 'a name of nine letters' '/^LINK    PISTON/ { print "LINK    PISTONROD
    ' *** E037  CARD 6  COLUMN 9  FIELD LABEL-A: "PISTONROD" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
  LAYOUT    |LINK    LINK                    X               Y               PHI'
 explained 'a name of nine letters before another' '/^REVOLUTEA1/ { $0 = "REVOLUTEA1      POINT-A21PAIR-A" } 1' \
-   ' *** E052  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A2" IS NOT THE NAME OF A POINT
+   ' *** E037  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A21PAIR-A" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
 explained 'a name behind one of nine letters' '/^POINT   B / { $0 = "POINT   B-PISTONRPISTON" } 1' \
-   ' *** E051  CARD 13  COLUMN 17  FIELD LABEL-B: "RPISTON" IS NOT THE NAME OF A LINK
- LAYOUT    |POINT   POINT   LINK            XI              ETA
- *** E052  CARD 16  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT
- LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR
- *** E052  CARD 17  COLUMN 17  FIELD LABEL-B: "B" IS NOT THE NAME OF A POINT
- LAYOUT    |PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'
+   ' *** E037  CARD 13  COLUMN 9  FIELD LABEL-A: "B-PISTONRPISTON" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
+ LAYOUT    |POINT   POINT   LINK            XI              ETA'
 explained 'a pair without a name' '/^REVOLUTEA1/ { $0 = substr($0, 1, 24) } 1' \
    ' *** E034  CARD 15  COLUMN 25  FIELD LABEL-C: THE FIELD IS BLANK: FILL IT IN
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
@@ -824,11 +819,34 @@ explained 'a pair for a point' '/^DRIVE/ { sub(/ANGLE   CRANK /, "X       PAIR-A
    ' *** E052  CARD 18  COLUMN 17  FIELD LABEL-B: "PAIR-A" IS NOT THE NAME OF A POINT (A PAIR HAS IT)
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
 explained 'a link that does not exist' '/^DRIVE/ { sub(/CRANK/, "CRNAK") } 1' \
-   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRNAK" IS NOT THE NAME OF A LINK
+   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRNAK" IS NOT THE NAME OF A LINK (NEAREST NAME: CRANK)
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
 explained 'a pair that does not exist' '/^DRIVE/ { print "PRINT   PAIRS   GUDE" } 1' \
-   ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" IS NOT THE NAME OF A PAIR
+   ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" IS NOT THE NAME OF A PAIR (NEAREST NAME: GUIDE)
  LAYOUT    |PRINT   KIND    NAME    EVERY'
+explained 'a letter added' '/^DRIVE/ { sub(/CRANK /, "CRANKS") } 1' \
+   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRANKS" IS NOT THE NAME OF A LINK (NEAREST NAME: CRANK)
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
+explained 'two letters wrong' '/^DRIVE/ { sub(/CRANK/, "CRIMK") } 1' \
+   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRIMK" IS NOT THE NAME OF A LINK
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
+explained 'a card misspelt' '/^DRIVE/ { sub(/DRIVE/, "DIRVE") } 1' \
+   ' *** E010  CARD 18  COLUMN 1  FIELD NAME: "DIRVE" IS NOT THE NAME OF A CARD (NEAREST NAME: DRIVE)
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
+explained 'a card that is no card' '/^DRIVE/ { sub(/DRIVE/, "MOTOR") } 1' \
+   ' *** E010  CARD 18  COLUMN 1  FIELD NAME: "MOTOR" IS NOT THE NAME OF A CARD'
+explained 'a decimal comma' '/^DRIVE/ { $0 = "DRIVE   ANGLE   CRANK           2,75" } 1' \
+   ' *** E021  CARD 18  COLUMN 34  FIELD REAL-1: "2,75" IS NOT A NUMBER: WRITE A POINT FOR THE COMMA'
+changed '/^GROUND/ { next } 1'
+"$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+equal 'no link is ground' "$(grep -c '^POINT .*BASE' "$w/deck")" \
+   "$(grep -c 'LABEL-B: "BASE" IS NOT THE NAME OF A LINK (GIVE IT A GROUND OR LINK CARD; NO LINK IS GROUND)$' "$w/err")"
+explained 'a deck in free format' '/^(TITLE|END)/ { print; next } { $1 = $1; print }' \
+   ' *** E011  CARD 2  COLUMN 7  FIELD NAME: "M" IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65
+ LAYOUT    |UNITS   LENGTH  RAD/DEG TIME'
+explained 'numbers that touch' '/^DRIVE/ { $0 = "DRIVE   ANGLE   CRANK           0.52359877559829910.0" } 1' \
+   ' *** E022  CARD 18  COLUMN 49  FIELD REAL-2: "910.0" TOUCHES THE NUMBER BEFORE IT: KEEP A BLANK BETWEEN 0.52359877559829 AND 910.0, OR 0.523598775598299 AND 10.0
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
 explained 'pairs of a set without pairs' '/^(LINK|GROUND|UNITS|DRIVE|TIME|AT) / { print; next } /^END/ { print "PRINT   PAIRS"; print; exit }' \
    ' *** E070  CARD 8  COLUMN 9  FIELD LABEL-A: "PAIRS" IS NOT ONE OF THE ITEMS OF THIS SET
  LAYOUT    |PRINT   KIND    NAME    EVERY'
@@ -918,4 +936,75 @@ sed -e 's/^TIME .*/TIME    1                       0.0             3.33333333E-0
 "$kinmat" "$w/deck" > "$w/out"
 equal 'many intervals: lines over 120 columns' 0 "$(awk 'length > 120' "$w/out" | wc -l | tr -d ' ')"
 equal 'many intervals: the others are counted' 1 "$(grep -c 'EXTREMES MAY BE MISSED WITHIN T = .* S AND [0-9]* MORE$' "$w/out")"
+
+# Drives that rest or turn fast: a crank-slider, its DRIVE cards and TIME. remarked NAME REMARKS CARD...
+remarked() {
+   { head_of REMARKED; slider 1.0 3.0 60.0 0.0; shift 2; printf '%s\n' "$@"; card END; } > "$w/deck"
+   equal "$name" "$remarks" "$("$kinmat" "$w/deck" | sed -n 's/^ --- \(CARD\|KARTA\) [0-9]*  \(COLUMN\|KOLUMNA\) 1: //p')"
+}
+drives() { name=$1; remarks=$2; remarked "$@"; }
+run=$(card TIME 12 '' '' 0.0 12.0)
+rests='DOES NOT MOVE WITHIN TIME: THE RATE BELONGS IN REAL-2'
+drives 'a rate in the wrong column' "DRIVE ANGLE CRANK $rests" "$(drive ANGLE CRANK RPM 30.0)" "$run"
+drives 'a rate' '' "$(drive ANGLE CRANK RPM 30.0 2.5)" "$run"
+drives 'an acceleration alone' '' "$(drive ANGLE CRANK '' 30.0 '' 1.0)" "$run"
+drives 'a drive that rests at instants of AT' '' "$(drive ANGLE CRANK '' 30.0)" "$(card AT '' '' '' 0.0 12.0)"
+drives 'a table of one value' "DRIVE ANGLE CRANK $rests" "$(drive ANGLE CRANK; card ADD TABLE '' '' 0.0 60.0; card ADD TABLE '' '' 12.0 60.0)" "$run"
+drives 'a rise within TIME' '' "$(drive ANGLE CRANK '' 60.0; card RISE CYCLOID '' '' 2.0 3.0 20.0)" "$run"
+drives 'a rise after TIME' "DRIVE ANGLE CRANK $rests" "$(drive ANGLE CRANK '' 60.0; card RISE CYCLOID '' '' 12.0 3.0 20.0)" "$run"
+drives 'a value that varies' '' "$(drive ANGLE CRANK '' 60.0; card VARY R1 3 '' 60.0 80.0)" "$run"
+drives 'in Polish' 'NAPED ANGLE CRANK NIE RUSZA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2' "$(drive ANGLE CRANK '' 60.0)" "$run" "$(card LANG PL)"
+# 2 pi rad, or 360 degrees, is a turn; a cycloidal rise has twice its mean rate, a harmonic its amplitude times its frequency.
+fast='HAS A TURN OR MORE BETWEEN TWO INSTANTS (CHECK THE UNITS), TURNS:'
+drives 'a turn in a step' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK '' 60.0 360.0)" "$run"
+drives 'nearly a turn in a step' '' "$(drive ANGLE CRANK '' 60.0 -359.9)" "$run"
+drives 'back two turns in a step' "DRIVE ANGLE CRANK $fast 2.00" "$(drive ANGLE CRANK '' 60.0 -720.0)" "$run"
+drives 'turns a minute' "DRIVE ANGLE CRANK $fast 1.25" "$(drive ANGLE CRANK RPM 60.0 75.0)" "$run"
+drives 'a rise of a turn in two steps' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK '' 60.0; card RISE CYCLOID '' '' 4.0 2.0 360.2)" "$run"
+drives 'rises one after another' '' "$(drive ANGLE CRANK '' 60.0; for k in 0 3 6 9; do card RISE CYCLOID '' '' $k.0 3.0 500.0; done)" "$run"
+drives 'a harmonic' "DRIVE ANGLE CRANK $fast $(small '200*6/360' .2f)" "$(drive ANGLE CRANK '' 60.0; card ADD HARMONIC '' '' 200.0 343.77467707849)" "$run"
+
+# Beyond a limit the first instant says why; then only rows with values stand, and one line for instants that have none. The
+# four-bar 1, 2, 2, 4 has its limit where coupler and rocker are one line of 4: cos phi = 1/8 - 0 degrees; two AT cards come back.
+bar() { head_of LIMIT; card LINK CRANK; card LINK COUPLER '' '' '' '' 60.0; card LINK ROCKER '' '' 4.0 '' 120.0; card POINT A0 BASE; card POINT B0 BASE '' 4.0
+   card POINT A0C CRANK; card POINT AC CRANK '' 1.0; card POINT ACO COUPLER; card POINT BCO COUPLER '' 2.2; card POINT B0R ROCKER; card POINT BR ROCKER '' 2.2
+   card REVOLUTE A0 A0C PA0; card REVOLUTE AC ACO PA; card REVOLUTE BCO BR PB; card REVOLUTE B0R B0 PB0; drive ANGLE CRANK '' 0.0 10.0; "$@"; card END; }
+# cos phi = (1 + 16 - 4.4^2)/8: phi = 107.15 degrees, between the instants 10 and 11
+lines() { "$kinmat" "$w/deck" | sed -n '/^ INSTANT 10 /,/^ C/p' | grep -E '^ (INSTANT|CHWIL|ROCKER|CRANK|[*])' | sed 's/   .*//'; }
+bar card TIME 20 '' '' 0.0 20.0 > "$w/deck"; sed -i 's/^END/PRINT   LINKS   ROCKER\n&/' "$w/deck"
+beyond=$(past 'acos((17 - 4.4^2)/8)*18/pi' 5)
+equal 'beyond a limit: one line' " INSTANT 10
+ ROCKER
+ INSTANT 11
+ ROCKER
+$beyond
+ *** DRIVE ANGLE CRANK = $(found 'acos((17 - 4.4^2)/8)*180/pi') DEG, LINKS COUPLER, ROCKER AT THE LIMIT, COLLINEAR
+ INSTANTS 12 TO 20: AS INSTANT 11" "$(lines)"
+sed 's/^TITLE/LANG    PL\n&/; s/^TIME    20/TIME    12/; s/20.0$/12.0/' "$w/deck" > "$w/one.deck"
+equal 'beyond a limit: one instant, in Polish' ' CHWILA 12: JAK CHWILA 11' "$("$kinmat" "$w/one.deck" | grep '^ CHWILA 12')"
+sed -i 's/^\(PRINT   LINKS   ROCKER\)$/PRINT   LINKS   CRANK   4\n\1/; s/^PRINT   LINKS   CRANK/AT                              0.0             13.0            14.0\n&/' "$w/deck"
+equal 'beyond a limit: rows with values' ' INSTANT 12
+ CRANK
+ INSTANTS 13 TO 15: AS INSTANT 11
+ INSTANT 16
+ CRANK
+ INSTANTS 17 TO 19: AS INSTANT 11
+ INSTANT 20
+ CRANK
+ INSTANT 21
+ ROCKER
+ INSTANT 22
+ ROCKER' "$("$kinmat" "$w/deck" | sed -n '/^ INSTANT 12 /,/^ C[^R]/p' | grep -E '^ (INSTANT|ROCKER|CRANK)' | sed 's/   .*//' | head -n 12)"
+# The CSV has all rows, and the table all instants.
+equal 'beyond a limit: the CSV' 24 "$("$kinmat" --no-listing --csv - "$w/deck" 2> "$w/err" | grep -c ',ROCKER,')"
+equal 'beyond a limit: the table' 25 "$("$kinmat" --no-listing --table - "$w/deck" 2> "$w/err" | wc -l | tr -d ' ')"
+sed -e '/CRANK   4/d' -e 's/ROCKER$/ROCKER  6/' "$w/deck" > "$w/one.deck"
+equal 'EVERY: the table has all instants' 25 "$("$kinmat" --no-listing --table - "$w/one.deck" 2> "$w/err" | wc -l | tr -d ' ')"
+
+# One drive too many: cranks 1 at both ends of a base of 4 with bars of 2.2. A parallelogram with a third crank that is too long
+# has none, nor a drive of another mechanism of the set.
+bar card TIME 2 '' '' 0.0 2.0 | sed "s/^TIME/$(drive ANGLE ROCKER '' '' 3.0)\n&/" > "$w/deck"
+equal 'a drive too many' "$spare ANGLE CRANK, ANGLE ROCKER" "$("$kinmat" "$w/deck" | grep 'A DRIVE IS TOO MANY')"
+{ head_of THREE; three_cranks 0.00001 60.0; drive ANGLE CRANK-1 '' 60.0 9.0; until_time 2 1.0; } > "$w/deck"
+equal 'lengths that do not fit: no drive is named' '1 0' "$("$kinmat" "$w/deck" | grep -c 'INCONSISTENT' | sed 's/^[1-9]$/1/') $("$kinmat" "$w/deck" | grep -c 'TOO MANY')"
 conclude
