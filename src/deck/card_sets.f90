@@ -240,7 +240,8 @@ contains
       ! A name that goes on in the next field, or that began in the field before, if none of its parts is a name.
       do border = i, min(i + 1, label_c)
          call find_long_label(set%cards(k)%card, border, first, word)
-         if (word == '' .or. is_name(border - 1) .or. is_name(border)) cycle
+         if (word == '') cycle
+         if (is_name(border - 1) .or. is_name(border)) cycle
          ! A name is near to itself with the last letter of the long one before it.
          if (hint /= '' .and. find_name(set%named(kind)%table, set%cards(k)%label(i)(2:)) == 0) cycle
          call add_error(set%errors, label_long, set%cards(k)%card, card_fields(border - 1), first, word)

@@ -54,7 +54,7 @@ contains
    end subroutine run_cards
 
    !> The lines of the listing that begin with three stars or three dashes, each with its end; not the one that tells what
-   !> `?` is.
+   !> `?` is, nor that drives rest, as many do on purpose.
    function remarks(r) result(text)
       type(run_t), intent(in) :: r
       character(:), allocatable :: text
@@ -65,7 +65,8 @@ contains
       do while (first <= len(r%listing))
          last = first + index(r%listing(first:), nl) - 1
          if ((r%listing(first:min(first + 4, last)) == ' *** ' .or. r%listing(first:min(first + 4, last)) == ' --- ') &
-            .and. index(r%listing(first:last), ' --- ?:') /= 1) text = text//r%listing(first:last)
+            .and. index(r%listing(first:last), ' --- ?:') /= 1 .and. &
+            index(r%listing(first:last), ' NOT MOVE WITHIN') == 0) text = text//r%listing(first:last)
          first = last + 1
       end do
    end function remarks
