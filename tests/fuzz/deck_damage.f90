@@ -57,7 +57,12 @@ contains
       end if
       if (manner > 9) then
          do i = 1, throw(r, 3)
-            if (size(d%line) > 0) call damage(d, r)
+            if (size(d%line) == 0) exit
+            if (chance(r, 0.3_wp)) then
+               call slip(d, r)
+            else
+               call damage(d, r)
+            end if
          end do
       end if
       call limit_steps(d)
@@ -242,6 +247,63 @@ contains
       end select
       call add_note(d, 'TEXT DAMAGED')
    end subroutine damage
+
+   !> One slip of a new user: a decimal comma, numbers that touch, a name with one letter wrong or of nine letters, text
+   !> in the wrong columns, or the whole deck in free format.
+   subroutine slip(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, k, c
+
+      i = throw(r, size(d%line))
+      associate (line => d%line(i))
+         select case (throw(r, 8))
+         case (1)
+            c = index(line(33:80), '.')
+            if (c > 0) line(32 + c:32 + c) = ','
+         case (2)
+            c = merge(33, 49, chance(r, 0.5_wp))
+            line(c:c + 16 + throw(r, 8)) = '0.52359877559829910.000000'
+         case (3:5)
+            ! A letter of the name of the card or of a label: wrong, left out, added, or exchanged with the next one.
+            k = 8*throw(r, 4)
+            c = k - 8 + throw(r, max(1, len_trim(line(k - 7:k))))
+            select case (throw(r, 4))
+            case (1)
+               line(c:c) = 'Q'
+            case (2)
+               line(c:k) = line(c + 1:k)
+            case (3)
+               line(c:k) = 'Q'//line(c:k - 1)
+            case default
+               line(c:min(c + 1, k)) = line(min(c + 1, k):min(c + 1, k))//line(c:c)
+            end select
+         case (6)
+            k = 8*throw(r, 3)
+            line = line(:k)//'NINELETRS'//line(k + 8 + throw(r, 2):)
+         case (7)
+            c = 8*throw(r, 9)
+            line = line(:c)//repeat(' ', throw(r, 16))//line(c + 1:)
+         case default
+            do i = 1, size(d%line)
+               d%line(i) = single_blanks(trim(d%line(i)))
+            end do
+         end select
+      end associate
+      call add_note(d, 'A SLIP')
+   end subroutine slip
+
+   !> `text` with one blank for several.
+   pure function single_blanks(text) result(short)
+      character(*), intent(in) :: text
+      character(:), allocatable :: short
+      integer :: i
+
+      short = ''
+      do i = 1, len(text)
+         if (text(i:i) /= ' ' .or. text(max(1, i - 1):max(1, i - 1)) /= ' ') short = short//text(i:i)
+      end do
+   end function single_blanks
 
    pure function lower(text) result(small)
       character(*), intent(in) :: text

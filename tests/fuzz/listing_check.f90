@@ -32,6 +32,7 @@ module listing_check
    character(60), parameter :: diagnostics(*) = [character(60) :: 'CLOSURE ERROR', 'BLAD ZAMKNIECIA', &
       'AT THE LIMIT', 'NA KRESIE RUCHU', &
       'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
+      'A DRIVE IS TOO MANY, REMOVE ONE OF: ', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z: ', &
       'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM', &
       'RUCH NIEOKRESLONY, NAPEDZAJ JEDNO Z NICH', &
       'THE ASSEMBLY FOUND DIFFERS FROM THE INITIAL ANGLE BY', 'KAT PRZYBLIZONY ODBIEGAL O', &
@@ -49,6 +50,9 @@ module listing_check
       'NO TIME RATIO, THE RUN IS NOT A PERIOD', 'BRAK STOSUNKU CZASOW, RUCH NIE JEST OKRESEM', &
       'EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T =', &
       'NOT SEARCHED (MOTION NOT AVAILABLE): T =', 'NIE PRZESZUKANO (BRAK RUCHU): T =']
+
+   !> What begins the line of instants without values.
+   character(10), parameter :: untold(4) = [character(10) :: ' INSTANT', ' INSTANTS', ' CHWILA', ' CHWILE']
 
    !> An instant is flagged with it, and its time follows.
    character(50), parameter :: beyond(2) = [character(50) :: 'NO POSITION: BEYOND THE LIMIT OF MOTION AT T =', &
@@ -132,6 +136,10 @@ contains
          wrong = index(line, ', ') == 0
       else if (index(line, 'TIME MIN TO MAX ') + index(line, 'CZAS MIN DO MAX ') > 0) then
          wrong = index(line, 'TIME RATIO') + index(line, 'STOSUNEK CZASOW') == 0
+      else if (index(line, ': AS INSTANT ') + index(line, ': JAK CHWILA ') > 0) then
+         ! The instants and one before them, each a whole number.
+         wrong = .not. any([(starts(line, trim(untold(i))), i=1, size(untold))]) .or. &
+            verify(trim(line(index(line, ':') + 13:)), '0123456789') > 0
       else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ') .or. index(line, ' = ') > 0) then
          wrong = .not. are_values(line)
       else if (line(:10) == '') then
