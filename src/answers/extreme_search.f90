@@ -8,8 +8,8 @@
 !> Pieces of a step end at change points, limits of motion and instants without velocities. Each piece has nodes up to
 !> beside that place, and the one-sided limits there may be extremes. What is closer is not searched, and the table says
 !> so. On each side of a change point a number is a smooth function of the time that is left, at a limit of the motion
-!> of the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the polynomial through these five in s^2 or
-!> in s; or it grows without bound, as velocities do at a limit, with 1/s.
+!> of the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the
+!> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit

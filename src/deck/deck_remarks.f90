@@ -7,7 +7,7 @@ module deck_remarks
    use mechanism
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening
-   use drives, only: drive_motion, bounds_t, bounds_of, middle_of
+   use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
    use names, only: drive_name, listed
    use scales, only: solver_length
    use numerals, only: rounded
@@ -102,8 +102,8 @@ contains
    subroutine check_drives(set)
       type(card_set_t), intent(inout) :: set
       real(wp), parameter :: turn = 2.0_wp*pi
-      !> The part of a law's values that roundings of its bounds do not reach.
-      real(wp), parameter :: rounding = max(1.0e-9_wp, 1.0e3_wp*epsilon(1.0_wp)), about_one = 1.0_wp - rounding
+      !> One turn but for roundings.
+      real(wp), parameter :: about_one = 1.0_wp - 1.0e3_wp*epsilon(1.0_wp)
       real(wp) :: step, rate
       logical :: varies
       integer :: k
@@ -131,15 +131,22 @@ contains
 
    contains
 
-      !> Whether `drive` does not move within TIME, but for roundings of its law.
+      !> Whether `drive` does not move within TIME. Bounds of the rate of a table include roundings of its values.
       pure logical function rests(drive)
          type(drive_t), intent(in) :: drive
-         type(bounds_t) :: b
+         type(drive_t) :: law
+         integer :: i
 
-         associate (m => set%mechanism)
-            b = bounds_of(drive, m%t0, m%t1)
-            rests = max(-b%low(1), b%high(1))*abs(m%t1 - m%t0) <= rounding*max(abs(b%low(0)), abs(b%high(0)))
-         end associate
+         law = drive
+         if (allocated(law%terms)) then
+            do i = 1, size(law%terms)
+               if (law%terms(i)%kind /= term_table) cycle
+               associate (y => law%terms(i)%table%y)
+                  if (.not. maxval(y) > minval(y)) y = 0.0_wp
+               end associate
+            end do
+         end if
+         rests = is_at_rest(law, set%mechanism%t0, set%mechanism%t1)
       end function rests
 
       !> Adds the remark `kind` about the drives with these `names`, at the card of the first of them. `value` ends it.

@@ -318,8 +318,9 @@ equal '--ruler CARD: a line for each field' '' "$(for name in $("$kinmat" --rule
       END { if (fields != found) print name ": " fields "/ " found }'; done)"
 # --explain: the entry of a code, of words, of a whole message; each code of the documents has one.
 equal '--explain CODE' 'E102   TOO MANY EQUATIONS BY n AMONG PAIRS ... AND DRIVES ...
-       CAUSE  with E101: a drive is in the wrong place
-       CURE   move it to the links of E101' "$("$kinmat" --explain E102 | sed -n '/TOO MANY/,$p')"
+       CAUSE  with E101: a drive, or a link of a JOINT card, is in the wrong
+              place; lines LINKS as for E101
+       CURE   move the drive to the links of E101, or correct the link' "$("$kinmat" --explain E102 | sed -n '/TOO MANY/,$p')"
 equal '--explain CODE in small letters' "$("$kinmat" --explain E020)" "$("$kinmat" --explain e020)"
 equal '--explain WORDS' '*** NO POSITION FOUND' "$("$kinmat" --explain 'NO POSITION FOUND' | head -n 1)"
 equal '--explain WORDS, in small letters and as several words' "$("$kinmat" --explain 'NO POSITION FOUND')" "$("$kinmat" --explain no position  found)"
@@ -349,6 +350,9 @@ rejected 'unknown option after the deck' 1 ' *** OPTION --nope IS UNKNOWN; SEE k
 rejected 'two decks' 1 ' *** MORE THAN ONE DECK IS NAMED: one AND two' one two
 rejected 'empty word' 1 ' *** THE NAME OF THE DECK IS EMPTY' ''
 rejected '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
+rejected '--csv with an option for a file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv --svg
+(cd "$w" && "$kinmat" m.deck --no-listing --csv ./--svg 2> err)
+equal 'a file whose name begins with -' 'set,step' "$(head -n 1 "$w/--svg" | cut -c 1-8)"
 rejected '--csv with an empty file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv ''
 rejected '--log twice' 1 ' *** OPTION --log IS GIVEN TWICE' "$w/m.deck" --log "$w/a" --log "$w/b"
 rejected 'missing file' 3 " *** FILE $w/no.deck CANNOT BE OPENED (NO SUCH FILE OR DIRECTORY)" "$w/no.deck"
