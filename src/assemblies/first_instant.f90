@@ -173,6 +173,7 @@ contains
             latest(i) = largest_known(e%blocks, i, last)
             last(own) = merge(latest(i), i, e%blocks%list(i)%direct)
             call set_values(e%blocks, i, e%estimated(own), e%state)
+            allocate (found(i)%x(size(own), 0), found(i)%distance(0))
          end associate
       end do
       is_given_up = .false.
