@@ -217,8 +217,9 @@ contains
    !> number or its beginning. Text on both sides of a border is in one of these cases:
    !> - a label fills its field: not cut;
    !> - a number fills its field, and is one number with the text after the border: cut;
-   !> - two numbers fill their fields: not cut, a remark if the second has no sign;
-   !> - a number fills its field, and the second neither fills its own nor has a sign: an error with both readings;
+   !> - a number fills its field with an exponent of three digits, or the second has a sign: not cut;
+   !> - two numbers without signs between them fill their fields: not cut, a remark;
+   !> - a number fills its field, and the second does not: an error with both readings;
    !> - a number does not fill its field, and the second has a sign: not cut, a remark;
    !> - any other text that does not fill its field: cut.
    subroutine find_cuts(card, fields, taken, cut, errors)
@@ -245,8 +246,9 @@ contains
             ! Text that is no number has an error of its own.
             if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
                .not. is_real(card%text(border + 1:finish))) cycle
-            ! Programs leave out the plus sign of a number with an exponent.
-            if (finish >= fields(i + 1)%last - merge(1, 0, scan(card%text(border + 1:finish), 'EeDd') > 0)) then
+            ! With three digits of an exponent the first number is complete.
+            if (scan(card%text(border - 4:border - 4), 'EeDd') == 1) cycle
+            if (finish == fields(i + 1)%last) then
                call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
             else
                cut(i:i + 1) = .true.

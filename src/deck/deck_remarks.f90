@@ -35,7 +35,7 @@ module deck_remarks
    integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
 
    !> So often is TIME halved to find the greatest rate of a law.
-   integer, parameter :: halvings = 12
+   integer, parameter :: halvings = 16
 
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
