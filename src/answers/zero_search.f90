@@ -126,6 +126,7 @@ contains
       clear = merge([a%t, g(1)], [b%t, g(2)], abs(g(1)) > abs(g(2)))
       last = b%t
       last_g = huge(1.0_wp)
+      slope = 0.0_wp
       t = guess(c, order, level, ends, g)
       do n = 1, max_iterations
          if (.not. (t - ends(1))*(ends(2) - t) > 0.0_wp) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
@@ -138,13 +139,7 @@ contains
          end if
          associate (f => at%f(order) - level)
             ends(merge(2, 1, differ_in_sign(f, g(1)))) = t
-            if (order < 2) then
-               slope = at%f(order + 1)
-            else if (n == 1) then
-               slope = on_curve(c, 3, t)
-            else
-               slope = (f - last_g)/(t - last)
-            end if
+            slope = merge(on_curve(c, 3, t), at%f(min(order + 1, 2)), order == 2)
             step = 0.0_wp
             if (abs(slope) > 0.0_wp) step = -f/slope
             if (order > 0 .and. abs(step) <= short_part*abs(b%t - a%t)) then
@@ -165,10 +160,9 @@ contains
             last_g = f
          end associate
       end do
-      ! The slope from the zero to the last value that is more than noise.
-      slope = 0.0_wp
-      if (abs(clear(2)) > above_noise*c%noise(order) .and. abs(clear(1) - t) > 0.0_wp) &
-         slope = abs(clear(2)/(clear(1) - t))
+      ! The slope from the zero to the last value that is more than noise, unless that beside the zero is less.
+      if (.not. (abs(clear(2)) > above_noise*c%noise(order) .and. abs(clear(1) - t) > 0.0_wp)) slope = 0.0_wp
+      if (abs(slope) > 0.0_wp) slope = min(abs(slope), abs(clear(2)/(clear(1) - t)))
       call settle(s, c, order, [a%t, b%t], t, slope, 1.0_wp, c%noise(order), width, zero)
    end subroutine find_zero
 
