@@ -301,8 +301,9 @@ contains
          shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
          if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
          if (length <= shortest) then
-            ! Beside a joint there is nothing to be missed.
+            ! Near a joint there is nothing to be missed but the joint itself.
             if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
+            if (present(between)) call take_node(x, c, between, .true.)
             return
          end if
          if (present(between)) then

@@ -176,11 +176,12 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
-      real(wp) :: f(-2:2), d(4), t, step, u, left, noise, slope, run, found(5)
+      real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run, found(5)
       integer :: i, k
 
       associate (length => b%t - a%t)
-         t = guess(c, 3, 0.0_wp, [a%t, b%t], [-1.0_wp, 1.0_wp])
+         first = guess(c, 3, 0.0_wp, [a%t, b%t], [-1.0_wp, 1.0_wp])
+         t = first
          ! What is so near an end is as good as there.
          if (min(abs(t - a%t), abs(b%t - t)) <= beside_end*abs(length)) return
          call look_at_column(s, c, t, at)
@@ -228,8 +229,12 @@ contains
                step = step/shorter
             end if
          end do
-         if (found(2) > 0.0_wp) &
-            call settle(s, c, 2, [a%t, b%t], found(1), found(2), found(3), found(4), found(5), turn)
+         ! If no stencil serves, all of the time from `a` to `b` is open. If its extreme is at an end, that of the
+         ! polynomial counts, and the time between both is open.
+         if (.not. found(2) > 0.0_wp) found = [first, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]
+         if (min(abs(found(1) - a%t), abs(b%t - found(1))) <= beside_end*abs(length)) &
+            found([1, 5]) = [first, max(found(5), abs(found(1) - first))]
+         call settle(s, c, 2, [a%t, b%t], found(1), found(2), found(3), found(4), found(5), turn)
       end associate
    end subroutine find_turn
 

@@ -25,8 +25,9 @@ program extremes_by_chance
    real(qp), parameter :: equal_part = 1.0e-10_qp, alike_part = 2.3e-11_qp
    !> A number may be blank if it varies by less than this, in its largest value or the power of the crank's rate.
    real(qp), parameter :: blank_part = 1.0e-8_qp
-   !> A printed number is right within one of its last known digit, which rounding to even may need.
-   real(qp), parameter :: one_digit = 1.000001_qp
+   !> A printed number is right within half of its last digit, and a hundredth for what is below; one with masked digits
+   !> within one of its last known digit.
+   real(qp), parameter :: half_digit = 0.51_qp, one_digit = 1.01_qp
    !> The mean number of masked digits of a value and of a time that each kind may have: as many as version 1.0 has.
    real(qp), parameter :: masked_values(2) = 0.0_qp, masked_times(2) = [0.0003_qp, 0.0792_qp]
    !> So many laws of a hundred may have a line EXTREMES MAY BE MISSED.
@@ -410,9 +411,9 @@ contains
                numbers = numbers + 1
                masked = masked + [count_marks(p%value(which, k)), count_marks(p%time(which, k))]
                call read_number(p%value(which, k), p%power(k), x, digit)
-               is_wrong(1) = abs(x - places(1)%value) > one_digit*digit
+               is_wrong(1) = abs(x - places(1)%value) > allowed_part(p%value(which, k))*digit
                call read_number(p%time(which, k), p%time_power, x, digit)
-               is_wrong(2) = minval(max(places%from - x, x - places%to)) > one_digit*digit
+               is_wrong(2) = minval(max(places%from - x, x - places%to)) > allowed_part(p%time(which, k))*digit
             end if
             if (p%may_miss) is_wrong = .false.
             wrong = wrong + merge(1, 0, is_wrong)
@@ -423,6 +424,13 @@ contains
          end do
       end do
    end subroutine judge_set
+
+   !> By how much the printed number `text` may differ from the true one, in its last known digit.
+   pure real(qp) function allowed_part(text)
+      character(*), intent(in) :: text
+
+      allowed_part = merge(half_digit, one_digit, count_marks(text) == 0)
+   end function allowed_part
 
    pure integer function count_marks(text) result(n)
       character(*), intent(in) :: text
