@@ -246,8 +246,9 @@ contains
             ! Text that is no number has an error of its own.
             if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
                .not. is_real(card%text(border + 1:finish))) cycle
-            ! With three digits of an exponent the first number is complete.
-            if (scan(card%text(border - 4:border - 4), 'EeDd') == 1) cycle
+            ! With three digits of an exponent, or a sign and two, as programs write it, the first number is complete.
+            if (scan(card%text(border - 4:border - 3), 'EeDd') > 0 .and. scan(card%text(border - 2:border - 1), 'EeDd') == 0 &
+               .and. card%text(border - 2:border - 2) /= '.') cycle
             if (finish == fields(i + 1)%last) then
                call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
             else
