@@ -108,6 +108,8 @@ contains
          .or. starts(line, ' TOLERANCES: ', ' TOLERANCJE: '))) then
          table%is_over = .true.
       else if (starts(line, ' INSTANT ', ' CHWILA ') .and. table%results) then
+         ! An instant like an earlier one beyond a limit has no row.
+         if (index(line, ': AS INSTANT ') > 0 .or. index(line, ': JAK CHWILA ') > 0) return
          call read_wholes(line(:index(line, 'T =')), counts, used)
          if (used /= 1) call blame(set, line)
          table%step = counts(1)
@@ -139,7 +141,8 @@ contains
    pure logical function is_row(line)
       character(*), intent(in) :: line
 
-      is_row = line /= '' .and. .not. (starts(line, ' *** ', ' --- ') .or. starts(line, ' CONTINUATION: ', ' KONTYNUACJA: ') &
+      is_row = line /= '' .and. .not. (starts(line, ' *** ', ' --- ') .or. starts(line, ' INSTANTS ', ' CHWILE ') &
+         .or. starts(line, ' CONTINUATION: ', ' KONTYNUACJA: ') &
          .or. starts(line, ' LARGEST CLOSURE ERROR ', ' NAJWIEKSZY BLAD '))
    end function is_row
 

@@ -6,6 +6,7 @@ program read_listing
    use, intrinsic :: iso_fortran_env, only: real128
    use csv_cells, only: cells, cell_length, split, whole_text
    use echoed_deck, only: kind_of_row
+   use echoed_deck, only: due_t
    use listing_reader, only: row_text_t, set_text_t, next_set
    use printed_numbers, only: printed_t, read_printed, agrees
    implicit none
@@ -44,8 +45,10 @@ contains
    subroutine compare_set(set)
       type(set_text_t), intent(in) :: set
       character(5), parameter :: spreads(0:2) = [character(5) :: '', 'WORST', 'RSS']
+      logical :: was_absent(size(set%deck%requests))
       integer :: step, i, k, n
 
+      was_absent = .false.
       if (set%instants < 1) call give_up('THE LISTING OF A SET HAS NO END')
       k = 0
       do step = 0, set%instants - 1
@@ -53,12 +56,17 @@ contains
             associate (due => set%deck%requests(i))
                if (mod(step, due%every) /= 0 .and. step /= set%instants - 1) cycle
                do n = 0, merge(2, 0, set%deck%tolerances)
+                  if (.not. is_row_of(set, k + 1, step, due, spreads(n))) then
+                     ! Beyond a limit the listing has a row without values at the first instant only.
+                     if (was_absent(i) .and. has_no_value(step, due, spreads(n))) cycle
+                  end if
                   k = k + 1
                   if (k > set%row_count) call give_up('THE LISTING HAS TOO FEW ROWS')
-                  if (set%rows(k)%step /= step .or. set%rows(k)%kind /= due%kind .or. set%rows(k)%name /= due%name &
-                     .or. set%rows(k)%spread /= spreads(n)) &
+                  if (.not. is_row_of(set, k, step, due, spreads(n))) &
                      call give_up('ANOTHER ROW THAN ASKED FOR: '//shown(set%rows(k)))
                   call compare_row(set%number, set%rows(k))
+                  if (n == 0) was_absent(i) = all(set%rows(k)%word == '' .or. set%rows(k)%word == 'NONE' &
+                     .or. set%rows(k)%word == 'BRAK')
                end do
                if (set%deck%tolerances) call pass_sensitivities
             end associate
@@ -66,6 +74,38 @@ contains
       end do
       if (k /= set%row_count) call give_up('MORE ROWS THAN ASKED FOR: '//shown(set%rows(k + 1)))
    end subroutine compare_set
+
+   !> Whether row `k` of the listing is that of the request `due` at the instant `step`.
+   logical function is_row_of(set, k, step, due, spread)
+      type(set_text_t), intent(in) :: set
+      integer, intent(in) :: k, step
+      type(due_t), intent(in) :: due
+      character(*), intent(in) :: spread
+
+      is_row_of = .false.
+      if (k > set%row_count) return
+      associate (row => set%rows(k))
+         is_row_of = row%step == step .and. row%kind == due%kind .and. row%name == due%name .and. row%spread == spread
+      end associate
+   end function is_row_of
+
+   !> Passes over the next row of the CSV, which must be that of the request `due` at the instant `step`, if it has no
+   !> value; otherwise it is read again.
+   logical function has_no_value(step, due, spread)
+      integer, intent(in) :: step
+      type(due_t), intent(in) :: due
+      character(*), intent(in) :: spread
+      character(cell_length) :: cell(cells)
+      integer :: status
+
+      call next_row(line, status)
+      has_no_value = .false.
+      if (status /= 0) return
+      call split(line, cell, status)
+      has_no_value = cell(2) == whole_text(step) .and. cell(4) == trim(kind_of_row(due%kind))//' '//spread &
+         .and. cell(5) == due%name .and. all(cell(6:14) == '') .and. (cell(15) /= '' .or. spread /= '')
+      if (.not. has_no_value) backspace (csv)
+   end function has_no_value
 
    !> The rows of the CSV that the listing does not have: one for each number with a tolerance, one at least.
    subroutine pass_sensitivities
