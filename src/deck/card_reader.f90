@@ -217,7 +217,7 @@ contains
    !> number or its beginning. Text on both sides of a border is in one of these cases:
    !> - a label fills its field: not cut;
    !> - a number fills its field, and is one number with the text after the border: cut;
-   !> - a number fills its field with an exponent of three digits, or the second has a sign: not cut;
+   !> - a number fills its field with an exponent of three digits or a sign and two, or the second has a sign: not cut;
    !> - two numbers without signs between them fill their fields: not cut, a remark;
    !> - a number fills its field, and the second does not: an error with both readings;
    !> - a number does not fill its field, and the second has a sign: not cut, a remark;
@@ -246,9 +246,9 @@ contains
             ! Text that is no number has an error of its own.
             if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
                .not. is_real(card%text(border + 1:finish))) cycle
-            ! With three digits of an exponent, or a sign and two, as programs write it, the first number is complete.
-            if (scan(card%text(border - 4:border - 3), 'EeDd') > 0 .and. scan(card%text(border - 2:border - 1), 'EeDd') == 0 &
-               .and. card%text(border - 2:border - 2) /= '.') cycle
+            ! An exponent of three digits, or of a sign and two, is complete: programs write it so.
+            if (scan(card%text(border - 4:border - 4), 'EeDd') == 1) cycle
+            if (scan(card%text(border - 3:border - 3), 'EeDd')*scan(card%text(border - 2:border - 2), '+-') == 1) cycle
             if (finish == fields(i + 1)%last) then
                call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
             else
