@@ -230,10 +230,13 @@ contains
             end if
          end do
          ! If no stencil serves, all of the time from `a` to `b` is open. If its extreme is at an end, that of the
-         ! polynomial counts, and the time between both is open.
+         ! polynomial counts, and the time between both is open; within a step they are one, as good as at the end.
          if (.not. found(2) > 0.0_wp) found = [first, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]
-         if (min(abs(found(1) - a%t), abs(b%t - found(1))) <= beside_end*abs(length)) &
-            found([1, 5]) = [first, max(found(5), abs(found(1) - first))]
+         if (min(abs(found(1) - a%t), abs(b%t - found(1))) <= beside_end*abs(length)) then
+            left = abs(found(1) - first)
+            if (left <= found(3)) return
+            found([1, 5]) = [first, max(found(5), left)]
+         end if
          call settle(s, c, 2, [a%t, b%t], found(1), found(2), found(3), found(4), found(5), turn)
       end associate
    end subroutine find_turn
