@@ -70,9 +70,15 @@ contains
          end if
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
-               sample = sample_t(t, rows(row)%value(k, :), known=rows(row)%known, growth=grows)
-               if (present(always)) sample%error = error(k, :, row)
-               node%is_known = node%is_known .and. sample%known == 2 .and. all(sample%error < nothing_known)
+               sample%t = t
+               sample%f = rows(row)%value(k, :)
+               sample%known = rows(row)%known
+               sample%growth = grows
+               sample%error = 0.0_wp
+               node%is_known = node%is_known .and. sample%known == 2
+               if (.not. present(always)) cycle
+               sample%error = error(k, :, row)
+               node%is_known = node%is_known .and. all(sample%error < nothing_known)
             end associate
          end do
       end associate
@@ -99,7 +105,7 @@ contains
    !> simple.
    subroutine look_for_turns(track)
       type(track_t), intent(inout) :: track
-      real(wp) :: curve(0:8), jerk(2), noise(3), f(3)
+      real(wp) :: jerk(2), noise(3), f(3), low, high
       integer :: i, k
       logical :: pair, simple
 
@@ -109,15 +115,18 @@ contains
          if (.not. b%is_known) return
          do i = 1, size(track%coordinates)
             associate (one => track%coordinates(i))
-               call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, curve, jerk, noise, simple)
+               call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, jerk, noise, simple)
                track%turns = track%turns .or. .not. simple
                do k = 1, 2
                   f = [a%samples(i)%f(k), middle%samples(i)%f(k), b%samples(i)%f(k)]
+                  low = min(f(1), f(2), f(3))
+                  high = max(f(1), f(2), f(3))
+                  ! Mostly all have the sign of the last one.
+                  if (min(low, one%last(k)) > noise(k) .or. max(high, one%last(k)) < -noise(k)) cycle
                   call compare(f, noise(k), one%last(k))
                end do
                ! Where accelerations are alike a small one is that of rounding.
-               if (max(f(1), f(2), f(3)) - min(f(1), f(2), f(3)) > 2.0_wp*max(alike*one%size_of(2), noise(2))) &
-                  noise(3) = 0.0_wp
+               if (high - low > 2.0_wp*max(alike*one%size_of(2), noise(2))) noise(3) = 0.0_wp
                if (pair) call compare(jerk, noise(3), one%last(3))
             end associate
          end do
@@ -181,10 +190,26 @@ contains
             end if
             call take_node(x, c, nodes(3), .true.)
          end if
-         nodes(1) = nodes(3)
+         call exchange(nodes(1), nodes(3))
          track%filled = 1
       end associate
    end subroutine add_node
+
+   !> Exchanges the nodes `a` and `b`; their room stays allocated.
+   pure subroutine exchange(a, b)
+      type(node_t), intent(inout) :: a, b
+      type(node_t) :: kept
+
+      kept%t = a%t
+      kept%is_known = a%is_known
+      call move_alloc(a%samples, kept%samples)
+      a%t = b%t
+      a%is_known = b%is_known
+      call move_alloc(b%samples, a%samples)
+      b%t = kept%t
+      b%is_known = kept%is_known
+      call move_alloc(kept%samples, b%samples)
+   end subroutine exchange
 
    !> Searches between the last node of mechanism `c` and the one that waits, if there is one: the last one ends a
    !> piece.
@@ -204,67 +229,94 @@ contains
       end associate
    end subroutine search_waiting
 
-   !> Finds the polynomial of a coordinate in a part with the samples `a`, `middle` and `b`, and its third derivatives
-   !> `jerk` at the ends. It is that of degree 8 with the values, rates and accelerations (Hermite), whose `jerk` has an
-   !> error of 2E-6 of the ninth derivative, but where rounding explains the difference from rates and accelerations
-   !> alone, with an error of 7E-4 of the seventh. `curve`: its coefficients, of the time from the middle in halves of
-   !> the part. `size_of`: characteristic values. `noise`: what rounding may leave open, at most, of rate, acceleration
-   !> and jerk. `simple`: the cubic with the accelerations and jerks at the ends has about the acceleration in the
-   !> middle, and one extreme inside at most.
-   pure subroutine find_jerk(a, middle, b, size_of, curve, jerk, noise, simple)
+   !> Finds the third derivatives `jerk` at both ends of a part with the samples `a`, `middle` and `b`, of the polynomial
+   !> of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic values. `noise`: what
+   !> rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with the accelerations and
+   !> jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
+   pure subroutine find_jerk(a, middle, b, size_of, jerk, noise, simple)
       type(sample_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: size_of(0:2)
-      real(wp), intent(out) :: curve(0:8), jerk(2), noise(3)
+      real(wp), intent(out) :: jerk(2), noise(3)
       logical, intent(out) :: simple
-      real(wp), dimension(0:2) :: first, half, last, left, largest, odd, even
-      real(wp) :: mean, change, open, h, most, step
+      real(wp), dimension(0:2) :: left, odd, even
+      real(wp) :: seventh, eighth, mean, change, open, h, most, step
 
       h = b%t - a%t
-      ! Of the size of numbers, and of a rounding of the time.
-      largest = max(abs(a%f), abs(middle%f), abs(b%f))
-      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*max(size_of, largest)
-      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))*largest(1:)
-      left = max(a%error, middle%error, b%error, left)
+      left = left_open(a, middle, b, size_of)
       noise(:2) = left(1:)
       noise(3) = errors_by_rates*(noise(1)/abs(h) + noise(2))/abs(h)
-      first = a%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
-      half = middle%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
-      last = b%f*[1.0_wp, 0.5_wp*h, 0.25_wp*h*h]
-
-      ! What the coefficients 3, 5, 7 and 4, 6, 8 make of values, rates and accelerations at the ends.
-      curve(:2) = half*[1.0_wp, 1.0_wp, 0.5_wp]
-      odd = 0.5_wp*[last(0) - first(0), last(1) + first(1), last(2) - first(2)] - half(1)*[1.0_wp, 1.0_wp, 0.0_wp]
-      even = 0.5_wp*[last(0) + first(0), last(1) - first(1), last(2) + first(2)] - half(2)*[0.5_wp, 1.0_wp, 1.0_wp]
-      even(0) = even(0) - half(0)
-      curve(7) = odd(2) - 7.0_wp*odd(1) + 15.0_wp*odd(0)
-      if (abs(curve(7)) <= 15.0_wp*left(0)) curve(7) = 0.0_wp
-      curve(7) = curve(7)/8.0_wp
-      curve(5) = (odd(2) - 2.0_wp*odd(1) - 28.0_wp*curve(7))/10.0_wp
-      curve(3) = (odd(1) - 5.0_wp*curve(5) - 7.0_wp*curve(7))/3.0_wp
-      curve(8) = even(2) - 9.0_wp*even(1) + 24.0_wp*even(0)
-      if (abs(curve(8)) <= 48.0_wp*left(0)) curve(8) = 0.0_wp
-      curve(8) = curve(8)/8.0_wp
-      curve(6) = (even(2) - 3.0_wp*even(1) - 32.0_wp*curve(8))/12.0_wp
-      curve(4) = (even(1) - 6.0_wp*curve(6) - 8.0_wp*curve(8))/4.0_wp
-      ! The mean of both jerks and half their change, times h^3.
-      mean = 48.0_wp*curve(3) + 480.0_wp*curve(5) + 1680.0_wp*curve(7)
-      change = 192.0_wp*curve(4) + 960.0_wp*curve(6) + 2688.0_wp*curve(8)
-      jerk = [mean - change, mean + change]/h**3
-
-      ! In accelerations; what is less than `open` counts for nothing.
+      call find_differences(a, middle, b, left(0), odd, even, seventh, eighth)
+      ! The mean of both jerks and half their change, in accelerations; what is less than `open` counts for nothing.
+      mean = (40.0_wp*odd(2) - 64.0_wp*odd(1) + 448.0_wp*seventh)/(h*h)
+      change = (56.0_wp*even(2) - 120.0_wp*even(1) + 512.0_wp*eighth)/(h*h)
+      jerk = [mean - change, mean + change]/h
       open = overlooked*size_of(2) + noise(3)*abs(h)
-      first(2) = a%f(2)
-      half(2) = middle%f(2)
-      last(2) = b%f(2)
-      mean = mean/(h*h)
-      change = change/(h*h)
-      step = last(2) - first(2)
-      simple = abs(half(2) - 0.5_wp*(first(2) + last(2)) + 0.25_wp*change) <= misses_by &
-         *(max(first(2), half(2), last(2)) - min(first(2), half(2), last(2))) + open
+      step = b%f(2) - a%f(2)
+      simple = abs(middle%f(2) - 0.5_wp*(a%f(2) + b%f(2)) + 0.25_wp*change) <= misses_by &
+         *(max(a%f(2), middle%f(2), b%f(2)) - min(a%f(2), middle%f(2), b%f(2))) + open
       most = abs(mean) + abs(change)
       if (abs(change) > abs(mean) .or. most <= open) return
       simple = simple .and. mean*sign(1.0_wp, step) > 0.0_wp .and. most <= steeper_by*abs(step) + open
    end subroutine find_jerk
+
+   !> The coefficients (0:8) of that polynomial, of the time from the middle in halves of the part. Its `jerk` has an
+   !> error of 2E-6 of the ninth derivative, but where rounding explains the difference from rates and accelerations
+   !> alone, with an error of 7E-4 of the seventh.
+   pure function curve_through(a, middle, b, size_of) result(curve)
+      type(sample_t), intent(in) :: a, middle, b
+      real(wp), intent(in) :: size_of(0:2)
+      real(wp) :: curve(0:8)
+      real(wp), dimension(0:2) :: left, odd, even
+      real(wp) :: half
+
+      half = 0.5_wp*(b%t - a%t)
+      left = left_open(a, middle, b, size_of)
+      call find_differences(a, middle, b, left(0), odd, even, curve(7), curve(8))
+      curve(:2) = middle%f*[1.0_wp, half, 0.5_wp*half**2]
+      curve(5) = (odd(2) - 2.0_wp*odd(1) - 28.0_wp*curve(7))/10.0_wp
+      curve(3) = (odd(1) - 5.0_wp*curve(5) - 7.0_wp*curve(7))/3.0_wp
+      curve(6) = (even(2) - 3.0_wp*even(1) - 32.0_wp*curve(8))/12.0_wp
+      curve(4) = (even(1) - 6.0_wp*curve(6) - 8.0_wp*curve(8))/4.0_wp
+   end function curve_through
+
+   !> What is `left` open at most of values, rates and accelerations: by errors, by the size of numbers, and by a
+   !> rounding of the time.
+   pure function left_open(a, middle, b, size_of) result(left)
+      type(sample_t), intent(in) :: a, middle, b
+      real(wp), intent(in) :: size_of(0:2)
+      real(wp) :: left(0:2), largest(0:2)
+
+      largest = max(abs(a%f), abs(middle%f), abs(b%f))
+      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*max(size_of, largest)
+      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))*largest(1:)
+      left = max(a%error, middle%error, b%error, left)
+   end function left_open
+
+   !> Finds by what values, rates and accelerations at the ends differ from those of the square at the middle, halves
+   !> of the part as unit of time: the `odd` (0:2) and `even` (0:2) parts of the differences, and the coefficients of
+   !> degree 7 and 8, which are 0 where rounding explains them by values that are `open`.
+   pure subroutine find_differences(a, middle, b, open, odd, even, seventh, eighth)
+      type(sample_t), intent(in) :: a, middle, b
+      real(wp), intent(in) :: open
+      real(wp), intent(out) :: odd(0:2), even(0:2), seventh, eighth
+      real(wp), dimension(0:2) :: first, half, last
+      real(wp) :: h
+
+      h = 0.5_wp*(b%t - a%t)
+      first = [a%f(0), h*a%f(1), h*h*a%f(2)]
+      half = [middle%f(0), h*middle%f(1), h*h*middle%f(2)]
+      last = [b%f(0), h*b%f(1), h*h*b%f(2)]
+      odd = [0.5_wp*(last(0) - first(0)) - half(1), 0.5_wp*(last(1) + first(1)) - half(1), 0.5_wp*(last(2) - first(2))]
+      even = [0.5_wp*(last(0) + first(0)) - half(0) - 0.5_wp*half(2), 0.5_wp*(last(1) - first(1)) - half(2), &
+         0.5_wp*(last(2) + first(2)) - half(2)]
+
+      seventh = odd(2) - 7.0_wp*odd(1) + 15.0_wp*odd(0)
+      if (abs(seventh) <= 15.0_wp*open) seventh = 0.0_wp
+      seventh = seventh/8.0_wp
+      eighth = even(2) - 9.0_wp*even(1) + 24.0_wp*even(0)
+      if (abs(eighth) <= 48.0_wp*open) eighth = 0.0_wp
+      eighth = eighth/8.0_wp
+   end subroutine find_differences
 
    !> The values of `node` of mechanism `c` may be extremes; its velocities are the `next` along the run.
    subroutine take_node(x, c, node, next)
@@ -293,7 +345,7 @@ contains
       type(node_t), intent(in) :: a, b
       type(node_t), intent(in), optional :: between
       type(node_t) :: middle
-      real(wp) :: shortest, jerk(2), curve(0:8, size(x%tracks(c)%coordinates)), noise(3, size(x%tracks(c)%coordinates))
+      real(wp) :: shortest, jerk(2), noise(3, size(x%tracks(c)%coordinates))
       logical :: simple(size(x%tracks(c)%coordinates)), is_last
       integer :: i
 
@@ -316,14 +368,14 @@ contains
             return
          end if
          do i = 1, size(simple)
-            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, curve(:, i), &
-               jerk, noise(:, i), simple(i))
+            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, jerk, &
+               noise(:, i), simple(i))
          end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
             if (.not. all(simple)) call note_interval(x%open, x%way, a%t, b%t, shortest)
             call take_node(x, c, middle, .false.)
-            call search_columns(x, s, c, a, middle, b, curve, noise(3, :))
+            call search_columns(x, s, c, a, middle, b, noise(3, :))
          else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, middle)
@@ -334,14 +386,13 @@ contains
    end subroutine search_part
 
    !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`.
-   !> Their polynomials have the coefficients `curve` (0:8, coordinates), see `find_jerk`, and rounding may leave the
-   !> `noise` of their third derivatives open.
-   subroutine search_columns(x, s, c, a, middle, b, curve, noise)
+   !> Rounding may leave the `noise` (coordinates) of their third derivatives open.
+   subroutine search_columns(x, s, c, a, middle, b, noise)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, middle, b
-      real(wp), intent(in) :: curve(0:, :), noise(:)
+      real(wp), intent(in) :: noise(:)
       type(sample_t), allocatable :: path(:), known(:)
       type(sample_t) :: found
       type(column_t) :: column
@@ -361,7 +412,8 @@ contains
             path = [a%samples(i), middle%samples(i), b%samples(i)]
             column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
                max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))), smooth, middle=middle%t, &
-               half=0.5_wp*(b%t - a%t), curve=curve(:, i))
+               half=0.5_wp*(b%t - a%t), &
+               curve=curve_through(path(1), path(2), path(3), one%size_of))
             do k = 0, 2
                column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
                column%inside(:, k) = never_better(one, k)

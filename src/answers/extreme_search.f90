@@ -54,7 +54,7 @@ contains
       do c = 1, size(x%tracks)
          if (size(x%tracks(c)%coordinates) == 0) cycle
          call find_next(x, s, c, s%now%motions(c)%t, .false.)
-         call search_instant(x, s, c, k)
+         call search_instant(x, s, c, k, is_searched(x, s, c))
       end do
    end subroutine note_instant
 
@@ -73,11 +73,13 @@ contains
       end associate
    end function is_searched
 
-   !> Searches up to instant number `k` of mechanism `c`, whose node is found, and goes on from there.
-   subroutine search_instant(x, s, c, k)
+   !> Searches up to instant number `k` of mechanism `c`, whose node is found, and goes on from there. `searches`: see
+   !> `is_searched`.
+   subroutine search_instant(x, s, c, k, searches)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, k
+      logical, intent(in) :: searches
       type(node_t) :: now
       real(wp) :: t
       logical :: known
@@ -87,7 +89,7 @@ contains
          track%halvings = 0
          if (k == 0) then
             track%start = q
-         else if (is_searched(x, s, c)) then
+         else if (searches) then
             now = track%nodes(track%filled + 1)
             known = now%is_known
             call search_step()

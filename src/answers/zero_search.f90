@@ -139,7 +139,11 @@ contains
          end if
          associate (f => at%f(order) - level)
             ends(merge(2, 1, differ_in_sign(f, g(1)))) = t
-            slope = merge(on_curve(c, 3, t), at%f(min(order + 1, 2)), order == 2)
+            if (order == 2) then
+               slope = on_curve(c, 3, t)
+            else
+               slope = at%f(order + 1)
+            end if
             step = 0.0_wp
             if (abs(slope) > 0.0_wp) step = -f/slope
             if (order > 0 .and. abs(step) <= short_part*abs(b%t - a%t)) then
@@ -176,7 +180,8 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
-      real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run, found(5)
+      real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run
+      real(wp) :: place, bend, best_step, best_noise, width
       integer :: i, k
 
       associate (length => b%t - a%t)
@@ -196,7 +201,12 @@ contains
 
          run = max(abs(s%now%t0), abs(s%now%t1))
          step = sign(c%step, length)
-         found = 0.0_wp
+         ! The extreme of the best stencil so far: none.
+         place = first
+         bend = 0.0_wp
+         best_step = 1.0_wp
+         best_noise = 0.0_wp
+         width = 0.0_wp
          do i = 1, max_stencils
             ! At five times that are all in the range.
             if (4.0_wp*abs(step) > abs(c%range(2) - c%range(1))) exit
@@ -221,23 +231,27 @@ contains
             t = t + u*step
             left = truncated*abs(step)*abs(d(4)/d(2))**1.5_wp
             if (abs(d(4)) > noise .and. left > max(negligible*run, rounding_part*noise*abs(step/d(2)))) then
-               if (found(2) > 0.0_wp) exit
+               if (bend > 0.0_wp) exit
                step = shorter*step
             else if (abs(u) <= 2.0_wp) then
-               found = [t, abs(d(2))/step**2, abs(step), noise/abs(step), left]
-               if (rounding_part*found(4) <= well_known*run*found(2)) exit
+               place = t
+               bend = abs(d(2))/step**2
+               best_step = abs(step)
+               best_noise = noise/abs(step)
+               width = left
+               if (rounding_part*best_noise <= well_known*run*bend) exit
                step = step/shorter
             end if
          end do
          ! If no stencil serves, all of the time from `a` to `b` is open. If its extreme is at an end, that of the
          ! polynomial counts, and the time between both is open; within a step they are one, as good as at the end.
-         if (.not. found(2) > 0.0_wp) found = [first, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]
-         if (min(abs(found(1) - a%t), abs(b%t - found(1))) <= beside_end*abs(length)) then
-            left = abs(found(1) - first)
-            if (left <= found(3)) return
-            found([1, 5]) = [first, max(found(5), left)]
+         if (min(abs(place - a%t), abs(b%t - place)) <= beside_end*abs(length)) then
+            left = abs(place - first)
+            if (left <= best_step) return
+            place = first
+            width = max(width, left)
          end if
-         call settle(s, c, 2, [a%t, b%t], found(1), found(2), found(3), found(4), found(5), turn)
+         call settle(s, c, 2, [a%t, b%t], place, bend, best_step, best_noise, width, turn)
       end associate
    end subroutine find_turn
 

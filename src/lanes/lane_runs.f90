@@ -64,7 +64,7 @@ contains
       type(judgement_t) :: j
       real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
-      logical :: is_laned
+      logical :: is_laned, searches
 
       do i = 1, size(runs)
          call take_over(runs(i), l, i)
@@ -113,8 +113,9 @@ contains
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
                if (r%is_laned .and. r%asked%extremes_asked) then
-                  if (is_searched(x, r%s, 1)) call give_back(r, l, i)
-                  call search_instant(x, r%s, 1, r%at)
+                  searches = is_searched(x, r%s, 1)
+                  if (searches) call give_back(r, l, i)
+                  call search_instant(x, r%s, 1, r%at, searches)
                end if
             end associate
             call take_over(runs(i), l, i)
