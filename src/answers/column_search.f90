@@ -190,26 +190,13 @@ contains
             end if
             call take_node(x, c, nodes(3), .true.)
          end if
-         call exchange(nodes(1), nodes(3))
+         ! Into the room that there is: this is done at every instant.
+         nodes(1)%t = nodes(3)%t
+         nodes(1)%is_known = nodes(3)%is_known
+         nodes(1)%samples(:) = nodes(3)%samples
          track%filled = 1
       end associate
    end subroutine add_node
-
-   !> Exchanges the nodes `a` and `b`; their room stays allocated.
-   pure subroutine exchange(a, b)
-      type(node_t), intent(inout) :: a, b
-      type(node_t) :: kept
-
-      kept%t = a%t
-      kept%is_known = a%is_known
-      call move_alloc(a%samples, kept%samples)
-      a%t = b%t
-      a%is_known = b%is_known
-      call move_alloc(b%samples, a%samples)
-      b%t = kept%t
-      b%is_known = kept%is_known
-      call move_alloc(kept%samples, b%samples)
-   end subroutine exchange
 
    !> Searches between the last node of mechanism `c` and the one that waits, if there is one: the last one ends a
    !> piece.

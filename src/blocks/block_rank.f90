@@ -9,8 +9,8 @@ module block_rank
    use block_equations, only: assemble_dense
    implicit none
    private
-   public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, residual_of, &
-      curvature_of, gauss_newton_step
+   public :: values_t, decomposed, redundant_rows, surplus_drives, moving_unknowns, jacobian_of, relative_sign, &
+      residual_of, curvature_of, gauss_newton_step
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -22,7 +22,7 @@ module block_rank
    !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decompositions take the cube of this number of operations.
-   integer, parameter, public :: max_rows = 1500
+   integer, parameter :: max_rows = 1500
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: values_t
@@ -74,6 +74,31 @@ contains
          end do
       end associate
    end function redundant_rows
+
+   !> Tells of which of so many `drives` one may be too many, where the equations of all blocks are one block, redundant
+   !> and inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations
+   !> y J = 0 between the rows of the Jacobian J.
+   function surplus_drives(b, drives, s) result(are)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: drives
+      type(state_t), intent(in) :: s
+      !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
+      real(wp), parameter :: least_part = 1.0e-3_wp
+      logical :: are(drives)
+      type(state_t) :: state
+      type(values_t) :: v
+      integer :: k
+
+      are = .false.
+      if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
+      state = s
+      v = decomposed(b, 1, state)
+      do k = 1, v%rows
+         associate (row => b%rows(b%list(1)%first_row + k - 1))
+            if (row%pair == 0 .and. row%drive > 0) are(row%drive) = norm2(v%left(k, v%rank + 1:)) > least_part
+         end associate
+      end do
+   end function surplus_drives
 
    !> (unknowns of block `i`) Those that can move although everything the block builds on stands still. The block is
    !> moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a dead

@@ -84,11 +84,11 @@ contains
       s%place%stays = s%place%is_singular
       call find_changed(0, many, found%solved)
       s%place%stays = .false.
-      call find_changes(many, s%place%is_singular, found%changes, is_small)
-      if (.not. is_small) call find_changes(few, .true., found%changes, is_small)
+      call find_largest_changes(many, s%place%is_singular, is_small)
+      if (.not. is_small) call find_largest_changes(few, .true., is_small)
       found%own = caution*min(found%changes, nothing_known/caution)
       if (told .and. .not. s%place%is_singular) then
-         call find_changes(1.0_wp, .true., found%own, is_small)
+         call find_own_changes()
          ! As far as they exceed the largest change by numbers alone, the calculation has made them.
          associate (own => found%own, by_numbers => found%changes)
             own = max(own_caution*own, &
@@ -121,41 +121,58 @@ contains
          end associate
       end subroutine find_changed
 
-      !> The largest `changes` (3, 0:2, requests) of the rows by a rounding, from those by so many `roundings`; by one
-      !> rounding, in further directions, the root of their mean square. `is_small`: they are so small that they are of
-      !> first order, if not all of them are asked for `anyway`.
-      subroutine find_changes(roundings, anyway, changes, is_small)
+      !> Puts the opposite change in the place of each of the `rows` that has lost numbers by `find_changed`: it is as
+      !> likely, and as large, and on a dead point one of the two has a position.
+      subroutine take_opposite(k, roundings, rows)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: roundings
+         type(row_t), intent(inout) :: rows(:)
+         type(row_t) :: other(size(rows))
+
+         if (all(rows%known >= found%solved%known)) return
+         call find_changed(k, -roundings, other)
+         where (rows%known < found%solved%known) rows = other
+      end subroutine take_opposite
+
+      !> Finds the largest changes of the rows by a rounding, from those by so many `roundings`. `is_small`: they are so
+      !> small that they are of first order, if not all of them are asked for `anyway`.
+      subroutine find_largest_changes(roundings, anyway, is_small)
          real(wp), intent(in) :: roundings
          logical, intent(in) :: anyway
-         real(wp), intent(out) :: changes(:, 0:, :)
          logical, intent(out) :: is_small
-         type(row_t), dimension(size(found%solved)) :: rows, other
+         type(row_t) :: rows(size(found%solved))
          real(wp) :: part
-         integer :: first, last, k, i
+         integer :: k, i
 
-         first = merge(1, directions + 1, roundings > 1.0_wp)
-         last = merge(directions, directions + own_directions, roundings > 1.0_wp)
          ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
          part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
-         changes = 0.0_wp
-         do k = first, last
+         found%changes = 0.0_wp
+         do k = 1, directions
             call find_changed(k, roundings, rows)
             is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
-            if (any(rows%known < found%solved%known)) then
-               ! The opposite change is as likely, and as large; on a dead point one of the two has a position.
-               call find_changed(k, -roundings, other)
-               where (rows%known < found%solved%known) rows = other
-            end if
+            call take_opposite(k, roundings, rows)
             do i = 1, size(rows)
-               associate (largest => changes(:, :, i), one => change(rows(i), found%solved(i), part))
-                  if (roundings > 1.0_wp) largest = max(largest, one)
-                  if (.not. roundings > 1.0_wp) largest = min(nothing_known, &
-                     hypot(largest, one/sqrt(real(own_directions, wp))))
-               end associate
+               found%changes(:, :, i) = max(found%changes(:, :, i), change(rows(i), found%solved(i), part))
             end do
          end do
-      end subroutine find_changes
+      end subroutine find_largest_changes
+
+      !> Finds the root of the mean square of the changes of the rows by one rounding, in further directions.
+      subroutine find_own_changes()
+         type(row_t) :: rows(size(found%solved))
+         integer :: k, i
+
+         found%own = 0.0_wp
+         do k = directions + 1, directions + own_directions
+            call find_changed(k, 1.0_wp, rows)
+            call take_opposite(k, 1.0_wp, rows)
+            do i = 1, size(rows)
+               found%own(:, :, i) = min(nothing_known, hypot(found%own(:, :, i), &
+                  change(rows(i), found%solved(i), 1.0_wp)/sqrt(real(own_directions, wp))))
+            end do
+         end do
+      end subroutine find_own_changes
 
       !> Adds to both changes those by a rounding of the sums that the motion and its rows are.
       subroutine add_sums()

@@ -24,6 +24,7 @@ module assemblies
    integer, parameter :: max_assemblies = 1000
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
+
    !> An assembly.
    type :: assembly_t
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad

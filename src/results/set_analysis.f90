@@ -12,8 +12,7 @@ module set_analysis
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, motion_t, new_motion, &
       mark_inconsistent
-   use block_rank, only: values_t, decomposed, max_rows
-   use block_state, only: state_t
+   use block_rank, only: surplus_drives
    use independent, only: request_of
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
@@ -129,34 +128,19 @@ contains
    end subroutine advance_set
 
    !> Adds to the motion of independent mechanism number `c`, the first whose redundant equations are inconsistent, the
-   !> drives of which one may be too many; nothing if there are none. Without such a drive one redundant equation fewer
-   !> is left: it has a part in the equations y J = 0 between the rows of the Jacobian J.
+   !> drives of which one may be too many; nothing if there are none.
    subroutine tell_surplus_drives(s, c)
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
-      real(wp), parameter :: least_part = 1.0e-3_wp
-      logical :: is_surplus(size(s%now%parts(c)%drives))
-      type(state_t) :: state
-      type(values_t) :: v
-      integer :: k
+      logical :: are(size(s%now%parts(c)%drives))
 
       if (s%told_drives(c)) return
       s%told_drives(c) = .true.
-      associate (b => s%list(c)%engine%blocks, q => s%now%motions(c))
-         if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
-         state = s%list(c)%engine%state
-         v = decomposed(b, 1, state)
-         is_surplus = .false.
-         do k = 1, v%rows
-            associate (row => b%rows(b%list(1)%first_row + k - 1))
-               if (row%pair == 0 .and. row%drive > 0) &
-                  is_surplus(row%drive) = norm2(v%left(k, v%rank + 1:)) > least_part
-            end associate
-         end do
-         if (.not. any(is_surplus)) return
+      are = surplus_drives(s%list(c)%engine%blocks, size(are), s%list(c)%engine%state)
+      if (.not. any(are)) return
+      associate (q => s%now%motions(c))
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
-         q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, is_surplus)]
+         q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, are)]
       end associate
    end subroutine tell_surplus_drives
 
