@@ -21,9 +21,8 @@ endif
 LIBS   ?= -lklu -llapack -lblas
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
-# gfortran's "uninitialized" is wrong on every array allocated by assignment; functions that need not be asked, where another
-# condition decides, are nothing to warn of.
-COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -Wno-function-elimination \
+# gfortran's "uninitialized" is wrong on every array allocated by assignment.
+COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized \
    -ffp-contract=off
 # real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
 # Two parts at the link are enough for two processors, and have less to exchange than the many of the default.

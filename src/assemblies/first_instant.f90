@@ -123,8 +123,8 @@ contains
       end if
    end subroutine solve_first
 
-   !> Whether no other assembly can be about as near to `guess` as the one that `e` has: it is at the guess itself, or in
-   !> the first block that differs an angle is off by the separation of its positions, at least.
+   !> Whether no other assembly can be about as near to `guess` as the one that `e` has: that is at the guess itself, or
+   !> in the first block that differs an angle is off by the separation of its positions, at least.
    logical function is_alone(e, places, guess) result(is)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`

@@ -26,9 +26,9 @@ module homotopy
    !> The correction of a prediction that is aimed at, and the largest, in parts of z: paths that are further apart are
    !> not mistaken for one another.
    real(dp), parameter :: aim = 1.0e-5_dp, largest = 1.0e-3_dp
-   !> A correction below this part of z is the last one: Newton's method leaves its square. Near a singular end rounding
-   !> keeps corrections above a much smaller part, and the path would fail.
-   real(dp), parameter :: converged = 1.0e-8_dp
+   !> Corrections below this part of z are rounding. On the way to an end one below its root is the last, since Newton's
+   !> method leaves the square: near a singular end rounding keeps corrections above a smaller part.
+   real(dp), parameter :: converged = 1.0e-11_dp
    integer, parameter :: max_corrections = 4
    real(dp), parameter :: first_step = 0.05_dp, least_step = 1.0e-5_dp
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps: a path that does not reach
@@ -326,7 +326,7 @@ contains
          if (k == 1) correction = now
          if (.not. now <= 0.5_dp*before) return
          z = z - r
-         is_done = now <= converged
+         is_done = now <= merge(sqrt(converged), converged, t > 0.0_dp)
          if (is_done) return
          before = now
       end do

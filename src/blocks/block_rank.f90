@@ -9,8 +9,8 @@ module block_rank
    use block_equations, only: assemble_dense
    implicit none
    private
-   public :: values_t, decomposed, redundant_rows, surplus_drives, moving_unknowns, jacobian_of, relative_sign, &
-      residual_of, curvature_of, gauss_newton_step
+   public :: values_t, decomposed, redundant_rows, surplus_drives, moving_unknowns, try_to_move, jacobian_of, &
+      relative_sign, residual_of, curvature_of, gauss_newton_step
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -39,10 +39,10 @@ contains
    !> The rows of block `i`, counted in b%rows, that could be spared at the position of `s`: of those that depend on one
    !> another the last ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left
    !> null vectors, its rows taken in that order.
-   function redundant_rows(b, i, s) result(list)
+   pure function redundant_rows(b, i, s) result(list)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       integer, allocatable :: list(:)
       type(values_t) :: v
       integer, allocatable :: order(:)
@@ -78,21 +78,19 @@ contains
    !> Tells of which of so many `drives` one may be too many, where the equations of all blocks are one block, redundant
    !> and inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations
    !> y J = 0 between the rows of the Jacobian J.
-   function surplus_drives(b, drives, s) result(are)
+   pure function surplus_drives(b, drives, s) result(are)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: drives
       type(state_t), intent(in) :: s
       !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
       real(wp), parameter :: least_part = 1.0e-3_wp
       logical :: are(drives)
-      type(state_t) :: state
       type(values_t) :: v
       integer :: k
 
       are = .false.
       if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
-      state = s
-      v = decomposed(b, 1, state)
+      v = decomposed(b, 1, s)
       do k = 1, v%rows
          associate (row => b%rows(b%list(1)%first_row + k - 1))
             if (row%pair == 0 .and. row%drive > 0) are(row%drive) = norm2(v%left(k, v%rank + 1:)) > least_part
@@ -100,57 +98,68 @@ contains
       end do
    end function surplus_drives
 
-   !> (unknowns of block `i`) Those that can move although everything the block builds on stands still. The block is
-   !> moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a dead
-   !> point they lead back to where it was, and none can move. `moved`: the state they lead to.
-   function moving_unknowns(b, i, s, moved) result(moves)
+   !> (unknowns of block `i`) Those that can move although everything the block builds on stands still, by
+   !> `try_to_move`.
+   pure function moving_unknowns(b, i, s) result(moves)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
-      type(state_t), intent(inout), optional :: moved
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(state_t) :: trial_state
+
+      trial_state = s
+      call try_to_move(b, i, trial_state, moves)
+   end function moving_unknowns
+
+   !> Finds which unknowns of block `i` can move (unknowns) although everything the block builds on stands still. The
+   !> block is moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a
+   !> dead point they lead back to where it was, and none can move. `s` becomes the state they lead to.
+   pure subroutine try_to_move(b, i, s, moves)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      logical, intent(out) :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(values_t) :: v
       real(wp) :: start(size(moves)), direction(size(moves)), residual
       integer :: k
 
       moves = .false.
       if (b%list(i)%shape%rows > max_rows .or. size(moves) == 0) return
-      trial_state = s
-      v = decomposed(b, i, trial_state)
+      v = decomposed(b, i, s)
       if (v%rank == v%n) return
       start = values_of(b, i, s)
       direction = v%right(v%n, :)
-      call set_values(b, i, start + trial*direction, trial_state)
+      call set_values(b, i, start + trial*direction, s)
       do k = 1, 20
-         call gauss_newton_step(b, i, trial_state, residual)
+         call gauss_newton_step(b, i, s, residual)
          if (residual <= closed) exit
       end do
-      direction = values_of(b, i, trial_state) - start
+      direction = values_of(b, i, s) - start
       if (residual <= near .and. norm2(direction) > 0.5_wp*trial) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
-      if (present(moved)) moved = trial_state
-   end function moving_unknowns
+   end subroutine try_to_move
 
    !> (rows*n) The Jacobian of block `i`, column by column.
-   function jacobian_of(b, i, s) result(a)
+   pure function jacobian_of(b, i, s) result(a)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       real(wp) :: a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows)
+      type(state_t) :: there
 
-      call assemble_dense(b, i, s, a, r)
+      there = s
+      call assemble_dense(b, i, there, a, r)
    end function jacobian_of
 
    !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
    !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. It is -1 also where
    !> columns or ranges of the two have turned so far that this alone could have changed the sign. With both Jacobians
    !> factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the ranges.
-   integer function relative_sign(b, i, before, s) result(side)
+   pure integer function relative_sign(b, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: before(:)
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new, both
       real(wp) :: reflections(size(old, 2)), work(64*size(old, 2) + 1), cosines
       integer :: pivots(size(old, 2)), info, k
@@ -175,25 +184,27 @@ contains
       if (.not. cosines >= min_cosine) side = -1
    end function relative_sign
 
-   !> (rows) What the equations of block `i` leave with the values `x` (n), which `s` has from then on.
-   function residual_of(b, i, x, s) result(r)
+   !> (rows) The residual of the equations of block `i` with the values `x` (n) in the place of those of `s`.
+   pure function residual_of(b, i, x, s) result(r)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: x(:)
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       real(wp) :: r(b%list(i)%shape%rows), a(b%list(i)%shape%rows*b%list(i)%shape%n)
+      type(state_t) :: there
 
-      call set_values(b, i, x, s)
-      call assemble_dense(b, i, s, a, r)
+      there = s
+      call set_values(b, i, x, there)
+      call assemble_dense(b, i, there, a, r)
    end function residual_of
 
-   !> w . r''[k, k] of the equations r of block `i` at the values `x` (n), which `s` has from then on, by a second
-   !> difference; w = `left` (rows), k = `right` (n).
-   real(wp) function curvature_of(b, i, x, left, right, s) result(curvature)
+   !> w . r''[k, k] of the equations r of block `i` at the values `x` (n), by a second difference; w = `left` (rows),
+   !> k = `right` (n).
+   pure real(wp) function curvature_of(b, i, x, left, right, s) result(curvature)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: x(:), left(:), right(:)
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       real(wp) :: ahead, behind, here
 
       ahead = dot_product(left, residual_of(b, i, x + difference*right, s))
@@ -204,7 +215,7 @@ contains
 
    !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
    !> Jacobian leaves open; `residual`: the largest before it.
-   subroutine gauss_newton_step(b, i, s, residual)
+   pure subroutine gauss_newton_step(b, i, s, residual)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
@@ -223,11 +234,12 @@ contains
    end subroutine gauss_newton_step
 
    !> The singular values of the Jacobian of block `i`.
-   function decomposed(b, i, s) result(v)
+   pure function decomposed(b, i, s) result(v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(in) :: s
       type(values_t) :: v
+      type(state_t) :: there
       real(wp), allocatable :: a(:)
       real(wp) :: work(8*(b%list(i)%shape%rows + b%list(i)%shape%n) + 64)
       integer :: k, info
@@ -242,7 +254,8 @@ contains
          end do
          return
       end if
-      call assemble_dense(b, i, s, a, v%r)
+      there = s
+      call assemble_dense(b, i, there, a, v%r)
       allocate (v%s(min(v%rows, v%n)), v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       ! A block of one unknown has nothing but its own body vectors to be compared with.

@@ -16,9 +16,9 @@ module singular_place
    use motion, only: singular_unclear, singular_change, singular_dead
    use blocks, only: blocks_t, blocks_below
    use block_state, only: state_t, set_values, values_of
-   use block_equations, only: find_known_parts, right_hand_side
+   use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    use block_rank, only: values_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step, &
-      moving_unknowns
+      try_to_move
    implicit none
    private
    public :: settle, driving_speed, block_singularity
@@ -53,6 +53,7 @@ contains
       type(state_t), intent(inout) :: s
       type(values_t) :: v
       real(wp) :: x(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed
+      real(wp) :: jacobian(size(r)*size(x))
 
       if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
       x = values_of(b, i, s)
@@ -62,6 +63,7 @@ contains
       ! point, which such an angle leaves as it is to the first order, not at all.
       speed = driving_speed(b, i, s)
       if (speed > 0.0_wp) then
+         call assemble_dense(b, i, s, jacobian, r)
          call right_hand_side(b, i, 1, s, r)
          level = max(level, maxval(abs(s%u%value))*abs(dot_product(v%left(:, v%n), r))/speed)
       end if
@@ -118,7 +120,7 @@ contains
       type(state_t), intent(in) :: s
       type(state_t) :: aside
       real(wp) :: speed
-      logical :: agrees, crosses, agrees_aside
+      logical :: agrees, crosses, agrees_aside, moves(b%list(i)%last - b%list(i)%first + 1)
 
       found = singular_unclear
       if (b%list(i)%shape%rows > max_rows) return
@@ -127,7 +129,9 @@ contains
       aside = s
       call judge(b, i, speed, aside, agrees, crosses)
       if (agrees .and. .not. crosses) return
-      if (any(moving_unknowns(b, i, s, aside))) then
+      aside = s
+      call try_to_move(b, i, aside, moves)
+      if (any(moves)) then
          call judge(b, i, speed, aside, agrees_aside, crosses)
          if (agrees_aside .eqv. agrees) return
       end if
@@ -145,10 +149,12 @@ contains
       logical, intent(out) :: agrees, crosses
       type(values_t) :: v
       real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), c(0:2), unit
+      real(wp) :: jacobian(size(r)*size(p))
       integer :: j
 
       call find_known_parts(b, i, s)
       v = decomposed(b, i, s)
+      call assemble_dense(b, i, s, jacobian, r)
       call right_hand_side(b, i, 1, s, r)
       ! A position that rounding makes singular may have its least singular value above the zero level.
       agrees = norm2(matmul(r, v%left(:, min(v%rank, v%n - 1) + 1:))) <= agreement*speed

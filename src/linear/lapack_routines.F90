@@ -20,7 +20,7 @@ module lapack_routines
       end subroutine zgesv
 #ifdef LETTER
       !> LU factorization with partial pivoting.
-      subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
+      pure subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
          import :: wp
          integer, intent(in) :: m, n, lda
          real(wp), intent(inout) :: a(lda, *)
@@ -57,7 +57,7 @@ module lapack_routines
          integer, intent(out) :: info
       end subroutine NAMED(ptsv)
       !> QR factorization.
-      subroutine NAMED(geqrf)(m, n, a, lda, tau, work, lwork, info)
+      pure subroutine NAMED(geqrf)(m, n, a, lda, tau, work, lwork, info)
          import :: wp
          integer, intent(in) :: m, n, lda, lwork
          real(wp), intent(inout) :: a(lda, *), work(*)
@@ -65,7 +65,7 @@ module lapack_routines
          integer, intent(out) :: info
       end subroutine NAMED(geqrf)
       !> Multiplies by the orthogonal factor of geqrf.
-      subroutine NAMED(ormqr)(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
+      pure subroutine NAMED(ormqr)(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
          import :: wp
          character(1), intent(in) :: side, trans
          integer, intent(in) :: m, n, k, lda, ldc, lwork
@@ -83,7 +83,7 @@ module lapack_routines
          integer, intent(out) :: info
       end subroutine NAMED(trtrs)
       !> Singular value decomposition.
-      subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+      pure subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
          import :: wp
          character(1), intent(in) :: jobu, jobvt
          integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
