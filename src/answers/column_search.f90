@@ -217,9 +217,9 @@ contains
    end subroutine search_waiting
 
    !> Finds the third derivatives `jerk` at both ends of a part with the samples `a`, `middle` and `b`: those of the
-   !> polynomial of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic values. `noise`: what
-   !> rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with the accelerations and
-   !> jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
+   !> polynomial of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic values.
+   !> `noise`: what rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with the
+   !> accelerations and jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
    pure subroutine find_jerk(a, middle, b, size_of, jerk, noise, simple)
       type(sample_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: size_of(0:2)
