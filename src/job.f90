@@ -41,6 +41,7 @@ module job
    use numerals, only: whole
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
+   use rows, only: finished_row_t, find_rows
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, begin_analysis, advance_set, &
       sample_set, prove_set, set_closing_diagnostics
    use analysis, only: redundancy_error
@@ -429,11 +430,13 @@ contains
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(listing_state_t) :: state
+      type(finished_row_t), allocatable :: rows(:)
       integer, allocatable :: every(:)       ! rows are printed at each so many instants
-      logical :: lists, due
+      logical :: lists, due, talks
       integer :: k, n, last, next            ! instants: the last, and the next with rows
 
       call begin_analysis(a, findings)
+      allocate (rows(size(a%now%rows)))
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
       every = [(a%now%parts(n)%requests%every, n=1, a%now%count)]
@@ -453,10 +456,12 @@ contains
 
          ! Only what is shown needs samples.
          if (o%asked(out_table) .or. (due .and. (lists .or. o%asked(out_csv)))) call sample_set(a, o%options%errors)
-         if (lists .and. (due .or. has_words(a%now))) &
-            call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
-         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
-         if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now)
+         talks = lists .and. (due .or. has_words(a%now))
+         if (talks .or. o%asked(out_table) .or. (due .and. o%asked(out_csv))) &
+            call find_rows(a%now, k, o%asked(out_table), rows, a%assemblies)
+         if (talks) call listing_instant(o%files(out_listing), o%layout, a%now, rows, k, state)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, rows, k, o%varies)
+         if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now, rows)
          if (o%asked(out_log)) then
             do n = 1, size(a%list)
                call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch)
@@ -464,7 +469,7 @@ contains
          end if
          call write_in_turn(o)
 
-         call take_instant(asked, a, k, due)
+         call take_instant(asked, a, rows, k, due)
          if (.not. is_over(o)) cycle
          if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)

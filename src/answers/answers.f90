@@ -4,6 +4,7 @@ module answers
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t
+   use rows, only: finished_row_t
    use text_output, only: output_t
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: note_instant
@@ -51,16 +52,17 @@ contains
 
    !> Takes instant number `k`, to which `s` has advanced, and what is asked for between it and those before. `due`: it
    !> is printed.
-   subroutine take_instant(a, s, k, due)
+   subroutine take_instant(a, s, rows, k, due)
       type(answers_t), intent(inout) :: a
       type(set_analysis_t), intent(inout) :: s
+      type(finished_row_t), intent(in) :: rows(:)
       integer, intent(in) :: k
       logical, intent(in) :: due
 
       if (s%now%proves) call note_proof(a%proofs, s, k, due)
       if (s%now%ranges .and. k == 0) call find_ranges(s, a%ranges)
       if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
-      if (a%shares_asked) call note_tolerances(a%shares, s%now, k)
+      if (a%shares_asked .and. due) call note_tolerances(a%shares, s%now, rows)
       if (a%extremes_asked) call note_instant(a%extremes, s, k)
    end subroutine take_instant
 

@@ -3,21 +3,22 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic, term_harmonic
+   use mechanism, only: mechanism_t
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
-   use drives, only: joints_of
-   use points, only: row_t, is_fixed, coordinates_of
+   use drives, only: joints_of, largest_frequency
+   use points, only: row_t, is_fixed
+   use columns, only: columns_of_rows, forms, form_of, column_at, of_angle
    use digits_in_doubt, only: safe_growth
-   use independent, only: set_t, request_of
+   use independent, only: set_t
+   use table, only: format_t
    use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
    public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
       rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
-      is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike, &
-      never_better
+      varies, strokes_t, strokes_of, ratio_format, closes_to, badly_known, alike, never_better
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
    !> errors below a table's last digit reach it.
@@ -34,8 +35,8 @@ module extremes
    real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
    !> So many parts at least has a turn of a drive, and a period of a harmonic law.
    integer, parameter :: parts_of_turn = 12
-   !> Digits after the point of a ratio of times.
-   integer, parameter :: ratio_decimals = 6
+   !> Of a ratio of times.
+   type(format_t), parameter :: ratio_format = format_t(decimals=6)
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
    character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
@@ -50,6 +51,7 @@ module extremes
    !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
    type :: coordinate_t
       integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
+      integer :: form = 0                              !< of the row
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
@@ -154,19 +156,20 @@ contains
             allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(asked(q))%number)%kind), &
+            allocate (track%coordinates(sum([(forms(form_of(own, own%requests(s%rows(asked(q))%number)))%coordinates, &
                q=1, size(asked))])))
             n = 0
             do q = 1, size(asked)
                associate (request => own%requests(s%rows(asked(q))%number))
-                  do i = 1, coordinates_of(request%kind)
+                  do i = 1, forms(form_of(own, request))%coordinates
                      n = n + 1
                      associate (one => track%coordinates(n))
                         one%request = asked(q)
                         one%part = c
                         one%row = q
                         one%column = i
-                        one%is_angle = is_angle(own, request, i)
+                        one%form = form_of(own, request)
+                        one%is_angle = columns_of_rows(column_at(one%form, i, 0))%dimension == of_angle
                         one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
                         allocate (one%places(0), one%reversals(0))
@@ -179,35 +182,13 @@ contains
             fastest = 0.0_wp
             do i = 1, merge(size(own%drives), 0, n > 0)
                track%joints = [track%joints, joints_of(own%drives(i))]
-               if (allocated(own%drives(i)%terms)) fastest = max(fastest, maxval(abs(own%drives(i)%terms%r(2)), &
-                  mask=own%drives(i)%terms%kind == term_harmonic))
+               fastest = max(fastest, largest_frequency(own%drives(i)))
             end do
             track%joints = track%joints(order_along(track%joints, x%way))
             track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
          end associate
       end do
    end subroutine new_extremes
-
-   !> Column `c` of `request` holds angles.
-   pure logical function is_angle(m, request, c)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      integer, intent(in) :: c
-
-      is_angle = request%kind == request_link .and. c == 3
-      if (request%kind == request_pair) is_angle = m%pairs(request%subject)%kind /= pair_prismatic
-   end function is_angle
-
-   !> The column of the tables that has coordinate `c` of the row of `request`: of a pair one of two, by whether it
-   !> `is_angle`.
-   pure integer function column_of(request, is_angle, c) result(column)
-      type(request_t), intent(in) :: request
-      logical, intent(in) :: is_angle
-      integer, intent(in) :: c
-
-      column = c
-      if (request%kind == request_pair) column = merge(3, 1, is_angle)
-   end function column_of
 
    !> Derivative number `k` of `sample` may be an extreme of the coordinate `c`; a place is kept, if its dwells are
    !> asked for. `at_zero`: the sample is at a zero of the next derivative. `step` of TIME.

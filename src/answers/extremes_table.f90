@@ -4,16 +4,18 @@
 !> the dwells. What does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: request_t, request_pair
+   use mechanism, only: request_t
+   use columns, only: columns_of_rows, column_at, cell_none, cell_unbounded, of_length, of_angle
+   use table, only: number_text
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
-   use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length, angle_unit
-   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, known_text
+   use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
+   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
    use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      is_cyclic, is_covered, ratio_decimals, closes_to, column_of, varies
+      is_cyclic, is_covered, ratio_format, closes_to, varies
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -35,7 +37,6 @@ contains
       type(extremes_t), intent(in) :: x
       type(dwell_t), intent(in) :: dwells(:)
       type(listing_state_t) :: table
-      type(digits_t) :: d
       type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
       integer :: q, c, k, part, drive
@@ -51,7 +52,6 @@ contains
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
-         d = l%own(part)
          call put_heads(o, l, part, request%kind, table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
@@ -62,8 +62,8 @@ contains
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
-               if (w%request == x%asked(q)) call put_at(phrase(say_dwell, s%polish)//'  '//column_name(own(w%column)) &
-                  //'  '//extreme_words(w%which)//' +- '//number_text(w%distance, 0.0_wp, own(w%column)%is_angle, 0), &
+               if (w%request == x%asked(q)) call put_at(phrase(say_dwell, s%polish)//'  '//name_of(own(w%column)) &
+                  //'  '//extreme_words(w%which)//' +- '//text_of(own(w%column), 0, w%distance, 0.0_wp), &
                   [w%from, w%to], w%error)
             end associate
          end do
@@ -82,7 +82,8 @@ contains
             else
                line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
                   //phrase(say_lengths_apart, s%polish)//', ' &
-                  //rounded(closure(2)/l%angle, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' '//trim(angle_unit(s))
+                  //rounded(closure(2)/l%format(of_angle, 0)%unit, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
+                  //trim(angle_unit(s))
             end if
             call put(o, line)
          end associate
@@ -113,11 +114,11 @@ contains
                   if (.not. varies(own(c), k)) cycle
                   associate (e => own(c)%found(which, k))
                      if (.not. e%exists) then
-                        value(c, k) = trim(adjustl(l%none))
+                        value(c, k) = l%words(cell_none)
                         cycle
                      end if
-                     value(c, k) = phrase(say_unbounded, s%polish)
-                     if (e%has_bound) value(c, k) = number_text(e%value, e%error, own(c)%is_angle, k)
+                     value(c, k) = l%words(cell_unbounded)
+                     if (e%has_bound) value(c, k) = text_of(own(c), k, e%value, e%error)
                      time(c, k) = time_text(l, e%t, e%t_error)
                      if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
                   end associate
@@ -134,7 +135,7 @@ contains
          do c = 1, size(own)
             strokes(c) = strokes_of(x, own(c))
             associate (length => strokes(c)%length)
-               if (length%exists) value(c, 0) = number_text(length%value, length%error, own(c)%is_angle, 0)
+               if (length%exists) value(c, 0) = text_of(own(c), 0, length%value, length%error)
             end associate
          end do
          if (any(value /= '')) call put_fields(phrase(say_stroke, s%polish), value)
@@ -143,18 +144,18 @@ contains
             if (strokes(c)%ratio > 0.0_wp) then
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
                error = sum(own(c)%found(:, 0)%t_error)
-               line = '  '//column_name(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
+               line = '  '//name_of(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
-                  //known_text(strokes(c)%ratio, ratio_decimals, 0, strokes(c)%error)
+                  //number_text(ratio_format, strokes(c)%ratio, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
             end if
             if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, part)) goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
-                  call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(own(c))//'  ' &
-                     //number_text(dead(i)%value, 0.0_wp, own(c)%is_angle, 0), [dead(i)%t], [0.0_wp])
+                  call put_at(phrase(say_dead_centre, s%polish)//'  '//name_of(own(c))//'  ' &
+                     //text_of(own(c), 0, dead(i)%value, 0.0_wp), [dead(i)%t], [0.0_wp])
                end do
             end associate
          end do
@@ -204,51 +205,40 @@ contains
       end subroutine put_gaps
 
       !> The name of the coordinate `c`.
-      pure function column_name(c) result(name)
+      pure function name_of(c) result(name)
          type(coordinate_t), intent(in) :: c
          character(:), allocatable :: name
 
-         if (request%kind == request_pair) then
-            name = phrase(say_slide, s%polish)
-            if (c%is_angle) name = phrase(say_angle, s%polish)
-         else
-            name = 'X'
-            if (c%column == 2) name = 'Y'
-            if (c%column == 3) name = phrase(say_phi, s%polish)
-         end if
-      end function column_name
+         name = column_name(l, columns_of_rows(column_at(c%form, c%column, 0)))
+      end function name_of
 
       !> A row of `fields` (own coordinates, 0:2), with a label before it.
       subroutine put_fields(label, fields)
          character(*), intent(in) :: label
          character(numeral_length), intent(in) :: fields(:, 0:)
          character(row_length) :: line
-         integer :: c, k, column, last
+         integer :: c, k, last
 
          line = '  '//label
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
             do c = 1, size(own)
-               column = column_of(request, own(c)%is_angle, own(c)%column)
-               last = name_length + numeral_length*l%column(column, k, request%kind)
+               last = end_of_column(l, own(c)%form, column_at(own(c)%form, own(c)%column, k))
                line(last - numeral_length + 1:last) = adjustr(fields(c, k))
             end do
          end do
-         table%masked = table%masked .or. index(line(name_length + 1:), unknown_digit) > 0
+         table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line(:len_trim(line)))
       end subroutine put_fields
 
-      !> A length or angle, or its derivative number `k`, with the digits of the table, without blanks; `error` is
-      !> unknown of it.
-      pure function number_text(value, error, angular, k) result(text)
-         real(wp), intent(in) :: value, error
-         logical, intent(in) :: angular
+      !> A value of derivative number `k` of the coordinate `c`, with the digits of the table; `error` is unknown of it.
+      pure function text_of(c, k, value, error) result(text)
+         type(coordinate_t), intent(in) :: c
          integer, intent(in) :: k
+         real(wp), intent(in) :: value, error
          character(:), allocatable :: text
 
-         associate (unit => merge(l%angle, 1.0_wp, angular), what => merge(2, 1, angular))
-            text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
-         end associate
-      end function number_text
+         text = number_text(l%own(part)%format(merge(of_angle, of_length, c%is_angle), k), value, error)
+      end function text_of
    end subroutine put_extremes
 end module extremes_table

@@ -9,7 +9,8 @@ module proof_table
    use names, only: listed
    use set_analysis, only: set_analysis_t, set_bounds
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, put_folded, right
+   use listing_layout, only: layout_t, put_folded
+   use table, only: right
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: whole

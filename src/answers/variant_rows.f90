@@ -2,7 +2,10 @@
 module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: request_t, driven_kinds, request_link
+   use mechanism, only: request_t
+   use columns, only: cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
+   use scales, only: is_length
+   use table, only: format_t, cell_t, choose_digits
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
    use drives, only: drive_motion
    use names, only: drive_name, subject_name
@@ -10,37 +13,20 @@ module variant_rows
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
    use set_motion, only: is_flagged
-   use listing_layout, only: layout_t, dimension_of, choose_digits, angle_unit
+   use listing_layout, only: layout_t, angle_unit, column_name, column_unit
    use csv, only: marks, table_t, new_table, drive_columns, dotted
-   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, column_of, strokes_of, &
-      ratio_decimals
+   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, strokes_of, &
+      ratio_format
    use ranges, only: low, high
    use answers, only: answers_t
    use numerals, only: whole
    use phrases
    implicit none
    private
-   public :: summary_t, summary_column_t, cell_t, variant_row_t, new_summary, new_row, note_flag, fill_row
-   public :: cell_count, cell_number, cell_word, cell_unbounded, cell_none
+   public :: summary_t, summary_column_t, variant_row_t, new_summary, new_row, note_flag, fill_row
 
    !> Roundings of a coordinate and of the difference of two.
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
-
-   !> What a cell holds.
-   enum, bind(c)
-      enumerator :: cell_none = 0     !< nothing
-      enumerator :: cell_count        !< a whole number
-      enumerator :: cell_number       !< a number in the deck's units, of angles in rad
-      enumerator :: cell_unbounded    !< there is no bound; the sign of `value` says in which direction
-      enumerator :: cell_word         !< a word
-   end enum
-
-   type :: cell_t
-      integer :: kind = cell_none
-      real(wp) :: value = 0.0_wp
-      real(wp) :: error = 0.0_wp                    !< what rounding leaves open of `value`
-      character(3*label_length + 2) :: word = ''
-   end type cell_t
 
    !> A column: its name in a file, and its form in the listing.
    type :: summary_column_t
@@ -48,8 +34,7 @@ module variant_rows
       logical :: printed = .false.                  !< it is in the listing too
       character(3*label_length) :: above = '', below = ''   !< the lines over it
       character(3*label_length) :: unit = ''
-      logical :: angular = .false.                  !< `value` is in rad
-      integer :: decimals = 0, power = 0            !< as in `digits_t`
+      type(format_t) :: format = format_t(decimals=0)
       logical :: by_size = .false.                  !< instead, each value has the digits for its own size
    end type summary_column_t
 
@@ -93,7 +78,7 @@ contains
       call add_column(summary_column_t('flagged', .true., phrase(say_instants, set%polish), &
          phrase(say_flagged, set%polish)))
       call add_column(summary_column_t('flag.t', .true., phrase(say_first_flag, set%polish), &
-         phrase(say_at_time, set%polish), set%time_unit, decimals=l%time_decimals, power=l%time_power))
+         phrase(say_at_time, set%polish), set%time_unit, format=l%time))
       call add_drive(min(1, size(set%drives)), 'flag', '', '')
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
@@ -135,8 +120,8 @@ contains
             if (alike > 1) c%name = trim(c%name)//'.'//whole(alike)
             largest = max(abs(one%first), abs(one%last))
             if (allocated(one%list)) largest = maxval(abs(one%list))
-            call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
-            if (.not. largest > 0.0_wp) c%power = 0
+            call choose_digits(log10(max(largest, tiny(1.0_wp))), 0, c%format)
+            if (.not. largest > 0.0_wp) c%format%power = 0
          end associate
          call add_column(c)
       end subroutine add_number
@@ -152,16 +137,14 @@ contains
          if (d > 0) then
             c%name = start//'.'//drives(d)
             associate (place => set%drives(d))
-               c%angular = driven_kinds(set%parts(place%part)%drives(place%number)%kind) == request_link
+               c%format%is_angle = .not. is_length(set%parts(place%part)%drives(place%number))
             end associate
             c%printed = above /= ''
             c%above = above
             c%below = below
-            c%unit = merge(angle_unit(set), set%length_unit, c%angular)
-            if (d <= size(l%drives)) then
-               c%decimals = l%drives(d)%decimals
-               c%power = l%drives(d)%power
-            end if
+            c%unit = merge(angle_unit(set), set%length_unit, c%format%is_angle)
+            if (c%format%is_angle) c%format%unit = l%format(of_angle, 0)%unit
+            if (d <= size(l%drives)) c%format = l%drives(d)%format
          end if
          call add_column(c)
       end subroutine add_drive
@@ -170,7 +153,7 @@ contains
       subroutine add_extremes()
          type(summary_column_t) :: c
          type(request_t) :: request
-         integer :: i, which, place, over
+         integer :: i, which
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
          character(:), allocatable :: word
 
@@ -178,14 +161,10 @@ contains
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
                request = request_of(set, column%request)
-               place = column_of(request, column%angular, column%coordinate)
-               over = l%column(place, column%order, request%kind)
-               word = trim(l%name(over, request%kind))
-               c = summary_column_t(printed=.true., angular=column%angular, &
+               word = column_name(l, column%row_column_t)
+               c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
                   above=subject_name(set%parts(part), request%kind, request%subject), &
-                  unit=trim(l%unit(over, request%kind))//l%per(over, request%kind), &
-                  decimals=l%own(part)%decimals(dimension_of(place), column%order), &
-                  power=l%own(part)%power(dimension_of(place), column%order))
+                  format=l%own(part)%format(column%dimension, column%order))
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
                   c%below = word//' '//extreme_words(which)
@@ -197,10 +176,10 @@ contains
                c%name = trim(column%name)//'.stroke'
                c%below = word//' '//phrase(say_stroke, set%polish)
                c%by_size = .true.
-               c%power = 0
+               c%format%power = 0
                call add_column(c)
                call add_column(summary_column_t(trim(column%name)//'.ratio', .true., c%above, &
-                  word//' '//phrase(say_ratio, set%polish), decimals=ratio_decimals))
+                  word//' '//phrase(say_ratio, set%polish), format=ratio_format))
             end associate
          end do
       end subroutine add_extremes
@@ -302,7 +281,7 @@ contains
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
             k = findloc(asked%extremes%tracks(part)%coordinates%request == c%request &
-               .and. asked%extremes%tracks(part)%coordinates%column == c%coordinate, .true., dim=1)
+               .and. asked%extremes%tracks(part)%coordinates%column == c%at(1), .true., dim=1)
             associate (one => asked%extremes%tracks(part)%coordinates(k))
                do which = least, greatest
                   associate (e => one%found(which, c%order))

@@ -2,7 +2,7 @@
 !> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: drive_t, mechanism_t, wanted_links, pair_revolute
+   use mechanism, only: drive_t, mechanism_t, wanted_links, has_guide
    use scales, only: is_length
    use motion, only: motion_t
    use structure, only: structure_t, make_structure
@@ -114,9 +114,9 @@ contains
       do i = 1, size(m%links)
          if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(e%orientation_of(i)))%direct
       end do
-      allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
-      e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
-      e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
+      allocate (e%joint(2, count(.not. has_guide(m%pairs%kind))))
+      e%joint(1, :) = m%points(pack(m%pairs%point_i, .not. has_guide(m%pairs%kind)))%link
+      e%joint(2, :) = m%points(pack(m%pairs%point_j, .not. has_guide(m%pairs%kind)))%link
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)

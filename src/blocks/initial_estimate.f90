@@ -11,7 +11,7 @@ module initial_estimate
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
    use planar, only: direction, quarter_turn, point_of, pi, without_turns
-   use mechanism, only: mechanism_t, pair_revolute
+   use mechanism, only: mechanism_t, has_guide
    use links_tree, only: tree_t, axes_t
    use blocks, only: blocks_t
    implicit none
@@ -78,8 +78,8 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: phi(:)
 
-      if (m%pairs(k)%kind == pair_revolute) opening = norm2(closure_error_of(m, k, phi))
-      if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset + dot_product(closure_error_of(m, k, phi), &
+      if (.not. has_guide(m%pairs(k)%kind)) opening = norm2(closure_error_of(m, k, phi))
+      if (has_guide(m%pairs(k)%kind)) opening = abs(m%pairs(k)%offset + dot_product(closure_error_of(m, k, phi), &
          quarter_turn(direction(phi(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))))
    end function opening_of
 
@@ -176,7 +176,7 @@ contains
                           j => m%pairs(t%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
                   arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
-                  if (m%pairs(pair)%kind /= pair_revolute) arm = arm + norm2(closure_error_of(m, pair, v))
+                  if (has_guide(m%pairs(pair)%kind)) arm = arm + norm2(closure_error_of(m, pair, v))
                   size_of = max(size_of, arm)
                   open = max(open, opening_of(m, pair, v))
                end associate

@@ -278,7 +278,7 @@ contains
          k = set%named(request_pair)%card(i)
          text = ''
          associate (m => set%mechanism, pair => set%mechanism%pairs(i))
-            if (pair%kind /= pair_prismatic) then
+            if (.not. has_guide(pair%kind)) then
                opening = norm2(drawn_way(m, pair))
             else
                opening = drawn_opening(m, pair)

@@ -15,6 +15,7 @@ module lane_runs
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
+   use rows, only: finished_row_t
    use variant_rows, only: variant_row_t, note_flag
    use system_calls, only: signal_received
    use lane_sines, only: width
@@ -212,12 +213,13 @@ contains
    subroutine by_engine(r, last)
       type(lane_run_t), intent(inout) :: r
       integer, intent(in) :: last
+      type(finished_row_t) :: no_rows(0)
       integer :: k
 
       do k = r%at + 1, min(last, instant_count(r%m) - 1)
          call advance_set(r%s, instant(r%m, k))
          call note_flag(r%row, r%s)
-         call take_instant(r%asked, r%s, k, .true.)
+         call take_instant(r%asked, r%s, no_rows, k, .true.)
          r%at = k
          if (signal_received() > 0) return
       end do

@@ -19,10 +19,10 @@ module drives
    use planar, only: pi
    use splines, only: spline_t, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
-      term_parabola
+      term_parabola, term_kinds
    implicit none
    private
-   public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of
+   public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of, largest_frequency
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
    !> An interval for each derivative of a law.
@@ -197,17 +197,22 @@ contains
       allocate (times(0))
       if (.not. allocated(drive%terms)) return
       do i = 1, size(drive%terms)
-         associate (r => drive%terms(i)%r)
-            select case (drive%terms(i)%kind)
-            case (term_table)
-               times = [times, drive%terms(i)%table%x]
-            case (term_cycloid:term_parabola)
-               times = [times, r(1), r(1) + r(2)]
-               if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
-            end select
+         associate (r => drive%terms(i)%r, kind => term_kinds(drive%terms(i)%kind))
+            if (kind%has_rows) times = [times, drive%terms(i)%table%x]
+            if (kind%is_rise) times = [times, r(1) + kind%joints(:2)*r(2)]
+            if (kind%is_rise .and. kind%joints(3) < kind%joints(2)) times = [times, r(1) + kind%joints(3)*r(2)]
          end associate
       end do
    end function joints_of
+
+   !> Finds the largest frequency of the harmonics of a drive, in rad over the unit of time; 0 without any.
+   pure real(wp) function largest_frequency(drive) result(largest)
+      type(drive_t), intent(in) :: drive
+
+      largest = 0.0_wp
+      if (.not. allocated(drive%terms)) return
+      largest = maxval([largest, pack(abs(drive%terms%r(2)), drive%terms%kind == term_harmonic)])
+   end function largest_frequency
 
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
@@ -310,7 +315,7 @@ contains
       type(term_t), intent(in) :: term
 
       width = 0.0_wp
-      if (term%kind >= term_cosine) width = joint_distance(term)
+      if (term_kinds(term%kind)%jumps) width = joint_distance(term)
    end function joint_width
 
    !> How far from a joint of `term` an instant may be that is meant to be at it, as a part of the rise's duration.

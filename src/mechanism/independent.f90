@@ -5,7 +5,7 @@ module independent
    use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, pair_links, drive_links, request_links, drive_relangle, &
-      driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, number_link, number_knot
+      driven_kinds, request_link, request_point, request_pair, request_curve, is_centre, number_link, number_knot
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -180,7 +180,7 @@ contains
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end if
-      if (any(own%requests%kind >= request_pole)) then
+      if (any(is_centre(own%requests%kind))) then
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
       end if

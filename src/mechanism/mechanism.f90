@@ -9,6 +9,13 @@ module mechanism
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
 
+   !> A kind of pairs, without numbers.
+   type :: pair_kind_t
+      logical :: has_guide = .false.         !< point Q slides on a guide through point P, and no link turns
+   end type pair_kind_t
+
+   type(pair_kind_t), parameter :: pair_kinds(pair_revolute:pair_prismatic) = [pair_kind_t(), pair_kind_t(.true.)]
+
    !> The kinds of what has a name and a row in the tables.
    integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
    !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
@@ -27,15 +34,33 @@ module mechanism
    integer, parameter :: term_harmonic = 1   !< r(1) sin(r(2) t + r(3))
    integer, parameter :: term_power = 2      !< r(1) t**r(2)
    integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
-   character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
    !> A rise: 0 before the time r(1), then r(3) s(u), u = (t - r(1))/r(2) from 0 to 1, then r(3).
    integer, parameter :: term_cycloid = 4    !< cycloidal: s = u - sin(2 pi u)/(2 pi)
    integer, parameter :: term_345 = 5        !< the 3-4-5 polynomial: s = 10 u**3 - 15 u**4 + 6 u**5
    integer, parameter :: term_cosine = 6     !< simple harmonic: s = (1 - cos(pi u))/2
    integer, parameter :: term_parabola = 7   !< constant acceleration: s = 2 u**2, from u = 1/2 on 1 - 2 (1 - u)**2
-   !> The words of the laws on RISE cards.
-   character(label_length), parameter :: rise_words(term_cycloid:term_parabola) = &
-      [character(label_length) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+
+   !> A kind of terms, without numbers.
+   type :: term_kind_t
+      character(label_length) :: word = ''   !< on its ADD or RISE card
+      character(9) :: numbers(3) = ''        !< the names of r(1) to r(3); '': it has no such number
+      integer :: inexact = 3                 !< so many of them can have a tolerance and are rounded
+      logical :: has_rows = .false.          !< it has a table instead of r
+      logical :: is_rise = .false.           !< it is on a RISE card
+      logical :: jumps = .false.             !< its acceleration jumps at its joints
+      real(wp) :: joints(3) = 0.0_wp         !< of a rise, where a derivative jumps: parts of its duration, some twice
+   end type term_kind_t
+
+   character(9), parameter, private :: rise_numbers(3) = ['START    ', 'DURATION ', 'LIFT     ']
+   ! A rise has its joints at its ends; that of constant acceleration has one in its middle as well.
+   type(term_kind_t), parameter :: term_kinds(term_harmonic:term_parabola) = [ &
+      term_kind_t('HARMONIC', [character(9) :: 'AMPLITUDE', 'FREQUENCY', 'PHASE']), &
+      term_kind_t('POWER', [character(9) :: 'FACTOR', 'EXPONENT', ''], inexact=1), &
+      term_kind_t('TABLE', has_rows=.true.), &
+      term_kind_t('CYCLOID', rise_numbers, is_rise=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('3-4-5', rise_numbers, is_rise=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('HARMONIC', rise_numbers, is_rise=.true., jumps=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('PARABOLA', rise_numbers, is_rise=.true., jumps=.true., joints=[0.0_wp, 1.0_wp, 0.5_wp])]
 
    !> The kinds of numbers on cards.
    integer, parameter :: number_link = 1     !< x, y or phi of link `subject`
@@ -273,6 +298,20 @@ contains
       end select
       if (request%second > 0) links(3) = request%second
    end function request_links
+
+   !> Tells whether pairs of a kind have a guide, on which a link slides; otherwise it turns about a joint.
+   elemental logical function has_guide(kind)
+      integer, intent(in) :: kind            !< pair_revolute, ...
+
+      has_guide = pair_kinds(kind)%has_guide
+   end function has_guide
+
+   !> Tells whether requests of a kind are for instant centres or centres of curvature, which have no derivatives.
+   elemental logical function is_centre(kind)
+      integer, intent(in) :: kind            !< request_link, ...
+
+      is_centre = any(kind == [request_pole, request_curve])
+   end function is_centre
 
    !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.
    elemental logical function is_listed_alone(request)

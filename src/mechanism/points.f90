@@ -2,34 +2,29 @@
 !> curvature.
 module points
    use kinds, only: wp, label_length
-   use mechanism, only: settings_t, mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, &
-      request_pair, request_pole, request_curve, instant_count, request_links
+   use mechanism, only: settings_t, mechanism_t, request_t, pair_t, has_guide, request_link, request_point, &
+      request_pair, request_pole, request_curve, is_centre, instant_count, request_links
    use names, only: subject_name
-   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
+   use columns, only: form_of
+   use instant_centres, only: centre_t, pole_of, curve_of, seen_from
    use planar, only: pi, direction, rotated, point_of, add_rotating
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, find_row, has_number, difference, centre_numbers, &
-      coordinates_of, is_due, is_listed, is_fixed
+   public :: row_t, find_row, difference, is_due, is_listed, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
    type, extends(centre_t) :: row_t
       integer :: kind = request_link        !< request_link, ..., request_curve
       character(2*label_length + 1) :: name = ''   !< of the link, point or pair; of both links, or point and link
-      logical :: angular = .false.          !< a pair whose value is an angle
+      integer :: form = 0                   !< which columns it has
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
    end type row_t
 
    !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
    type(row_t), protected :: new_row = row_t()
-
-   !> The numbers (coordinate, derivative or axes) of a pole or curve that are there wherever its centre is finite, in
-   !> the order of the tables: x, y in the fixed plane, in link I, in link J; point, tangent, radius, centre.
-   integer, parameter :: centre_numbers(2, 6, request_pole:request_curve) = reshape( &
-      [1, 0, 2, 0, 1, 1, 2, 1, 1, 2, 2, 2, 1, 0, 2, 0, 3, 0, 1, 2, 1, 1, 2, 1], [2, 6, 2])
 
 contains
 
@@ -64,6 +59,7 @@ contains
 
       row = new_row
       row%kind = request%kind
+      row%form = form_of(m, request)
       ! What is known of a row is what is known of its links.
       links = request_links(m, request)
       do k = 1, size(links)
@@ -74,7 +70,7 @@ contains
       end do
 
       associate (i => request%subject)
-         if (request%kind <= request_pair) row%name = subject_name(m, request%kind, i)
+         if (.not. is_centre(request%kind)) row%name = subject_name(m, request%kind, i)
          select case (request%kind)
          case (request_link)
             if (m%links(i)%ground) then
@@ -89,7 +85,6 @@ contains
             end if
             row%value(:2, :) = point_motion(m, q, i)
          case (request_pair)
-            row%angular = m%pairs(i)%kind /= pair_prismatic
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
          case (request_pole)
@@ -122,24 +117,6 @@ contains
       x(:, 2) = q%acceleration(:, i)
    end function link_motion
 
-   !> Whether `row` has the number (c, k) of its values: x, y, phi (c) of the k-th derivative, as far as it is known; of
-   !> centres those that exist.
-   pure logical function has_number(row, c, k)
-      type(row_t), intent(in) :: row
-      integer, intent(in) :: c, k
-
-      select case (row%kind)
-      case (request_pole)
-         has_number = row%known >= 1 .and. row%state == merge(centre_infinite, centre_finite, c == 3)
-      case (request_curve)
-         has_number = row%known == 2 .and. row%state == centre_finite .and. any(3*k + c == [4, 5, 7])
-         if (k == 0) has_number = row%known >= 0
-         if (k == 0 .and. c == 3) has_number = row%known >= 1 .and. row%state /= centre_resting
-      case default
-         has_number = k <= row%known .and. c <= coordinates_of(row%kind)
-      end select
-   end function has_number
-
    !> By how much the numbers of `one` differ from those of `row`, to first order (3, 0:2): a place at p = n/w, with the
    !> weight w, changes by (n' - p w')/w where n and w become n' and w'. Directions of lines count without half turns.
    pure function difference(one, row) result(d)
@@ -155,15 +132,6 @@ contains
          d(3, 0) = abs(d(3, 0) - pi*anint(d(3, 0)/pi))
       end if
    end function difference
-
-   !> How many columns a derivative of a row of the given `kind` has; of centres, a third of all.
-   elemental integer function coordinates_of(kind)
-      integer, intent(in) :: kind
-
-      coordinates_of = 1
-      if (kind == request_link) coordinates_of = 3
-      if (any(kind == [request_point, request_pole, request_curve])) coordinates_of = 2
-   end function coordinates_of
 
    !> Whether the subject of `request` belongs to the ground.
    pure logical function is_fixed(m, request)
@@ -196,7 +164,7 @@ contains
       real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), r(2, 0:2)
 
       x = link_motion(q, m%points(pair%point_i)%link)
-      if (pair%kind /= pair_prismatic) then
+      if (.not. has_guide(pair%kind)) then
          y = link_motion(q, m%points(pair%point_j)%link)
          s = y(3, :) - x(3, :)
          return

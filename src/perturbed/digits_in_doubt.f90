@@ -3,7 +3,7 @@
 module digits_in_doubt
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_pole
+   use mechanism, only: mechanism_t, method_newton, request_pole, is_centre
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
@@ -136,7 +136,7 @@ contains
 
       growth = 0.0_wp
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind < request_pole) cycle
+         if (.not. is_centre(m%requests(i)%kind)) cycle
          call find_row(m, q, m%requests(i), row)
          if (row%state /= centre_finite) growth = huge(1.0_wp)
          if (row%state /= centre_finite) return

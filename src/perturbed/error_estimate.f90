@@ -2,7 +2,7 @@
 !> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_point, request_pole
+   use mechanism, only: mechanism_t, request_point, request_pole, is_centre
    use motion, only: motion_t
    use points, only: row_t, find_row, difference, is_fixed
    use instant_centres, only: centre_finite, centre_starting
@@ -196,7 +196,7 @@ contains
       real(wp) :: x(3, 0:2)
 
       x = part*difference(one, middle)
-      if (one%kind < request_pole) then
+      if (.not. is_centre(one%kind)) then
          x(:, one%known + 1:) = nothing_known
       else
          x = merge(nothing_known, x, lost_numbers(one, middle))
@@ -225,7 +225,7 @@ contains
          if (s%asked) error = nothing_known
          if (.not. s%taken) return
          error = merge(nothing_known, caution*s%changes(:, :, i), s%changes(:, :, i) >= nothing_known)
-         if (request%kind < request_pole) error(:, min(row%known, s%solved(i)%known) + 1:) = nothing_known
+         if (.not. is_centre(request%kind)) error(:, min(row%known, s%solved(i)%known) + 1:) = nothing_known
       end associate
    end function estimate_of
 
@@ -243,7 +243,7 @@ contains
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
       where (error < nothing_known) error = s%own(:, :, i) + difference(row, s%solved(i))
-      if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
+      if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
 
    !> The numbers (3, 0:2) of the pole or curve `row` of which a sample with the row `one` leaves nothing: all, where it

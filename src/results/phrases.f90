@@ -103,7 +103,6 @@ module phrases
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
       say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', 'NIE PRZESZUKANO (BRAK RUCHU): T ='), &
       say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
-      say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES (OTHER DRIVES HELD)', 'ZAKRESY NAPEDOW (INNE NAPEDY STALE)'), &
       say_range_of_branch = phrase_t('FIRST INSTANT OUT OF REACH, RANGE OF A BRANCH', &
          'PIERWSZA CHWILA POZA ZASIEGIEM, ZAKRES GALEZI'), &
@@ -182,7 +181,6 @@ module phrases
       say_tangent = phrase_t('TANGENT', 'STYCZNA'), &
       say_radius = phrase_t('RADIUS', 'PROMIEN'), &
       say_centre = phrase_t('CENTRE', 'SRODKA'), &
-      say_infinite = phrase_t('INFINITE', 'NIESKONCZ.'), &
       say_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
    type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &

@@ -2,7 +2,7 @@
 !> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_pole, instant
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant
    use structure, only: findings_t
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
@@ -85,7 +85,7 @@ contains
       if (.not. is_done) return
       associate (own => s%now%parts(1))
          ! These keep numbers of the mechanism.
-         is_done = .not. (any(own%requests%kind >= request_pole) .or. allocated(own%tolerances) .or. own%assemblies)
+         is_done = .not. (any(is_centre(own%requests%kind)) .or. allocated(own%tolerances) .or. own%assemblies)
          if (.not. is_done) return
          own%settings_t = m%settings_t
          s%now%settings_t = m%settings_t

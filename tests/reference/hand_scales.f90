@@ -2,7 +2,7 @@
 !> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
 module hand_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
-      term_harmonic, term_power, term_table, rise_words
+      term_harmonic, term_power, term_table, term_kinds
    use rise_laws, only: peak_rate
    use quad_jet, only: qp, degree_q
    implicit none
@@ -153,7 +153,7 @@ contains
                      /(real(a%table%x(k), qp) - a%table%x(k - 1))))
                end do
             case default
-               steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(rise_words(a%kind)))
+               steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(term_kinds(a%kind)%word))
             end select
             rate = rate + steepest
          end associate
