@@ -68,11 +68,13 @@ contains
 
       s%numbers = size(v%numbers)
       drives = drive_columns(set)
+
       allocate (s%columns(0))
       call add_column(summary_column_t('variant', .true., phrase(say_variant, set%polish)))
       do i = 1, size(v%numbers)
          call add_number(v%numbers(:i))
       end do
+
       call add_column(summary_column_t('solved', .true., phrase(say_instants, set%polish), &
          phrase(say_are_solved, set%polish)))
       call add_column(summary_column_t('flagged', .true., phrase(say_instants, set%polish), &
@@ -84,6 +86,7 @@ contains
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
       call add_column(summary_column_t('limit.value'))
+
       do i = 1, merge(size(set%drives), 0, set%ranges)
          associate (own => set%parts(set%drives(i)%part))
             name = drive_name(own, own%drives(set%drives(i)%number))
@@ -262,6 +265,7 @@ contains
       end if
       n = n + 3
       if (r%rejected /= '') return
+
       if (set%ranges) then
          ! Three for each drive: the limits, and the turns after which the motion closes.
          do i = 1, size(asked%ranges)
@@ -278,6 +282,7 @@ contains
       if (set%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
          real(asked%assemblies, wp)))
       if (set%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
+
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
             k = findloc(asked%extremes%tracks(part)%coordinates%request == c%request &

@@ -126,6 +126,7 @@ contains
                      is_unknown = is_unknown .or. .not. has_digit(at(1), at(2))
                   end associate
                end do
+
                call add(o, start)
                if (what == '') then
                   call add(o, kind%csv(n)(:len_trim(kind%csv(n))))
@@ -138,6 +139,7 @@ contains
                call add(o, ',')
                if (mark == '' .and. is_unknown) mark = mark_unknown
                call add(o, mark(:len_trim(mark)))
+
                if (s%errors(1)%asked) then
                   has_error = error < nothing_known
                   ! A derivative has no error where no digit of the one before is known.
@@ -192,6 +194,8 @@ contains
       integer :: i, j, k, n
 
       t%drives = drive_columns(s)
+
+      ! The rows, and which names links have among them.
       requests = [(request_of(s, i), i=1, size(s%rows))]
       rows = [(i, i=1, size(s%rows))]
       form = [(form_of(s%parts(s%rows(i)%part), requests(i)), i=1, size(s%rows))]
@@ -206,11 +210,14 @@ contains
             call put_name(links, own%links(requests(rows(i))%subject)%name, i, k)
          end associate
       end do
+
       n = 0
       do i = 1, size(rows)
          n = n + count(columns_of_rows(forms(form(rows(i)))%first:forms(form(rows(i)))%last)%word /= '')
       end do
       allocate (t%columns(n))
+
+      ! Positions first, then velocities, then accelerations.
       n = 0
       do k = 0, 2
          do i = 1, size(rows)

@@ -67,6 +67,7 @@ contains
          call append_number(l%time, times(k), 0.0_wp, line, used, table%masked)
       end do
       call append(l%behind_time, line, used)
+
       do i = 1, size(l%drives)
          length = 0
          call append(l%drives(i)%before, part, length)
@@ -79,6 +80,7 @@ contains
          end do
          call append(l%drives(i)%behind, part, length)
          if (i == size(l%drives)) call append(l%more_drives, part, length)
+
          if (used + length > line_length) then
             call put(o, line(:used))
             table%lines = table%lines + 1
@@ -87,6 +89,7 @@ contains
          end if
          call append(part(:length), line, used)
       end do
+
       call put(o, line(:used))
       table%lines = table%lines + 2
    end subroutine put_times
