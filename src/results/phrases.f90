@@ -29,11 +29,7 @@ module phrases
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
       say_instant = phrase_t('INSTANT', 'CHWILA'), &
       say_link = phrase_t('LINK', 'OGNIWO'), &
-      say_point = phrase_t('POINT', 'PUNKT'), &
       say_pair = phrase_t('PAIR', 'PARA'), &
-      say_phi = phrase_t('PHI', 'FI'), &
-      say_slide = phrase_t('SLIDE', 'PRZESUW'), &
-      say_angle = phrase_t('ANGLE', 'KAT'), &
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
       say_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
@@ -174,13 +170,6 @@ module phrases
       say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU'), &
       say_too_wide = phrase_t('BLOCK TOO LARGE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
    type(phrase_t), parameter, public :: &
-      say_pole = phrase_t('POLE', 'BIEGUN'), &
-      say_curve = phrase_t('CURVE', 'TOR'), &
-      say_xi = phrase_t('XI', 'KSI'), &
-      say_direction = phrase_t('DIRECTION', 'KIERUNEK'), &
-      say_tangent = phrase_t('TANGENT', 'STYCZNA'), &
-      say_radius = phrase_t('RADIUS', 'PROMIEN'), &
-      say_centre = phrase_t('CENTRE', 'SRODKA'), &
       say_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
    type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
