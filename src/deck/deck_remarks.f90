@@ -140,7 +140,7 @@ contains
          law = drive
          if (allocated(law%terms)) then
             do i = 1, size(law%terms)
-               if (law%terms(i)%kind /= term_table) cycle
+               if (.not. term_kinds(law%terms(i)%kind)%has_rows) cycle
                associate (y => law%terms(i)%table%y)
                   if (.not. maxval(y) > minval(y)) y = 0.0_wp
                end associate
