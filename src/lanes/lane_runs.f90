@@ -9,9 +9,7 @@ module lane_runs
    use predictor, only: is_even
    use drive_excursion, only: judge_step
    use analysis, only: come_back
-   use block_engine, only: get_motion
-   use digits_in_doubt, only: find_growth
-   use set_analysis, only: set_analysis_t, advance_set
+   use set_analysis, only: set_analysis_t, advance_set, take_state
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
@@ -234,12 +232,11 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       logical, intent(out) :: is_done
-      logical :: finite, in_doubt
       real(wp) :: growth
       integer :: u, k
 
       call come_back(r%s%list(1))
-      associate (e => r%s%list(1)%engine, q => r%s%now%motions(1))
+      associate (e => r%s%list(1)%engine)
          do u = 1, e%blocks%unknowns
             associate (x => e%state%u(u))
                x%value = l%u(u)%value(i)
@@ -252,14 +249,9 @@ contains
          do k = 1, size(l%moving)
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
-         q%t = t
-         if (allocated(q%diagnostics)) deallocate (q%diagnostics)
-         call get_motion(e, q, finite)
-         call find_growth(r%s%estimators(1)%sizes, r%s%now%parts(1), e, q, growth, in_doubt)
       end associate
-      is_done = finite .and. .not. in_doubt
-      if (.not. is_done) return
-      call find_next(r%asked%extremes, r%s, 1, t, growth=growth)
+      call take_state(r%s, t, growth, is_done)
+      if (is_done) call find_next(r%asked%extremes, r%s, 1, t, growth=growth)
    end subroutine watch_lane
 
    !> Gives the engine of `r` the motions of lane `i`, for the next instants or for times between.

@@ -6,7 +6,8 @@ module set_analysis
    use structure, only: findings_t
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
-   use digits_in_doubt, only: safe_growth
+   use digits_in_doubt, only: safe_growth, find_growth
+   use block_engine, only: get_motion
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
@@ -20,8 +21,8 @@ module set_analysis
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
-      prove_set, set_bounds, set_closing_diagnostics
+   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, rows_at, &
+      sample_set, prove_set, set_bounds, set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -112,11 +113,44 @@ contains
          call advance(s%list(c), t, s%now%motions(c))
          if (s%now%motions(c)%mark == mark_inconsistent) call tell_surplus_drives(s, c)
       end do
+      call keep_instant(s)
+   end subroutine advance_set
+
+   !> Takes the instant `t` of a set of one mechanism, with the motion that a lane has put into the engine's state.
+   subroutine take_state(s, t, growth, is_taken)
+      type(set_analysis_t), intent(inout) :: s
+      real(wp), intent(in) :: t              !< time
+      real(wp), intent(out) :: growth        !< the factor by which roundings grow
+      logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
+      logical :: is_finite, in_doubt
+
+      associate (engine => s%list(1)%engine, q => s%now%motions(1))
+         q%t = t
+         if (allocated(q%diagnostics)) deallocate (q%diagnostics)
+         call get_motion(engine, q, is_finite)
+         call find_growth(s%estimators(1)%sizes, s%now%parts(1), engine, q, growth, in_doubt)
+      end associate
+      is_taken = is_finite .and. .not. in_doubt
+      if (is_taken) call keep_instant(s)
+   end subroutine take_state
+
+   !> Keeps what later instants need of the instant at which all motions of the set are, whether its engines or a lane
+   !> have found them. A row has no second place for what it keeps from instant to instant. An instant that a lane hands
+   !> back comes again from the engine. Times between two instants do not come, nor do a lane's if no row is asked for.
+   subroutine keep_instant(s)
+      type(set_analysis_t), intent(inout) :: s
+
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
-         return
+      else
+         call count_worst_motion(s)
       end if
-      ! An instant counts as its worst motion does.
+   end subroutine keep_instant
+
+   !> Counts the certificate of an instant: it is that of its worst motion.
+   subroutine count_worst_motion(s)
+      type(set_analysis_t), intent(inout) :: s
+
       associate (counts => s%certificate_counts, kinds => s%list%branch%kind)
          counts%passed = sum(s%list%certificate_counts%passed)
          if (any(s%now%motions%known < 0)) return
@@ -126,7 +160,7 @@ contains
             counts%followed = counts%followed + 1
          end if
       end associate
-   end subroutine advance_set
+   end subroutine count_worst_motion
 
    !> Adds to the motion of independent mechanism number `c`, the first whose redundant equations are inconsistent, the
    !> drives of which one may be too many; nothing if there are none. Without such a drive one redundant equation fewer
