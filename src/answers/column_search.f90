@@ -10,7 +10,6 @@
 module column_search
    use kinds, only: wp
    use known_digits, only: nothing_known
-   use set_motion, only: find_row_in_set
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: node_t, sample_t, beside_joint
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
@@ -44,34 +43,25 @@ module column_search
 contains
 
    !> Finds the `node` of the `track` at the last instant of `s` or a time `t` between the instants. `always`: its
-   !> errors too where no digit of a table is in doubt. With `growth` instead, by how much roundings grow, that of the
-   !> motion which `s` has now, whose digits are safe: the engine need not have found it.
-   subroutine find_node(s, track, t, node, always, growth)
+   !> errors too where no digit of a table is in doubt.
+   subroutine find_node(s, track, t, node, always)
       type(set_analysis_t), intent(inout) :: s
       type(track_t), intent(inout) :: track
       real(wp), intent(in) :: t
       type(node_t), intent(inout) :: node
-      logical, intent(in), optional :: always
-      real(wp), intent(in), optional :: growth
-      real(wp) :: grows
+      logical, intent(in) :: always
+      real(wp) :: growth
       integer :: i
 
       if (.not. allocated(node%samples)) allocate (node%samples(size(track%coordinates)))
       node%t = t
       node%is_known = .true.
-      associate (rows => track%rows, error => track%error, c => s%now%rows(track%requests(1))%part)
-         if (present(always)) then
-            call rows_at(s, c, track%requests, t, rows, always, error, grows)
-         else
-            grows = growth
-            do i = 1, size(rows)
-               call find_row_in_set(s%now, track%requests(i), rows(i))
-            end do
-         end if
+      associate (rows => track%rows, error => track%error)
+         call rows_at(s, track%requests, t, rows, always, error, growth)
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
-               sample = sample_t(t, rows(row)%value(k, :), known=rows(row)%known, growth=grows)
-               if (present(always)) sample%error = error(k, :, row)
+               sample = sample_t(t, rows(row)%value(k, :), known=rows(row)%known, growth=growth)
+               sample%error = error(k, :, row)
                node%is_known = node%is_known .and. sample%known == 2 .and. all(sample%error < nothing_known)
             end associate
          end do
@@ -79,17 +69,16 @@ contains
    end subroutine find_node
 
    !> Finds the node of mechanism `c` that comes next, at the time `t`, and whether something turns between the last
-   !> three: `always` and `growth` as in `find_node`.
-   subroutine find_next(x, s, c, t, always, growth)
+   !> three: `always` as in `find_node`.
+   subroutine find_next(x, s, c, t, always)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       real(wp), intent(in) :: t
-      logical, intent(in), optional :: always
-      real(wp), intent(in), optional :: growth
+      logical, intent(in) :: always
 
       associate (track => x%tracks(c))
-         call find_node(s, track, t, track%nodes(track%filled + 1), always, growth)
+         call find_node(s, track, t, track%nodes(track%filled + 1), always)
          if (track%filled == 2) call look_for_turns(track)
       end associate
    end subroutine find_next

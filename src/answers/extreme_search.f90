@@ -13,9 +13,9 @@
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
-   use set_analysis, only: set_analysis_t
+   use set_analysis, only: set_analysis_t, apart_from_first
    use nodes, only: node_t, extreme_t, times_between, beside_joint
-   use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
+   use extremes, only: extremes_t, end_t, offer, badly_known, note_interval
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
    private
@@ -85,9 +85,7 @@ contains
       associate (track => x%tracks(c), q => s%now%motions(c))
          t = q%t
          track%halvings = 0
-         if (k == 0) then
-            track%start = q
-         else if (is_searched(x, s, c)) then
+         if (is_searched(x, s, c) .and. k > 0) then
             now = track%nodes(track%filled + 1)
             known = now%is_known
             call search_step()
@@ -100,7 +98,7 @@ contains
          end associate
          call add_node(x, s, c)
          if (k == s%now%steps) call search_waiting(x, s, c)
-         if (k == s%now%steps) call note_end(x, s%now%parts(c), c, q)
+         if (k == s%now%steps) track%closure = apart_from_first(s, c)
          if (.not. known) call note_interval(x%gaps, x%way, t, t, 0.0_wp)
          track%last = end_t(t, .not. known, q%singularity == singular_change)
       end associate

@@ -3,9 +3,8 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t
-   use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
+   use separations, only: closes, closes_to
    use drives, only: joints_of, largest_frequency
    use points, only: row_t, is_fixed
    use columns, only: columns_of_rows, forms, form_of, column_at, of_angle
@@ -17,8 +16,8 @@ module extremes
    implicit none
    private
    public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
-      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
-      varies, strokes_t, strokes_of, ratio_format, closes_to, badly_known, alike, never_better
+      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_interval, is_cyclic, is_covered, &
+      varies, strokes_t, strokes_of, ratio_format, badly_known, alike, never_better
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
    !> errors below a table's last digit reach it.
@@ -30,9 +29,6 @@ module extremes
    real(wp), parameter :: above_errors = 10.0_wp
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
-   !> A motion is cyclic if its end differs from its beginning by less, in the same units: a turn of 6.2831853 rad is
-   !> one. Times of reversals repeat within this part of the run.
-   real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
    !> So many parts at least has a turn of a drive, and a period of a harmonic law.
    integer, parameter :: parts_of_turn = 12
    !> Of a ratio of times.
@@ -81,7 +77,6 @@ module extremes
       type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
-      type(motion_t), allocatable :: start             !< the motion at the first instant
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
       type(end_t) :: last                              !< the last instant
@@ -280,28 +275,6 @@ contains
       c%speed = speed
    end subroutine note_velocity
 
-   !> Takes the motion `last` of mechanism `c`, `m`, at the end of the run.
-   subroutine note_end(x, m, c, last)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: c
-      type(motion_t), intent(in) :: last
-      real(wp) :: d(3, size(m%links)), length
-
-      length = characteristic_length(m)
-      associate (track => x%tracks(c))
-         if (min(track%start%known, last%known) < 0) return
-         d = last%position - track%start%position
-         d(3, :) = without_turns(d(3, :))
-         track%closure = [maxval(abs(d(:2, :)))/length, maxval(abs(d(3, :))), 0.0_wp]
-         ! At a change point velocities are not unique.
-         if (min(track%start%known, last%known) < 1) return
-         d = last%velocity - track%start%velocity
-         d(:2, :) = d(:2, :)/length
-         track%closure(3) = maxval(abs(d))/characteristic_rate(m, length)
-      end associate
-   end subroutine note_end
-
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
    !> more than `apart_by` apart are one.
    pure subroutine note_interval(list, way, from, to, apart_by)
@@ -337,7 +310,7 @@ contains
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: c
 
-      is_cyclic = is_covered(x) .and. all(x%tracks(c)%closure <= closes_to)
+      is_cyclic = is_covered(x) .and. closes(x%tracks(c)%closure)
    end function is_cyclic
 
    !> Derivative `k` of the coordinate `c` has a least and a greatest value that differ by more than rounding can make,

@@ -5,6 +5,7 @@
 module extremes_table
    use kinds, only: wp
    use mechanism, only: request_t
+   use separations, only: closes
    use columns, only: columns_of_rows, column_at, cell_none, cell_unbounded, of_length, of_angle
    use table, only: number_text
    use independent, only: set_t, request_of, first_drive
@@ -15,7 +16,7 @@ module extremes_table
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
    use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      is_cyclic, is_covered, ratio_format, closes_to, varies
+      is_cyclic, is_covered, ratio_format, varies
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -77,7 +78,7 @@ contains
          associate (closure => x%tracks(k)%closure)
             if (.not. (goes_on(k) .and. all(closure < huge(1.0_wp)))) cycle
             line = ' --- '//phrase(say_no_period, s%polish)
-            if (all(closure(:2) <= closes_to)) then
+            if (closes(closure(:2))) then
                line = line//' '//phrase(say_in_velocity, s%polish)
             else
                line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &

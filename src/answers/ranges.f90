@@ -4,9 +4,10 @@
 module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi, without_turns
+   use planar, only: pi
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
+   use separations, only: motions_apart, closes
    use drives, only: drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
@@ -28,8 +29,6 @@ module ranges
    !> How close its end is looked for where no limit is known. Reason: rounding leaves about the root of a rounding open
    !> there, and a try that fails takes as long as a long run.
    real(wp), parameter :: closest = max(1.0e-7_wp, 64.0_wp*sqrt(epsilon(1.0_wp)))
-   !> A motion closes where positions agree to this part of a radian and of the characteristic length.
-   real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
    integer, parameter :: low = 1, high = 2
    character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
@@ -149,7 +148,7 @@ contains
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step, part, off(3, size(d%links))
+      real(wp) :: t, step, part, apart(3)
       integer :: i, k, steps_a_turn, begin
       logical :: is_angle, grows
 
@@ -203,10 +202,9 @@ contains
             cycle
          end if
          if (mod(k - begin, steps_a_turn) /= 0) cycle
-         off = now%position - first%position
-         off(:2, :) = off(:2, :)/characteristic_length(d)
-         off(3, :) = without_turns(off(3, :))
-         r%is_all = all(abs(off) <= closes_to)
+         apart = motions_apart(d, first, now)
+         ! The drive has one rate: what is in its place is as fast.
+         r%is_all = closes(apart(:2))
          r%turns = (k - begin)/steps_a_turn
          if (r%is_all) return
       end do

@@ -100,7 +100,7 @@ contains
       type(row_t) :: row(1)
       real(wp) :: error(3, 0:2, 1), growth
 
-      call rows_at(s, s%now%rows(c%request)%part, [c%request], t, row, with_errors, error, growth)
+      call rows_at(s, [c%request], t, row, with_errors, error, growth)
       sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), row(1)%known, growth)
    end subroutine look_at_column
 

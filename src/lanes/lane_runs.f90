@@ -232,7 +232,6 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       logical, intent(out) :: is_done
-      real(wp) :: growth
       integer :: u, k
 
       call come_back(r%s%list(1))
@@ -250,8 +249,8 @@ contains
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
       end associate
-      call take_state(r%s, t, growth, is_done)
-      if (is_done) call find_next(r%asked%extremes, r%s, 1, t, growth=growth)
+      call take_state(r%s, t, is_done)
+      if (is_done) call find_next(r%asked%extremes, r%s, 1, t, .false.)
    end subroutine watch_lane
 
    !> Gives the engine of `r` the motions of lane `i`, for the next instants or for times between.
@@ -263,6 +262,7 @@ contains
       associate (a => r%s%list(1))
          call come_back(a)
          call unload_lane(l, i, a%engine)
+         r%s%is_in_lane = .false.
          a%t = a%engine%history%t(0)
       end associate
    end subroutine give_back

@@ -5,6 +5,7 @@ module assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, plane_origin
+   use separations, only: separation
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
@@ -92,7 +93,7 @@ contains
       type(block_engine_t) :: e
       type(convergence_t) :: c
       type(motion_t) :: q
-      real(wp) :: off(3, size(m%links)), nearest
+      real(wp) :: apart, nearest
       logical :: unused
       integer :: i
 
@@ -105,11 +106,9 @@ contains
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
          do i = 1, size(a%list)
-            off = a%list(i)%position - q%position
-            off(:2, :) = off(:2, :)/e%blocks%numbers%span
-            off(3, :) = without_turns(off(3, :))
-            if (maxval(abs(off)) > nearest) cycle
-            nearest = maxval(abs(off))
+            apart = maxval(separation(a%list(i)%position, q%position, e%blocks%numbers%span))
+            if (apart > nearest) cycle
+            nearest = apart
             a%chosen = i
          end do
       end if

@@ -15,14 +15,15 @@ module set_analysis
       mark_inconsistent
    use block_rank, only: values_t, decomposed, max_rows
    use block_state, only: state_t
+   use separations, only: motions_apart
    use independent, only: request_of
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, rows_at, &
-      sample_set, prove_set, set_bounds, set_closing_diagnostics
+   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, &
+      rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -33,6 +34,8 @@ module set_analysis
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
       logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
+      logical :: is_in_lane = .false.                       !< a lane has found `now`; the engine is not there
+      real(wp) :: growth = 0.0_wp                           !< then: by which roundings grow, whose digits are safe
    end type set_analysis_t
 
 contains
@@ -101,6 +104,8 @@ contains
       end associate
       s%certificate_counts = certificate_counts_t()
       s%told_drives = .false.
+      s%is_in_lane = .false.
+      s%now%has_begun = .false.
    end subroutine renew_set_analysis
 
    !> Solves instant `t` of the set.
@@ -109,6 +114,7 @@ contains
       real(wp), intent(in) :: t
       integer :: c
 
+      s%is_in_lane = .false.
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
          if (s%now%motions(c)%mark == mark_inconsistent) call tell_surplus_drives(s, c)
@@ -117,10 +123,9 @@ contains
    end subroutine advance_set
 
    !> Takes the instant `t` of a set of one mechanism, with the motion that a lane has put into the engine's state.
-   subroutine take_state(s, t, growth, is_taken)
+   subroutine take_state(s, t, is_taken)
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t              !< time
-      real(wp), intent(out) :: growth        !< the factor by which roundings grow
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
       logical :: is_finite, in_doubt
 
@@ -128,9 +133,10 @@ contains
          q%t = t
          if (allocated(q%diagnostics)) deallocate (q%diagnostics)
          call get_motion(engine, q, is_finite)
-         call find_growth(s%estimators(1)%sizes, s%now%parts(1), engine, q, growth, in_doubt)
+         call find_growth(s%estimators(1)%sizes, s%now%parts(1), engine, q, s%growth, in_doubt)
       end associate
       is_taken = is_finite .and. .not. in_doubt
+      s%is_in_lane = .true.
       if (is_taken) call keep_instant(s)
    end subroutine take_state
 
@@ -140,6 +146,8 @@ contains
    subroutine keep_instant(s)
       type(set_analysis_t), intent(inout) :: s
 
+      if (.not. s%now%has_begun) s%now%first = s%now%motions(:size(s%now%first))
+      s%now%has_begun = .true.
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
       else
@@ -194,37 +202,42 @@ contains
       end associate
    end subroutine tell_surplus_drives
 
-   !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
-   !> time `t` between the instants; nothing else changes. rows%known is -1 without a motion. `error` (3, 0:2, rows):
-   !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0; `growth`: by how much
-   !> roundings grow. Without `always` nothing is estimated, and both are 0.
-   subroutine rows_at(s, c, list, t, rows, always, error, growth)
+   !> Finds the rows of requests of the set at its last instant, or at a time between the instants. Nothing else
+   !> changes. Without `always` nothing is estimated: errors and growth are 0.
+   subroutine rows_at(s, list, t, rows, always, error, growth)
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c, list(:)
-      real(wp), intent(in) :: t
-      type(row_t), intent(inout) :: rows(size(list))
-      logical, intent(in), optional :: always
-      real(wp), intent(out), optional :: error(3, 0:2, size(list)), growth
+      integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
+      real(wp), intent(in) :: t              !< the time, at most that of the last instant
+      type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
+      logical, intent(in), optional :: always   !< errors are estimated also where no digit of a table is in doubt
+      real(wp), intent(out), optional :: error(3, 0:2, size(list))   !< in the deck's units and rad
+      real(wp), intent(out), optional :: growth   !< the factor by which roundings grow
       type(motion_t) :: q
       logical :: is_found
+      integer :: c
 
       if (present(error)) error = 0.0_wp
       if (present(growth)) growth = 0.0_wp
+      c = s%now%rows(list(1))%part
       if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
          q = new_motion(size(s%now%parts(c)%links))
          call look_at(s%list(c), t, q, is_found)
          rows%known = -1
-         if (is_found) call take(q)
+         if (is_found) call take(q, present(always))
+      else if (s%is_in_lane) then
+         call take(s%now%motions(c), .false.)
+         if (present(growth)) growth = s%growth
       else
          call come_back(s%list(c))
-         call take(s%now%motions(c))
+         call take(s%now%motions(c), present(always))
       end if
 
    contains
 
       !> Takes the rows of the motion `q`, and its errors.
-      subroutine take(q)
-         type(motion_t), intent(in) :: q
+      subroutine take(q, with_errors)
+         type(motion_t), intent(in) :: q     !< the engine has found it if `with_errors`
+         logical, intent(in) :: with_errors
          type(error_estimate_t) :: estimate
          integer :: i
 
@@ -232,7 +245,7 @@ contains
             do i = 1, size(list)
                call find_row(own, q, request_of(s%now, list(i)), rows(i))
             end do
-            if (.not. present(always)) return
+            if (.not. with_errors) return
             call estimate_errors(s%estimators(c), own, a%engine, q, always, .false., estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
@@ -242,6 +255,15 @@ contains
          end associate
       end subroutine take
    end subroutine rows_at
+
+   !> Finds how far the last motion of independent mechanism `c` is from its first: see `motions_apart`.
+   pure function apart_from_first(s, c) result(apart)
+      type(set_analysis_t), intent(in) :: s
+      integer, intent(in) :: c
+      real(wp) :: apart(3)
+
+      apart = motions_apart(s%now%parts(c), s%now%first(c), s%now%motions(c))
+   end function apart_from_first
 
    !> How far the motion found last is known, and its sensitivities to the numbers with tolerances, where there are any.
    !> `always`: also where no digit of a table is in doubt.

@@ -20,6 +20,8 @@ module set_motion
       type(error_estimate_t), allocatable :: errors(:)
       type(sensitivities_t), allocatable :: sensitivities(:)
       type(motion_proof_t), allocatable :: proofs(:)
+      logical :: has_begun = .false.                !< the first instant is taken
+      type(motion_t), allocatable :: first(:)       !< its motions; of size 0 if no extremes are asked for
    end type set_motion_t
 
 contains
@@ -41,6 +43,7 @@ contains
          call divide(m, s%set_t)
       end if
       allocate (s%motions(s%count), s%errors(s%count), s%sensitivities(s%count), s%proofs(s%count))
+      allocate (s%first(merge(s%count, 0, any([(any(s%parts(c)%requests%extremes), c=1, s%count)]))))
       do c = 1, s%count
          s%motions(c) = new_motion(size(s%parts(c)%links))
       end do
@@ -75,3 +78,4 @@ contains
       end associate
    end subroutine find_row_in_set
 end module set_motion
+
