@@ -29,10 +29,12 @@ module job
    use picture, only: put_picture
    use animation, only: put_animation
    use circuits, only: circuits_t
-   use circuits_table, only: find_all_circuits
+   use set_circuits, only: find_all_circuits
    use circuits_picture, only: put_circuits
-   use answers, only: answers_t, new_answers, take_instant, put_answers
-   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
+   use answers, only: answers_t, new_answers, take_instant, finish_answers
+   use answer_tables, only: put_answers
+   use counts, only: note_flag
+   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
       put_variants_end
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
@@ -324,6 +326,7 @@ contains
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
+         type(variant_row_t) :: rows(width)
          type(lanes_t) :: lanes
          integer :: k, count
 
@@ -331,34 +334,39 @@ contains
          do while (n <= last)
             count = min(width, last - n + 1)
             do k = 1, count
-               runs(k)%row = new_row(summary, v, n + k - 1)
-               call start(runs(k))
+               rows(k) = new_row(summary, v, n + k - 1)
+               call start(runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
             do k = 1, count
                if (is_over(o)) return
-               if (runs(k)%row%rejected == '') call fill_row(summary, runs(k)%s%now, runs(k)%asked, runs(k)%row)
-               if (runs(k)%row%rejected /= '') call fill_row(summary, m, runs(k)%asked, runs(k)%row)
-               call write_row(runs(k)%row)
+               if (rows(k)%rejected == '') then
+                  rows(k)%counts_t = runs(k)%counts
+                  call fill_row(summary, runs(k)%s%now, runs(k)%asked, rows(k))
+               else
+                  call fill_row(summary, m, runs(k)%asked, rows(k))
+               end if
+               call write_row(rows(k))
                n = n + 1
             end do
          end do
       end subroutine run_together
 
-      !> Makes the variant of `v` whose row `r` has, unless it is refused.
-      subroutine start(r)
+      !> Makes the variant of `v` whose `row` this is, unless it is refused.
+      subroutine start(r, row)
          type(lane_run_t), intent(inout) :: r
+         type(variant_row_t), intent(inout) :: row
          type(findings_t) :: findings
          logical :: is_done
 
-         call build_variant(v, r%row%number, r%m, r%row%rejected)
-         r%is_over = r%row%rejected /= ''
+         call build_variant(v, row%number, r%m, row%rejected)
+         r%is_over = row%rejected /= ''
          if (r%is_over) return
          ! A variant with the structure of the one before takes over what that has made.
          call renew_set_analysis(r%m, r%s, is_done)
          if (.not. is_done) then
-            call check_variant(r%m, findings, r%row)
-            r%is_over = r%row%rejected /= ''
+            call check_variant(r%m, findings, row)
+            r%is_over = row%rejected /= ''
             if (r%is_over) return
             call make_set_analysis(r%m, r%s, findings)
          end if
@@ -452,7 +460,7 @@ contains
             call prove_set(a, due)
             if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
-         call note_flag(row, a)
+         call note_flag(row%counts_t, a)
 
          ! Only what is shown needs samples.
          if (o%asked(out_table) .or. (due .and. (lists .or. o%asked(out_csv)))) call sample_set(a, o%options%errors)
@@ -476,6 +484,7 @@ contains
          return
       end do
       if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
+      if (lists) call finish_answers(asked, a)
       if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
       if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))

@@ -10,14 +10,13 @@ module extremes
    use columns, only: columns_of_rows, forms, form_of, column_at, of_angle
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t
-   use table, only: format_t
    use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
+   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, &
       rows_asked, new_extremes, offer, offer_sample, note_velocity, note_interval, is_cyclic, is_covered, &
-      varies, strokes_t, strokes_of, ratio_format, badly_known, alike, never_better
+      varies, strokes_t, strokes_of, badly_known, alike, never_better
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
    !> errors below a table's last digit reach it.
@@ -31,11 +30,8 @@ module extremes
    real(wp), parameter :: badly_known = 1.0e-3_wp
    !> So many parts at least has a turn of a drive, and a period of a harmonic law.
    integer, parameter :: parts_of_turn = 12
-   !> Of a ratio of times.
-   type(format_t), parameter :: ratio_format = format_t(decimals=6)
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
-   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 

@@ -14,7 +14,7 @@ module lane_runs
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
    use rows, only: finished_row_t
-   use variant_rows, only: variant_row_t, note_flag
+   use counts, only: counts_t, note_flag
    use system_calls, only: signal_received
    use lane_sines, only: width
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
@@ -34,7 +34,7 @@ module lane_runs
    !> A variant, and how far it has come.
    type :: lane_run_t
       type(mechanism_t) :: m
-      type(variant_row_t) :: row
+      type(counts_t) :: counts
       type(answers_t) :: asked
       type(set_analysis_t) :: s
       integer :: at = -1                    !< the last instant solved
@@ -54,6 +54,7 @@ contains
       r%patience = first_patience
       r%is_over = .false.
       r%is_laned = .false.
+      r%counts = counts_t()
    end subroutine begin_run
 
    !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
@@ -159,7 +160,7 @@ contains
       integer, intent(in) :: n
 
       r%at = r%at + n
-      r%row%solved = r%row%solved + n
+      r%counts%solved = r%counts%solved + n
       r%is_over = r%at == instant_count(r%m) - 1
       r%is_laned = .not. r%is_over
    end subroutine count_instants
@@ -216,7 +217,7 @@ contains
 
       do k = r%at + 1, min(last, instant_count(r%m) - 1)
          call advance_set(r%s, instant(r%m, k))
-         call note_flag(r%row, r%s)
+         call note_flag(r%counts, r%s)
          call take_instant(r%asked, r%s, no_rows, k, .true.)
          r%at = k
          if (signal_received() > 0) return

@@ -63,7 +63,7 @@ equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: r
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 # The files whose dummies all have their meaning, unit and shape; those of new folders and files belong to them.
 explained='src/mechanism/columns.f90 src/rows/rows.f90 src/results/table.f90 src/results/listing_layout.f90
-   src/results/listing_tables.f90 src/results/csv.f90 src/rows/set_motion.f90 src/answers/tolerance_shares.f90'
+   src/results/listing_tables.f90 src/results/csv.f90 src/rows/set_motion.f90 src/answers/tolerance_shares.f90 src/results/shares_table.f90'
 equal 'dummies without their meaning' '' "$(awk -f tests/system/dummies.awk $explained)"
 printf '      integer, intent(in) :: a !< One.\n      real(wp), intent(in) :: b\n      type(x_t), intent(in) :: c\n' > "$BUILD/order/dummies.f90"
 equal 'a dummy without its meaning is found' "$BUILD/order/dummies.f90:2:       real(wp), intent(in) :: b" \

@@ -6,24 +6,23 @@ module variant_rows
    use columns, only: cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
    use table, only: format_t, cell_t, choose_digits
-   use motion, only: mark_none, diagnostic_t, diagnostic_limit
+   use motion, only: mark_none
    use drives, only: drive_motion
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
-   use set_analysis, only: set_analysis_t
-   use set_motion, only: is_flagged
    use listing_layout, only: layout_t, angle_unit, column_name, column_unit
    use csv, only: marks, table_t, new_table, drive_columns, dotted
-   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, strokes_of, &
-      ratio_format
+   use extremes, only: strokes_t, least, greatest, outward, rows_asked, strokes_of
+   use extremes_table, only: extreme_words, ratio_format
    use ranges, only: low, high
    use answers, only: answers_t
+   use counts, only: counts_t
    use numerals, only: whole
    use phrases
    implicit none
    private
-   public :: summary_t, summary_column_t, variant_row_t, new_summary, new_row, note_flag, fill_row
+   public :: summary_t, summary_column_t, variant_row_t, new_summary, new_row, fill_row
 
    !> Roundings of a coordinate and of the difference of two.
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
@@ -44,15 +43,10 @@ module variant_rows
       type(table_t) :: extremes                     !< the columns of what EXTREMES asks for
    end type summary_t
 
-   type :: variant_row_t
+   type, extends(counts_t) :: variant_row_t
       integer :: number = 0                         !< of the variant
       type(cell_t), allocatable :: cells(:)         !< (columns)
       character(:), allocatable :: rejected         !< the error for which it is not computed; '' for none
-      integer :: solved = 0, flagged = 0            !< instants
-      integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
-      integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
-      real(wp) :: t = 0.0_wp                        !< its time
-      type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
    end type variant_row_t
 
 contains
@@ -205,33 +199,6 @@ contains
          r%cells(i + 1) = cell_t(cell_number, values(i))
       end do
    end function new_row
-
-   !> Takes the instant to which `a` has advanced: whether it is flagged, and of the first one why.
-   subroutine note_flag(r, a)
-      type(variant_row_t), intent(inout) :: r
-      type(set_analysis_t), intent(in) :: a
-      integer :: c, i
-
-      if (.not. is_flagged(a%now)) then
-         r%solved = r%solved + 1
-         return
-      end if
-      r%flagged = r%flagged + 1
-      do c = 1, a%now%count
-         associate (q => a%now%motions(c))
-            if (r%mark == mark_none .and. q%mark /= mark_none) then
-               r%mark = q%mark
-               r%singularity = q%singularity
-               r%t = q%t
-            end if
-            if (r%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
-            i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
-            if (i == 0) cycle
-            r%limit = q%diagnostics(i)
-            r%limit%part = c
-         end associate
-      end do
-   end subroutine note_flag
 
    !> Fills the cells of `r`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
    subroutine fill_row(s, set, asked, r)

@@ -7,7 +7,7 @@ module extremes_table
    use mechanism, only: request_t
    use separations, only: closes
    use columns, only: columns_of_rows, column_at, cell_none, cell_unbounded, of_length, of_angle
-   use table, only: number_text
+   use table, only: format_t, number_text
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
    use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
@@ -15,18 +15,21 @@ module extremes_table
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      is_cyclic, is_covered, ratio_format, varies
+   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, strokes_of, &
+      is_cyclic, is_covered, varies
    use dwells, only: dwell_t
    use phrases
    implicit none
    private
-   public :: put_extremes
+   public :: put_extremes, extreme_words, ratio_format
 
    !> Digits of a closure.
    integer, parameter :: closure_digits = 3
    !> Of more gaps only the first are told.
    integer, parameter :: max_gaps = 4
+   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
+   !> Of a ratio of times.
+   type(format_t), parameter :: ratio_format = format_t(decimals=6)
 
 contains
 
