@@ -11,7 +11,8 @@ module block_engine
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known
+   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known, &
+      own_unknowns
    use block_numbers, only: put_numbers
    use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
    use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
@@ -408,7 +409,7 @@ contains
          if (e%blocks%list(i)%direct) then
             call solve_direct(e%blocks, i, s)
          else if (e%history%filled == 0) then
-            call set_values(e%blocks, i, e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)), s)
+            call set_values(e%blocks, i, e%estimated(own_unknowns(e%blocks, i)), s)
          end if
       end do
    end subroutine followed_state
@@ -420,7 +421,7 @@ contains
       integer, intent(in) :: i, own
       integer, intent(inout) :: missing(0:)
 
-      missing(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) &
+      missing(own_unknowns(e%blocks, i)) &
          = max(own, largest_known(e%blocks, i, missing))
    end subroutine note_block
 

@@ -5,7 +5,7 @@ module changed_rows
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, forget_links
    use points, only: row_t, find_row
-   use blocks, only: largest_known
+   use blocks, only: largest_known, own_unknowns
    use block_state, only: unknown_t
    use block_solver, only: solve_block
    use block_matrix, only: solve_first, solve_again
@@ -201,7 +201,7 @@ contains
       integer :: order, info
 
       associate (shape => e%blocks%list(i)%shape, w => e%work, &
-         own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         own => own_unknowns(e%blocks, i))
          call assemble_dense(e%blocks, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)

@@ -10,7 +10,7 @@ module assemblies
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use first_instant, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
-   use blocks, only: largest_known
+   use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
    use ball_equations, only: ball_numbers_t
@@ -184,7 +184,7 @@ contains
          end if
          call set_values(e%blocks, i, found(i)%x(:, chosen(i)), e%state)
          choice = choice + 1
-         changed(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) = choice
+         changed(own_unknowns(e%blocks, i)) = choice
          i = i + 1
       end do
       do k = 1, size(a%blocks)
