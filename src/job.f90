@@ -45,7 +45,7 @@ module job
    use set_motion, only: new_set_motion, has_words
    use rows, only: finished_row_t, find_rows
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, begin_analysis, advance_set, &
-      sample_set, prove_set, set_closing_diagnostics
+      sample_set, prove_set, set_certificates, set_closing_diagnostics
    use analysis, only: redundancy_error
    implicit none
    private
@@ -70,8 +70,8 @@ contains
    !> Does what `options` say. `status`: the exit status; `message`: lines for standard error, '' for none.
    subroutine run_job(options, status, message)
       type(options_t), intent(in) :: options
-      integer, intent(out) :: status
-      character(:), allocatable, intent(out) :: message
+      integer, intent(out) :: status         !< exit status
+      character(:), allocatable, intent(out) :: message !< lines for standard error
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
       type(findings_t), allocatable, save :: findings(:)
@@ -216,7 +216,7 @@ contains
    !> its own: a picture shows links that no table asks for, and what is printed must not depend on it.
    subroutine draw_set(m, sets, o, pages)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: sets
+      integer, intent(in) :: sets            !< their count
       type(writers_t), intent(inout) :: o
       type(page_t), intent(inout), target :: pages(out_svg:)
       type(mechanism_t) :: film
@@ -241,7 +241,7 @@ contains
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    subroutine run_set(m, i, first, last, findings, o)
       type(mechanism_t), intent(inout) :: m
-      integer, intent(in) :: i, first, last
+      integer, intent(in) :: i, first, last  !< numbers of the set and of variants
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       type(failure_t), allocatable :: failure
@@ -285,7 +285,7 @@ contains
    !> Solves and writes the variants `first` to `last` of `v`, those of the set `m`.
    subroutine run_variants(m, first, last, v, o)
       class(set_t), intent(in) :: m
-      integer, intent(in) :: first, last
+      integer, intent(in) :: first, last     !< numbers of variants
       type(variation_t), intent(inout) :: v
       type(writers_t), intent(inout) :: o
       type(layout_t) :: layout
@@ -422,7 +422,7 @@ contains
    !> together as there are lanes.
    pure logical function are_together(m, prints, o)
       class(settings_t), intent(in) :: m
-      logical, intent(in) :: prints
+      logical, intent(in) :: prints          !< the set has PRINT cards
       class(outputs_t), intent(in) :: o
 
       are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
@@ -433,7 +433,7 @@ contains
    subroutine run_motion(a, findings, full, o, row, asked)
       type(set_analysis_t), intent(inout) :: a
       type(findings_t), intent(inout) :: findings
-      logical, intent(in) :: full
+      logical, intent(in) :: full            !< with tables
       type(writers_t), intent(inout) :: o
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
@@ -486,7 +486,7 @@ contains
       if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
       if (lists) call finish_answers(asked, a)
       if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
-      if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
+      if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, set_certificates(a), &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))
    end subroutine run_motion
 
@@ -496,7 +496,7 @@ contains
       type(writers_t), intent(inout) :: o
       class(settings_t), intent(in) :: m
       type(phrase_t), intent(in) :: words
-      integer, intent(in) :: number
+      integer, intent(in) :: number          !< from 1; of an instant from 0
 
       if (o%ended) return
       o%ended = .true.

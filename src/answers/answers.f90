@@ -34,7 +34,7 @@ contains
    !> shares of tolerances.
    subroutine new_answers(s, lists, a)
       type(set_analysis_t), intent(in) :: s
-      logical, intent(in) :: lists
+      logical, intent(in) :: lists           !< the tables of the set are written
       type(answers_t), intent(out) :: a
       integer :: c
 
@@ -53,8 +53,8 @@ contains
       type(answers_t), intent(inout) :: a
       type(set_analysis_t), intent(inout) :: s
       type(finished_row_t), intent(in) :: rows(:)
-      integer, intent(in) :: k
-      logical, intent(in) :: due
+      integer, intent(in) :: k               !< the number of the instant, from 0
+      logical, intent(in) :: due             !< it is printed
 
       if (s%now%proves) call note_proof(a%proofs, s, k, due)
       if (s%now%ranges .and. k == 0) call find_ranges(s, a%ranges)

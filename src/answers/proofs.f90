@@ -46,8 +46,8 @@ contains
    subroutine note_proof(p, s, k, due)
       type(proofs_t), intent(inout) :: p
       type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: k
-      logical, intent(in) :: due
+      integer, intent(in) :: k               !< the number of the instant, from 0
+      logical, intent(in) :: due             !< it is printed
       type(reason_t) :: reason
       integer :: c
 

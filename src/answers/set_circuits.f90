@@ -92,7 +92,7 @@ contains
 
    !> `x` (rad or length), 0 if it is rounding.
    pure real(wp) function known(x)
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x              !< rad or length
 
       known = merge(0.0_wp, x, abs(x) <= rounding)
    end function known

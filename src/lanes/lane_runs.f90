@@ -128,9 +128,9 @@ contains
    subroutine look_at_step(r, l, i, j, t)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
       type(judgement_t), intent(in) :: j
-      real(wp), intent(inout) :: t
+      real(wp), intent(inout) :: t           !< time
       logical :: is_refused, counts
 
       is_refused = j%refused(i) > 0.5_wp
@@ -157,7 +157,7 @@ contains
    !> The next `n` instants of `r` are solved and regular.
    pure subroutine count_instants(r, n)
       type(lane_run_t), intent(inout) :: r
-      integer, intent(in) :: n
+      integer, intent(in) :: n               !< at least 0
 
       r%at = r%at + n
       r%counts%solved = r%counts%solved + n
@@ -169,7 +169,7 @@ contains
    subroutine take_over(r, l, i)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
 
       do while (.not. (r%is_over .or. r%is_laned) .and. signal_received() == 0)
          call load_run(r, l, i, r%is_laned)
@@ -184,8 +184,8 @@ contains
    subroutine load_run(r, l, i, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
-      logical, intent(out) :: is_done
+      integer, intent(in) :: i               !< its number
+      logical, intent(out) :: is_done        !< the lane has them
       real(wp) :: step, away
 
       is_done = .false.
@@ -211,7 +211,7 @@ contains
    !> Solves the next instants of `r` by the engine, up to number `last` or the last that there is.
    subroutine by_engine(r, last)
       type(lane_run_t), intent(inout) :: r
-      integer, intent(in) :: last
+      integer, intent(in) :: last            !< the number of an instant
       type(finished_row_t) :: no_rows(0)
       integer :: k
 
@@ -230,9 +230,9 @@ contains
    subroutine watch_lane(r, l, i, t, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      logical, intent(out) :: is_done
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(in) :: t              !< time
+      logical, intent(out) :: is_done        !< the motion is taken
       integer :: u, k
 
       call come_back(r%s%list(1))
@@ -258,7 +258,7 @@ contains
    subroutine give_back(r, l, i)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
 
       associate (a => r%s%list(1))
          call come_back(a)

@@ -49,18 +49,26 @@ contains
    !> Value, rate and acceleration (3) at the time `t`, in the drive's unit (length or rad) and the deck's unit of time.
    pure function drive_motion(law, t) result(f)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
-      integer :: i
 
       associate (c => law%polynomial)
          f(1) = c(1) + t*(c(2) + t*c(3)/2.0_wp)
          f(2) = c(2) + t*c(3)
          f(3) = c(3)
       end associate
-      if (.not. allocated(law%terms)) return
-      do i = 1, size(law%terms)
-         associate (term => law%terms(i))
+      if (allocated(law%terms)) call add_terms(law%terms, t, f)
+   end function drive_motion
+
+   !> Adds to a value, rate and acceleration those of terms at a time.
+   pure subroutine add_terms(terms, t, f)
+      type(term_t), intent(in) :: terms(:)
+      real(wp), intent(in) :: t              !< time
+      real(wp), intent(inout) :: f(3)        !< in the drive's unit (length or rad) and the deck's unit of time
+      integer :: i
+
+      do i = 1, size(terms)
+         associate (term => terms(i))
             select case (term%kind)
             case (term_harmonic)
                f = f + harmonic_motion(term%r, t)
@@ -74,15 +82,15 @@ contains
             end select
          end associate
       end do
-   end function drive_motion
+   end subroutine add_terms
 
    !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
    !> last pieces; with a power that does not exist somewhere in the interval there are no bounds. `one_instant`: it is
    !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
    pure function bounds_of(law, t1, t2, one_instant) result(b)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2
-      logical, intent(in), optional :: one_instant
+      real(wp), intent(in) :: t1, t2         !< times
+      logical, intent(in), optional :: one_instant !< the interval is one instant
       type(bounds_t) :: b, of_term
       real(wp) :: from, to, times(3)
       integer :: i, k
@@ -127,7 +135,7 @@ contains
    !> `magnitudes` (0:2).
    pure subroutine widen(b, f, magnitudes)
       type(bounds_t), intent(inout) :: b
-      real(wp), intent(in) :: f(0:2), magnitudes(0:2)
+      real(wp), intent(in) :: f(0:2), magnitudes(0:2) !< in the units of the bounds
 
       b%low = min(b%low, f - margin*magnitudes)
       b%high = max(b%high, f + margin*magnitudes)
@@ -135,7 +143,7 @@ contains
 
    !> Finds the nearest to `t` of the times from `from` to `to`.
    elemental real(wp) function within(t, from, to)
-      real(wp), intent(in) :: t, from, to
+      real(wp), intent(in) :: t, from, to    !< times
 
       within = min(max(t, from), to)
    end function within
@@ -144,7 +152,7 @@ contains
    !> unit of time; `bounds_of` has true bounds.
    pure real(wp) function drive_rate(drive, t) result(rate)
       type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time, at least 0
       integer :: i
 
       rate = abs(drive%polynomial(2)) + abs(drive%polynomial(3))*t
@@ -204,7 +212,7 @@ contains
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
    pure function harmonic_bounds(r, from, to) result(b)
-      real(wp), intent(in) :: r(3), from, to
+      real(wp), intent(in) :: r(3), from, to !< amplitude, frequency, phase; times in their order
       type(bounds_t) :: b
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
          sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
@@ -241,7 +249,7 @@ contains
 
    !> c t**p; a whole number p is an integer exponent, so that t may be zero or negative.
    pure real(wp) function monomial(c, p, t)
-      real(wp), intent(in) :: c, p, t
+      real(wp), intent(in) :: c, p, t        !< factor, exponent, time
       real(wp), parameter :: largest_whole = 1.0e6_wp
 
       if (abs(c) <= 0.0_wp) then
@@ -255,7 +263,7 @@ contains
 
    !> r1 t**r2 and its first two derivatives (3) at the time `t`.
    pure function power_motion(r, t) result(f)
-      real(wp), intent(in) :: r(3), t
+      real(wp), intent(in) :: r(3), t        !< factor, exponent; time
       real(wp) :: f(3)
 
       f = [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
@@ -281,7 +289,7 @@ contains
       end do
    end function power_bounds
 
-   !> Finds the sizes (3) of a power at the times -`t` and `t`: where it grows more slowly than the time, those at `last`.
+   !> Finds the sizes (3) of a power at the times -`t` and `t`; where it grows more slowly than the time, at `last`.
    pure function power_sizes(r, t, last) result(sizes)
       real(wp), intent(in) :: r(3)           !< factor, exponent
       real(wp), intent(in) :: t, last        !< times
@@ -300,7 +308,7 @@ contains
 
    !> Whether t**p and its first two derivatives exist at the time `t`.
    pure logical function exists(p, t)
-      real(wp), intent(in) :: p, t
+      real(wp), intent(in) :: p, t           !< exponent; time
 
       exists = t > 0.0_wp .or. abs(p - anint(p)) <= 0.0_wp
       if (abs(t) <= 0.0_wp) exists = p >= 2.0_wp .or. abs(p*(p - 1.0_wp)) <= 0.0_wp
@@ -348,8 +356,8 @@ contains
    pure subroutine widen_by_piece(b, s, i, t1, t2)
       type(bounds_t), intent(inout) :: b
       type(spline_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t1, t2
+      integer, intent(in) :: i               !< number of the piece
+      real(wp), intent(in) :: t1, t2         !< times in their order
       real(wp) :: f(3), u(5), h, reach, slope, q, root, magnitude, curve, away
       integer :: k
 
@@ -397,8 +405,8 @@ contains
    !> s(u) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before u = 0, and 1 from u = 1 on.
    !> The second derivative is that of the piece in which `at` lies, continued to u.
    pure function rise_shape(kind, u, at) result(s)
-      integer, intent(in) :: kind
-      real(wp), intent(in) :: u, at
+      integer, intent(in) :: kind            !< term_cycloid, ..., term_parabola
+      real(wp), intent(in) :: u, at          !< parts of the duration
       real(wp) :: s(3), v, w
 
       v = min(max(u, 0.0_wp), 1.0_wp)
@@ -451,8 +459,8 @@ contains
    !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
    pure function rise_bounds(term, from, to, one_instant) result(b)
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: from, to
-      logical, intent(in), optional :: one_instant
+      real(wp), intent(in) :: from, to       !< times in their order
+      logical, intent(in), optional :: one_instant !< the interval is one instant
       type(bounds_t) :: b
       !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
@@ -479,7 +487,7 @@ contains
    pure subroutine widen_by_rise(b, term, u, at)
       type(bounds_t), intent(inout) :: b
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: u, at
+      real(wp), intent(in) :: u, at          !< parts of the duration
       real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
 
       s = rise_shape(term%kind, u, at)
@@ -495,7 +503,7 @@ contains
    !> itself is as large.
    pure function growing_sizes(law, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: last
+      real(wp), intent(in) :: last           !< time, at least 0
       real(wp) :: sizes(3, 0:1)
 
       sizes(:, 0) = sizes_at(law, 0.0_wp, last)
@@ -505,7 +513,7 @@ contains
    !> The sizes (3) at the times -`t` and `t`. Between t = 0 and `last` none of them is above its chord.
    pure function sizes_at(law, t, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t, last
+      real(wp), intent(in) :: t, last        !< times
       real(wp) :: sizes(3)
       integer :: i
 
@@ -533,7 +541,7 @@ contains
    !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
    elemental logical function is_at_rest(law, t1, t2)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2
+      real(wp), intent(in) :: t1, t2         !< times
       type(bounds_t) :: b
       real(wp) :: width, from
 
@@ -548,8 +556,8 @@ contains
    !> Halves the interval from `low`, until which a condition holds, to `high`, from which it does not; `holds`: at the
    !> middle of the two. In digits(1.0_wp) calls the interval becomes that of two neighbours.
    pure subroutine halve(holds, low, high)
-      logical, intent(in) :: holds
-      real(wp), intent(inout) :: low, high
+      logical, intent(in) :: holds           !< at the middle
+      real(wp), intent(inout) :: low, high   !< times
       real(wp) :: middle
 
       middle = middle_of(low, high)
@@ -559,7 +567,7 @@ contains
 
    !> The time halfway between `low` and `high`.
    pure real(wp) function middle_of(low, high) result(middle)
-      real(wp), intent(in) :: low, high
+      real(wp), intent(in) :: low, high      !< times
 
       middle = low + 0.5_wp*(high - low)
    end function middle_of

@@ -2,16 +2,17 @@
 !> curvature.
 module points
    use kinds, only: wp, label_length
-   use mechanism, only: settings_t, mechanism_t, request_t, pair_t, has_guide, request_link, request_point, &
+   use mechanism, only: settings_t, mechanism_t, request_t, request_link, request_point, &
       request_pair, request_pole, request_curve, is_centre, instant_count, request_links
    use names, only: subject_name
    use columns, only: form_of
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from
+   use pair_geometry, only: pair_motion
    use planar, only: pi, direction, rotated, point_of, add_rotating
    use motion, only: motion_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, find_row, difference, is_due, is_listed, is_fixed
+   public :: row_t, find_row, difference, is_due, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
@@ -37,15 +38,6 @@ contains
       is_due = request%every > 0
       if (is_due) is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
-
-   !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
-   pure logical function is_listed(m, request, k)
-      class(settings_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      integer, intent(in) :: k
-
-      is_listed = request%listed .or. is_due(m, request, k)
-   end function is_listed
 
    !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every
    !> instant. A subroutine: of the many rows of a table none is copied.
@@ -85,7 +77,10 @@ contains
             end if
             row%value(:2, :) = point_motion(m, q, i)
          case (request_pair)
-            row%value(1, :) = pair_motion(m, q, m%pairs(i))
+            associate (pair => m%pairs(i))
+               row%value(1, :) = pair_motion(m, pair, link_motion(q, m%points(pair%point_i)%link), &
+                  link_motion(q, m%points(pair%point_j)%link), point_motion(m, q, pair%point_j))
+            end associate
             return
          case (request_pole)
             row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
@@ -154,24 +149,4 @@ contains
       p = x(:2, :)
       call add_rotating(u(1), u(2), x(3, 1), x(3, 2), p(:, 0), p(:, 1), p(:, 2))
    end function point_motion
-
-   !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
-   !> relative angle phi_j - phi_i of a revolute pair.
-   pure function pair_motion(m, q, pair) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(pair_t), intent(in) :: pair
-      real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), r(2, 0:2)
-
-      x = link_motion(q, m%points(pair%point_i)%link)
-      if (.not. has_guide(pair%kind)) then
-         y = link_motion(q, m%points(pair%point_j)%link)
-         s = y(3, :) - x(3, :)
-         return
-      end if
-      ! Along the guide as seen from link i, in which P is at rest.
-      r = seen_from(x, point_motion(m, q, pair%point_j))
-      r(:, 0) = r(:, 0) - m%points(pair%point_i)%offset
-      s = matmul(direction(pair%alpha), r)
-   end function pair_motion
 end module points

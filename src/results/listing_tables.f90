@@ -188,7 +188,8 @@ contains
       integer :: j, cell, start, last, end_of
 
       ! One name, or two in columns of their own.
-      line = ' '//row%name
+      line(1:1) = ' '
+      line(2:) = row%name
       end_of = name_length
       if (kinds_of_rows(row%kind)%names == 2) then
          j = index(row%name, ' ')

@@ -84,7 +84,7 @@ contains
 
    !> `text` at the right of a column.
    pure function column(text)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text       !< at most as long as the column
       character(number_width) :: column
 
       column = right(text, number_width)
@@ -92,7 +92,7 @@ contains
 
    !> `x` with one digit, rounded up; 0 is exact.
    pure function rounded_up(x) result(text)
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x              !< at least 0
       character(:), allocatable :: text
       character(8) :: field
       real(wp) :: large

@@ -4,7 +4,7 @@ module rows
    use kinds, only: wp
    use motion, only: motion_t, new_motion
    use columns, only: columns_of_rows, forms, kinds_of_rows, row_turning, of_length
-   use points, only: row_t, find_row, is_due, is_listed
+   use points, only: row_t, find_row, is_due
    use assemblies, only: assemblies_t
    use error_estimate, only: estimate_of, row_error
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -51,8 +51,8 @@ contains
       do i = 1, size(rows)
          associate (row => rows(i), c => motions%rows(i)%part, n => motions%rows(i)%number)
             associate (m => motions%parts(c), request => motions%parts(c)%requests(n), errors => motions%errors(c))
-               row%listed = is_listed(motions, request, step)
                row%due = is_due(motions, request, step)
+               row%listed = row%due .or. request%listed
                if (.not. (row%listed .or. all_of_them)) cycle
                row%part = c
                call find_row(m, motions%motions(c), request, row%row_t)

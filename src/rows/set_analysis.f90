@@ -10,7 +10,7 @@ module set_analysis
    use block_engine, only: get_motion
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
-   use set_motion, only: set_motion_t, new_set_motion
+   use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, motion_t, new_motion, &
       mark_inconsistent
    use block_rank, only: values_t, decomposed, max_rows
@@ -23,7 +23,8 @@ module set_analysis
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, &
-      rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_closing_diagnostics
+      rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
+      set_closing_diagnostics
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -32,7 +33,7 @@ module set_analysis
       class(estimator_t), allocatable :: estimators(:)      !< (parts)
       class(motion_prover_t), allocatable :: provers(:)     !< (parts)
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
-      type(certificate_counts_t) :: certificate_counts      !< of all instants
+      type(certificate_counts_t) :: worst                   !< of all instants, if the set has several parts
       logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
       logical :: is_in_lane = .false.                       !< a lane has found `now`; the engine is not there
       real(wp) :: growth = 0.0_wp                           !< then: by which roundings grow, whose digits are safe
@@ -82,7 +83,7 @@ contains
    subroutine renew_set_analysis(m, s, is_done)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
-      logical, intent(out) :: is_done
+      logical, intent(out) :: is_done        !< the structure is the same; otherwise `s` is of no use
 
       is_done = allocated(s%list) .and. m%method == method_newton
       if (is_done) is_done = size(s%list) == 1
@@ -102,7 +103,6 @@ contains
          s%now%motions(1) = new_motion(size(own%links))
          call make_estimator(s%estimators(1), own)
       end associate
-      s%certificate_counts = certificate_counts_t()
       s%told_drives = .false.
       s%is_in_lane = .false.
       s%now%has_begun = .false.
@@ -111,7 +111,7 @@ contains
    !> Solves instant `t` of the set.
    subroutine advance_set(s, t)
       type(set_analysis_t), intent(inout) :: s
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       integer :: c
 
       s%is_in_lane = .false.
@@ -148,18 +148,14 @@ contains
 
       if (.not. s%now%has_begun) s%now%first = s%now%motions(:size(s%now%first))
       s%now%has_begun = .true.
-      if (size(s%list) == 1) then
-         s%certificate_counts = s%list(1)%certificate_counts
-      else
-         call count_worst_motion(s)
-      end if
+      if (size(s%list) > 1) call count_worst_motion(s)
    end subroutine keep_instant
 
-   !> Counts the certificate of an instant: it is that of its worst motion.
+   !> Counts the certificate of an instant of several mechanisms: it is that of its worst motion.
    subroutine count_worst_motion(s)
       type(set_analysis_t), intent(inout) :: s
 
-      associate (counts => s%certificate_counts, kinds => s%list%branch%kind)
+      associate (counts => s%worst, kinds => s%list%branch%kind)
          counts%passed = sum(s%list%certificate_counts%passed)
          if (any(s%now%motions%known < 0)) return
          if (any(kinds == branch_none)) then
@@ -175,7 +171,7 @@ contains
    !> is left: it has a part in the equations y J = 0 between the rows of the Jacobian J.
    subroutine tell_surplus_drives(s, c)
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+      integer, intent(in) :: c               !< its number
       !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
       real(wp), parameter :: least_part = 1.0e-3_wp
       logical :: is_surplus(size(s%now%parts(c)%drives))
@@ -212,32 +208,43 @@ contains
       logical, intent(in), optional :: always   !< errors are estimated also where no digit of a table is in doubt
       real(wp), intent(out), optional :: error(3, 0:2, size(list))   !< in the deck's units and rad
       real(wp), intent(out), optional :: growth   !< the factor by which roundings grow
-      type(motion_t) :: q
-      logical :: is_found
-      integer :: c
+      integer :: i
 
       if (present(error)) error = 0.0_wp
       if (present(growth)) growth = 0.0_wp
-      c = s%now%rows(list(1))%part
-      if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
-         q = new_motion(size(s%now%parts(c)%links))
-         call look_at(s%list(c), t, q, is_found)
-         rows%known = -1
-         if (is_found) call take(q, present(always))
-      else if (s%is_in_lane) then
-         call take(s%now%motions(c), .false.)
+      if (s%is_in_lane .and. .not. abs(t - s%now%motions(1)%t) > 0.0_wp) then
+         do i = 1, size(list)
+            call find_row_in_set(s%now, list(i), rows(i))
+         end do
          if (present(growth)) growth = s%growth
       else
-         call come_back(s%list(c))
-         call take(s%now%motions(c), present(always))
+         call find_by_engine()
       end if
 
    contains
 
-      !> Takes the rows of the motion `q`, and its errors.
-      subroutine take(q, with_errors)
-         type(motion_t), intent(in) :: q     !< the engine has found it if `with_errors`
-         logical, intent(in) :: with_errors
+      !> Finds the rows with the engine at the motion of the time.
+      subroutine find_by_engine()
+         type(motion_t) :: q
+         logical :: is_found
+
+         associate (c => s%now%rows(list(1))%part)
+            if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
+               q = new_motion(size(s%now%parts(c)%links))
+               call look_at(s%list(c), t, q, is_found)
+               rows%known = -1
+               if (is_found) call take(c, q)
+            else
+               call come_back(s%list(c))
+               call take(c, s%now%motions(c))
+            end if
+         end associate
+      end subroutine find_by_engine
+
+      !> Takes the rows of the motion `q` of independent mechanism number `c`, and its errors.
+      subroutine take(c, q)
+         integer, intent(in) :: c            !< its number
+         type(motion_t), intent(in) :: q
          type(error_estimate_t) :: estimate
          integer :: i
 
@@ -245,7 +252,7 @@ contains
             do i = 1, size(list)
                call find_row(own, q, request_of(s%now, list(i)), rows(i))
             end do
-            if (.not. with_errors) return
+            if (.not. present(always)) return
             call estimate_errors(s%estimators(c), own, a%engine, q, always, .false., estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
@@ -259,7 +266,7 @@ contains
    !> Finds how far the last motion of independent mechanism `c` is from its first: see `motions_apart`.
    pure function apart_from_first(s, c) result(apart)
       type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: c
+      integer, intent(in) :: c               !< its number
       real(wp) :: apart(3)
 
       apart = motions_apart(s%now%parts(c), s%now%first(c), s%now%motions(c))
@@ -269,7 +276,7 @@ contains
    !> `always`: also where no digit of a table is in doubt.
    subroutine sample_set(s, always)
       type(set_analysis_t), intent(inout) :: s
-      logical, intent(in) :: always
+      logical, intent(in) :: always          !< also if no digit of a table is in doubt
       integer :: c
 
       do c = 1, size(s%list)
@@ -281,10 +288,18 @@ contains
       end do
    end subroutine sample_set
 
+   !> Gives the counts of certificates of all instants of the set.
+   pure type(certificate_counts_t) function set_certificates(s)
+      type(set_analysis_t), intent(in) :: s
+
+      set_certificates = s%worst
+      if (size(s%list) == 1) set_certificates = s%list(1)%certificate_counts
+   end function set_certificates
+
    !> Proves the motion found last, and the step to it; before any other motion is looked at.
    subroutine prove_set(s, bounded)
       type(set_analysis_t), intent(inout) :: s
-      logical, intent(in) :: bounded
+      logical, intent(in) :: bounded         !< bounds of all numbers are found as well
       integer :: c
 
       do c = 1, size(s%list)
