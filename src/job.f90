@@ -15,13 +15,14 @@ module job
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
    use system_calls, only: watch_signals, signal_received, write_bytes
-   use text_output, only: put, flush_output, turn_lost
+   use text_output, only: output_t, put, flush_output, turn_lost
    use processes, only: processor_count, end_process
    use command_line
    use outputs, only: outputs_t, open_outputs, open_table, close_outputs, is_over
    use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold, &
       remarks_text
+   use column_table, only: column_table_t, new_column_table, note_columns, put_columns
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
@@ -426,10 +427,12 @@ contains
       type(set_analysis_t), intent(inout) :: a
       type(findings_t), intent(inout) :: findings
       logical, intent(in) :: full
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout), target :: o
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(listing_state_t) :: state
+      type(column_table_t), target :: columns
+      type(output_t), pointer :: page        ! for what is printed at the instants
       type(finished_row_t), allocatable :: rows(:)
       integer, allocatable :: every(:)       ! rows are printed at each so many instants
       logical :: lists, due, talks
@@ -439,7 +442,10 @@ contains
       allocate (rows(size(a%now%rows)))
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
-      every = [(a%now%parts(n)%requests%every, n=1, a%now%count)]
+      if (lists) call new_column_table(o%layout, a%now, columns)
+      page => o%files(out_listing)
+      if (columns%alone) page => columns%remarks
+      every = [(merge(1, a%now%parts(n)%requests%every, a%now%parts(n)%requests%in_columns), n=1, a%now%count)]
       every = pack(every, every > 0)
       last = instant_count(a%now) - 1
       next = merge(0, huge(next), size(every) > 0)
@@ -458,8 +464,9 @@ contains
          if (o%asked(out_table) .or. (due .and. (lists .or. o%asked(out_csv)))) call sample_set(a, o%options%errors)
          talks = lists .and. (due .or. has_words(a%now))
          if (talks .or. o%asked(out_table) .or. (due .and. o%asked(out_csv))) &
-            call find_rows(a%now, k, o%asked(out_table), rows, a%assemblies)
-         if (talks) call listing_instant(o%files(out_listing), o%layout, a%now, rows, k, state)
+            call find_rows(a%now, k, o%asked(out_table) .or. allocated(columns%columns), rows, a%assemblies)
+         if (talks) call listing_instant(page, o%layout, a%now, rows, k, state)
+         if (allocated(columns%columns)) call note_columns(columns, o%layout, a%now, rows)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, rows, k, o%varies)
          if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now, rows)
          if (o%asked(out_log)) then
@@ -471,11 +478,13 @@ contains
 
          call take_instant(asked, a, rows, k, due)
          if (.not. is_over(o)) cycle
-         if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
+         if (lists) call put_untold(page, a%now%polish, state)
+         if (lists) call put_columns(o%files(out_listing), columns, a%now%polish)
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return
       end do
-      if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
+      if (lists) call put_untold(page, a%now%polish, state)
+      if (lists) call put_columns(o%files(out_listing), columns, a%now%polish)
       if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
       if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))

@@ -3,7 +3,7 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, request_t
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
    use drives, only: joints_of, largest_frequency
@@ -54,6 +54,7 @@ module extremes
       integer :: form = 0                              !< of the row
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
+      logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
@@ -136,12 +137,23 @@ contains
       asked = pack([(i, i=1, size(is_asked))], is_asked)
    end function rows_asked
 
+   !> Tells of which coordinates (3) of the row of `request` extremes are asked for: their own, or of a derivative.
+   pure function are_sought(m, request) result(sought)
+      type(mechanism_t), intent(in) :: m     !< whose request it is
+      type(request_t), intent(in) :: request
+      logical :: sought(3)
+      integer :: i
+
+      sought = [(i <= forms(form_of(m, request))%coordinates, i=1, 3)] .and. any(request%sought, dim=2)
+   end function are_sought
+
    !> Ready for the first instant of the set `s`.
    subroutine new_extremes(s, x)
       class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
       integer, allocatable :: asked(:)
       real(wp) :: length, rate, fastest
+      logical :: sought(3)
       integer :: i, c, n, q, k
 
       x%asked = rows_asked(s)
@@ -156,12 +168,14 @@ contains
             allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(forms(form_of(own, own%requests(s%rows(asked(q))%number)))%coordinates, &
+            allocate (track%coordinates(sum([(count(are_sought(own, own%requests(s%rows(asked(q))%number))), &
                q=1, size(asked))])))
             n = 0
             do q = 1, size(asked)
                associate (request => own%requests(s%rows(asked(q))%number))
-                  do i = 1, forms(form_of(own, request))%coordinates
+                  sought = are_sought(own, request)
+                  do i = 1, size(sought)
+                     if (.not. sought(i)) cycle
                      n = n + 1
                      associate (one => track%coordinates(n))
                         one%request = asked(q)
@@ -169,8 +183,9 @@ contains
                         one%row = q
                         one%column = i
                         one%form = form_of(own, request)
+                        one%sought = request%sought(i, :)
                         one%is_angle = columns_of_rows(column_at(one%form, i, 0))%dimension == of_angle
-                        one%dwell = request%dwell(merge(2, 1, one%is_angle))
+                        if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
                         allocate (one%places(0), one%reversals(0))
                      end associate
@@ -340,15 +355,15 @@ contains
       is_cyclic = is_covered(x) .and. all(x%tracks(c)%closure <= closes_to)
    end function is_cyclic
 
-   !> Derivative `k` of the coordinate `c` has a least and a greatest value that differ by more than rounding can make,
-   !> or one of them is not known.
+   !> Derivative `k` of the coordinate `c`, if it is asked for, has a least and a greatest value that differ by more than
+   !> rounding can make, or one of them is not known.
    pure logical function varies(c, k)
       type(coordinate_t), intent(in) :: c
       integer, intent(in) :: k
 
       associate (e => c%found(:, k))
-         varies = .not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
-            > unseen(k)*c%size_of(k) + above_errors*sum(e%error)
+         varies = c%sought(k) .and. (.not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
+            > unseen(k)*c%size_of(k) + above_errors*sum(e%error))
       end associate
    end function varies
 

@@ -4,8 +4,8 @@
 !> the dwells. What does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: request_t
-   use columns, only: columns_of_rows, column_at, cell_none, cell_unbounded, of_length, of_angle
+   use mechanism, only: request_t, request_link
+   use columns, only: columns_of_rows, column_at, forms, table_turning, cell_none, cell_unbounded, of_length, of_angle
    use table, only: number_text
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
@@ -39,20 +39,22 @@ contains
       type(listing_state_t) :: table
       type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
-      integer :: q, c, k, part, drive
+      integer :: q, c, k, part, drive, links_table
       logical :: moves, goes_on(size(x%tracks))
       character(:), allocatable :: driven, line
 
       call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
       goes_on = .false.
+      links_table = merge(request_link, table_turning, any([(any(forms(x%tracks(c)%coordinates%form)%kind == request_link &
+         .and. x%tracks(c)%coordinates%column < 3), c=1, size(x%tracks))]))
       do q = 1, size(x%asked)
          part = s%rows(x%asked(q))%part
          own = pack(x%tracks(part)%coordinates, x%tracks(part)%coordinates%request == x%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
-         call put_heads(o, l, part, request%kind, table)
+         call put_heads(o, l, part, merge(links_table, request%kind, request%kind == request_link), table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
          if (drive > size(l%drives)) drive = 0
@@ -62,9 +64,10 @@ contains
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
-               if (w%request == x%asked(q)) call put_at(phrase(say_dwell, s%polish)//'  '//name_of(own(w%column)) &
-                  //'  '//extreme_words(w%which)//' +- '//text_of(own(w%column), 0, w%distance, 0.0_wp), &
-                  [w%from, w%to], w%error)
+               if (w%request /= x%asked(q)) cycle
+               c = findloc(own%column, w%column, dim=1)
+               call put_at(phrase(say_dwell, s%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which)//' +- ' &
+                  //text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
             end associate
          end do
       end do

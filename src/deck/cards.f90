@@ -51,8 +51,8 @@ module cards
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler
-      enumerator :: form_time, form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole
-      enumerator :: form_curve, form_branch, form_vary, form_assembly, form_prove, form_end
+      enumerator :: form_time, form_at, form_method, form_print, form_column, form_extremes, form_range, form_circuits
+      enumerator :: form_pole, form_curve, form_branch, form_vary, form_assembly, form_prove, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -75,6 +75,7 @@ module cards
       form_t('---', 3, .false., 'AT                              T               T               T'), &
       form_t('L--', 1, .true.,  'METHOD  METHOD                  TOLERANCE'), &
       form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
+      form_t('LLl', 0, .false., 'COLUMN  KIND    NAME    QUANTITY'), &
       form_t('Ll-', 2, .false., 'EXTREMESKIND    NAME            DWELL LENGTH    DWELL ANGLE'), &
       form_t('---', 0, .true.,  'RANGE'), &
       form_t('---', 0, .true.,  'CIRCUITS'), &

@@ -1,10 +1,12 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and CURVE.
+!> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and
+!> CURVE.
 module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
    use mechanism
-   use card_sets, only: card_set_t, look_up, match_word, add_card_error
+   use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error
+   use columns, only: columns_of_rows, form_of, quantity_of, row_forms => forms
    use cards
    use input_errors
    use name_table, only: name_table_t, put_name, find_name
@@ -98,15 +100,17 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE
-   !> and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts.
-   !> Without a PRINT card, all links that are not ground are printed; in the listing of a drawing its points as well,
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards, and
+   !> from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first
+   !> one counts. Without a PRINT or COLUMN card, all links that are not ground are printed; in the listing of a drawing its points as well,
    !> and of links without axes of their own the angle alone. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
+      type(column_request_t), allocatable :: columns(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
+      integer, allocatable :: column_cards(:)       ! (columns) their cards
       integer :: k, n, i, form
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
@@ -114,14 +118,15 @@ contains
          allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) then
+      allocate (columns(0), column_cards(0))
+      ! In a set of variants a COLUMN card alone prints nothing.
+      if (set%number_of(form_print) == 0 .and. (set%number_of(form_column) == 0 .or. set%number_of(form_vary) > 0)) then
          call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
          if (set%number_of(form_joint) > 0 .and. set%number_of(form_vary) == 0) then
             ! The places of a link whose axes are those of a drawing are those of the drawing's origin, carried along:
             ! the listing has the points instead.
             do i = 1, n
-               requests(i)%angle_alone = &
-                  .not. any(set%cards(set%named(request_link)%card(requests(i)%subject))%given)
+               requests(i)%angle_alone = .not. has_axes(requests(i)%subject)
             end do
             call request_all(request_t(request_point, every=0, listed=.true.))
          end if
@@ -130,6 +135,10 @@ contains
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
          call read_subjects(k, request_t(every=every(k)))
       end do
+      do k = 1, set%count
+         if (set%cards(k)%form == form_column .and. set%cards(k)%valid) call read_column(k)
+      end do
+      if (size(columns) > 0) set%mechanism%columns = columns
       seen = name_table_t()
       do k = 1, set%count
          if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
@@ -191,6 +200,10 @@ contains
             else if (one%kind == 0 .and. name /= '') then
                call add_card_error(set, field_unused, k, label_b)
             else if (one%kind == 0) then
+               if (one%extremes .and. size(columns) > 0) then
+                  call seek_columns(one)
+                  return
+               end if
                do place = request_link, request_pair
                   one%kind = place
                   call request_all(one)
@@ -232,7 +245,8 @@ contains
          end do
       end subroutine request_all
 
-      !> Adds `request`; to that of its subject, if it has one already, the extremes.
+      !> Adds `request`; to that of its subject, if it has one already, the extremes. These are of all its numbers, but
+      !> of a link whose axes are those of a drawing only of its angle, and of what COLUMN cards name.
       subroutine add_request(request)
          type(request_t), intent(in) :: request
 
@@ -241,12 +255,101 @@ contains
                n = n + 1
                i = n
                requests(i) = request
-            else if (request%extremes .and. .not. requests(i)%extremes) then
-               requests(i)%extremes = .true.
-               requests(i)%dwell = request%dwell
+               requests(i)%extremes = .false.
             end if
+            if (.not. request%extremes) return
+            if (.not. requests(i)%extremes) requests(i)%dwell = request%dwell
+            requests(i)%extremes = .true.
+            requests(i)%sought = .true.
+            if (request%kind /= request_link .or. .not. has_drawing(set)) return
+            if (.not. has_axes(request%subject)) requests(i)%sought(:2, :) = numbers_in_columns(i, 2)
          end associate
       end subroutine add_request
+
+      !> Tells whether the card of link `i` says where its axes are.
+      pure logical function has_axes(i)
+         integer, intent(in) :: i            !< the number of the link
+
+         has_axes = any(set%cards(set%named(request_link)%card(i))%given)
+      end function has_axes
+
+      !> Reads the COLUMN card `k`: one number of a row, or its coordinates if the card names no quantity. Of a link
+      !> whose axes are those of a drawing the only coordinate is its angle.
+      subroutine read_column(k)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t) :: request
+         character(:), allocatable :: words
+         integer :: place, i, j, first
+
+         call match_word(set, k, print_words(request_link:), place)
+         if (place == 0) return
+         request = request_t(place, every=0)
+         call look_up(set, place, k, label_b, request%subject)
+         if (request%subject == 0) return
+         call add_request(request)
+         i = number(request%subject, place)
+         requests(i)%in_columns = .true.
+
+         first = size(columns)
+         words = ''
+         associate (form => row_forms(form_of(set%mechanism, request)), quantity => set%cards(k)%label(label_c))
+            do j = form%first, form%last
+               associate (column => columns_of_rows(j), word => quantity_of(form_of(set%mechanism, request), j))
+                  if (j > form%first) words = words//', '
+                  words = words//trim(word)
+                  if (quantity == word) call add_column(k, column_request_t(i, column%at))
+                  if (quantity /= '' .or. column%order > 0) cycle
+                  if (place == request_link .and. has_drawing(set) .and. column%at(1) < 3) then
+                     if (.not. has_axes(request%subject)) cycle
+                  end if
+                  call add_column(k, column_request_t(i, column%at))
+               end associate
+            end do
+         end associate
+         if (size(columns) == first .and. set%cards(k)%label(label_c) /= '') &
+            call add_card_error(set, word_unknown, k, label_c, words)
+      end subroutine read_column
+
+      !> Adds a `column` of the COLUMN card `k`. One that is there already is an error.
+      subroutine add_column(k, column)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(column_request_t), intent(in) :: column
+         integer :: i
+
+         i = findloc(columns%request == column%request .and. columns%at(1) == column%at(1) .and. &
+            columns%at(2) == column%at(2), .true., dim=1)
+         if (i > 0) call add_card_error(set, repeated, k, label_b, whole(set%cards(column_cards(i))%card%number))
+         columns = [columns, column]
+         column_cards = [column_cards, k]
+      end subroutine add_column
+
+      !> Tells which numbers (coordinates, 0:2) of request `i` COLUMN cards name.
+      pure function numbers_in_columns(i, coordinates) result(named)
+         integer, intent(in) :: i            !< the number of the request
+         integer, intent(in) :: coordinates  !< the first ones of its row
+         logical :: named(coordinates, 0:2)
+         integer :: c, j
+
+         do j = 0, 2
+            do c = 1, coordinates
+               named(c, j) = any(columns%request == i .and. columns%at(1) == c .and. columns%at(2) == j)
+            end do
+         end do
+      end function numbers_in_columns
+
+      !> Asks for the extremes of the numbers that COLUMN cards name, as `request` does, unless a card that names their
+      !> subject has asked for those of all its numbers.
+      subroutine seek_columns(request)
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer :: i
+
+         do i = 1, n
+            if (.not. requests(i)%in_columns .or. requests(i)%extremes) cycle
+            requests(i)%extremes = .true.
+            requests(i)%dwell = request%dwell
+            requests(i)%sought = numbers_in_columns(i, 3)
+         end do
+      end subroutine seek_columns
    end subroutine build_requests
 
    !> Builds `set`%mechanism%branch_requests from the BRANCH cards, in their order; links and options are there. A card

@@ -197,7 +197,8 @@ contains
       associate (m => set%mechanism)
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
-         if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         if (m%variants == 0 .and. .not. allocated(m%columns)) &
+            call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
          ! Of the links printed by default, the angles alone may be: of all of them or of some.
          if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = &
             merge(angles//repeat(' ', len(of_some)), angles//of_some, &

@@ -9,7 +9,7 @@ module columns
    private
    public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
       row_turning, last_form, table_turning, last_table, of_length, of_angle
-   public :: cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
+   public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
       cell_at_rest, cell_infinite
 
    !> The dimensions of numbers, of which derivatives are taken.
@@ -41,6 +41,7 @@ module columns
       integer :: rows = 1                    !< in the CSV: one, or one for each of the three axes of `at`,
       character(7) :: csv(0:2) = ''          !< and their kinds
       integer :: forms(2) = 0                !< of its rows; the columns of the second one follow those of the first
+      character(8) :: quantities(0:2) = ''   !< on COLUMN cards, by the order of a column; '': the English heads
    end type row_kind_t
 
    !> The contents of a cell.
@@ -117,6 +118,9 @@ module columns
       row_column_t('X-CENTRE', 'X-SRODKA', '', 5, [1, 1], of_length, 0, 2, finite), &
       row_column_t('Y-CENTRE', 'Y-SRODKA', '', 6, [2, 1], of_length, 0, 2, finite)]
 
+   !> The numbers of rows with one coordinate on COLUMN cards.
+   character(8), parameter :: of_value(0:2) = ['VALUE   ', 'VVALUE  ', 'AVALUE  ']
+
    integer, parameter :: row_link = 1, row_turning = 2, row_point = 3, row_slide = 4, row_angle = 5, row_pole = 6, &
       row_curve = 7, last_form = 7
    type(row_form_t), parameter :: forms(last_form) = [ &
@@ -130,7 +134,7 @@ module columns
       row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_turning, 0]), &
       row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_link, 0]), &
       row_kind_t('POINT', 'PUNKT', 1, 1, 'POINT', [row_point, 0]), &
-      row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle]), &
+      row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
       row_kind_t('POLE', 'BIEGUN', 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0]), &
       row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0])]
 
@@ -156,6 +160,15 @@ contains
       end do
       j = 0
    end function column_at
+
+   !> Gives the word of a column on COLUMN cards.
+   pure character(8) function quantity_of(form, j) result(word)
+      integer, intent(in) :: form            !< of the rows
+      integer, intent(in) :: j               !< the column, in `columns_of_rows`
+
+      word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)
+      if (word == '') word = columns_of_rows(j)%english(:len(word))
+   end function quantity_of
 
    !> Finds the contents of a cell: cell_number, cell_none, cell_spare, or the word for the state of its row.
    pure integer function cell_of(column, known, state) result(cell)

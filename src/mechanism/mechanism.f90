@@ -155,7 +155,15 @@ module mechanism
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
       logical :: listed = .false.            !< a row in the listing at every instant, which no card asks for
       logical :: angle_alone = .false.       !< of a link: the rows of the listing have its angle alone
+      logical :: in_columns = .false.        !< a COLUMN card names it: a row in the CSV at every instant
+      logical :: sought(3, 0:2) = .true.     !< the numbers of its row whose extremes are asked for
    end type request_t
+
+   !> What a COLUMN card asks for: one number of a row at every instant.
+   type :: column_request_t
+      integer :: request = 0                 !< the number of the row among the requests of the set
+      integer :: at(2) = 0                   !< the place of the number in the row: coordinate, derivative
+   end type column_request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
    type :: branch_request_t
@@ -200,6 +208,7 @@ module mechanism
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
       real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
       real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
+      type(column_request_t), allocatable :: columns(:)   !< of the COLUMN cards; none: not allocated
    end type settings_t
 
    !> A set of computations, or one of its independent mechanisms: that has the settings of its set, and no title.

@@ -28,15 +28,25 @@ module points
 
 contains
 
-   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
+   !> Whether `request` has a row in the CSV at instant number `k` (0, 1, ...): where it is printed, and where a COLUMN
+   !> card names it.
    pure logical function is_due(m, request, k)
       class(settings_t), intent(in) :: m
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_due = request%every > 0
-      if (is_due) is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+      is_due = request%in_columns .or. is_printed(m, request, k)
    end function is_due
+
+   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
+   pure logical function is_printed(m, request, k)
+      class(settings_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: k
+
+      is_printed = request%every > 0
+      if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+   end function is_printed
 
    !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
    pure logical function is_listed(m, request, k)
@@ -44,7 +54,7 @@ contains
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_listed = request%listed .or. is_due(m, request, k)
+      is_listed = request%listed .or. is_printed(m, request, k)
    end function is_listed
 
    !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every

@@ -13,7 +13,7 @@ module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: request_t, request_link, request_point
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, cell_of, cell_words, &
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, cell_of, cell_words, &
       cell_number, of_angle
    use scales, only: is_length
    use drives, only: drive_motion
@@ -182,15 +182,15 @@ contains
       end subroutine add_values
    end subroutine csv_instant
 
-   !> Makes the columns of the table of a set.
+   !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
+   !> the rows of PRINT.
    function new_table(s, chosen) result(t)
       class(set_t), intent(in) :: s
-      integer, intent(in), optional :: chosen(:)   !< only these rows, printed or not; without it those of PRINT
+      integer, intent(in), optional :: chosen(:)   !< instead, these rows, with the numbers whose extremes are asked for
       type(table_t) :: t
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: rows(:), form(:)
-      character(:), allocatable :: name
       integer :: i, j, k, n
 
       t%drives = drive_columns(s)
@@ -201,6 +201,8 @@ contains
       form = [(form_of(s%parts(s%rows(i)%part), requests(i)), i=1, size(s%rows))]
       if (present(chosen)) then
          rows = chosen
+      else if (allocated(s%columns)) then
+         rows = s%columns%request
       else
          rows = pack(rows, requests%every > 0)
       end if
@@ -213,29 +215,52 @@ contains
 
       n = 0
       do i = 1, size(rows)
-         n = n + count(columns_of_rows(forms(form(rows(i)))%first:forms(form(rows(i)))%last)%word /= '')
+         n = n + forms(form(rows(i)))%last - forms(form(rows(i)))%first + 1
       end do
       allocate (t%columns(n))
 
-      ! Positions first, then velocities, then accelerations.
       n = 0
-      do k = 0, 2
-         do i = 1, size(rows)
-            do j = forms(form(rows(i)))%first, forms(form(rows(i)))%last
-               if (columns_of_rows(j)%word == '' .or. columns_of_rows(j)%order /= k) cycle
-               associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
-                  name = trim(subject_name(own, request%kind, request%subject))
-                  ! A point that has the name of a link in the table has that of its own link before it.
-                  if (request%kind == request_point .and. find_name(links, name) > 0) &
-                     name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
-               end associate
-               n = n + 1
-               t%columns(n)%row_column_t = columns_of_rows(j)
-               t%columns(n)%request = rows(i)
-               t%columns(n)%name = name//'.'//columns_of_rows(j)%word
+      if (allocated(s%columns) .and. .not. present(chosen)) then
+         do i = 1, size(s%columns)
+            associate (one => s%columns(i))
+               call add_column(one%request, column_at(form(one%request), one%at(1), one%at(2)))
+            end associate
+         end do
+      else
+         ! Positions first, then velocities, then accelerations.
+         do k = 0, 2
+            do i = 1, size(rows)
+               do j = forms(form(rows(i)))%first, forms(form(rows(i)))%last
+                  associate (column => columns_of_rows(j))
+                     if (column%word == '' .or. column%order /= k) cycle
+                     if (present(chosen) .and. .not. requests(rows(i))%sought(column%at(1), column%at(2))) cycle
+                  end associate
+                  call add_column(rows(i), j)
+               end do
             end do
          end do
-      end do
+      end if
+      t%columns = t%columns(:n)
+
+   contains
+
+      !> Adds a column.
+      subroutine add_column(i, j)
+         integer, intent(in) :: i            !< the number of its row among the requests of the set
+         integer, intent(in) :: j            !< the column, in `columns_of_rows`
+         character(:), allocatable :: name
+
+         associate (request => requests(i), own => s%parts(s%rows(i)%part))
+            name = trim(subject_name(own, request%kind, request%subject))
+            ! A point that has the name of a link in the table has that of its own link before it.
+            if (request%kind == request_point .and. find_name(links, name) > 0) &
+               name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
+         end associate
+         n = n + 1
+         t%columns(n)%row_column_t = columns_of_rows(j)
+         t%columns(n)%request = i
+         t%columns(n)%name = name//'.'//columns_of_rows(j)%word
+      end subroutine add_column
    end function new_table
 
    !> Names the columns of all drives. If several drive the same coordinate, the second has .2 after its name, and so

@@ -11,7 +11,7 @@ module listing_tables
    use listing_layout
    implicit none
    private
-   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text
+   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text, law_error
 
    character(4), parameter :: between = ' .. '
    !> Heads stand again after so many lines.

@@ -69,6 +69,7 @@ module phrases
       say_returns_other = phrase_t('RETURNS ON THE OTHER BRANCH (CARD BRANCH)', &
          'RUCH WRACA DRUGA GALEZIA (KARTA BRANCH)'), &
       say_smoothly = phrase_t('PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO'), &
+      say_flag_above = phrase_t('INSTANT FLAGGED, SEE ABOVE', 'CHWILA ZAZNACZONA, PATRZ WYZEJ'), &
       say_unknown = phrase_t('DIGITS LOST TO ROUNDING', 'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE'), &
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
       say_too_long = phrase_t('REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', &

@@ -53,7 +53,7 @@ contains
             associate (m => motions%parts(c), request => motions%parts(c)%requests(n), errors => motions%errors(c))
                row%listed = is_listed(motions, request, step)
                row%due = is_due(motions, request, step)
-               if (.not. (row%listed .or. all_of_them)) cycle
+               if (.not. (row%listed .or. row%due .or. all_of_them)) cycle
                row%part = c
                call find_row(m, motions%motions(c), request, row%row_t)
                row%shown = merge(row_turning, row%form, request%angle_alone)

@@ -308,7 +308,7 @@ contains
       call new_set_motion(m, s)
       requests = [(request_of(s, i), i=1, size(s%rows))]
       truth%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
-      truth%table = new_table(s, pack([(i, i=1, size(s%rows))], requests%every > 0))
+      truth%table = new_table(s)
       truth%compared = min(last + 1, max(1, max_compared/max(1, size(truth%table%columns))))
       call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
       if (unit == 0) return
