@@ -24,8 +24,9 @@ module deck_options
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
-   !> The words of PRINT: 0 for everything, then the kinds request_link, request_point, request_pair.
-   character(6), parameter :: print_words(0:3) = ['ALL   ', 'LINKS ', 'POINTS', 'PAIRS ']
+   !> The words of PRINT: 0 for everything, then the kinds request_link to request_measure.
+   character(*), parameter :: print_words(0:request_measure) = &
+      [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
 
 contains
 
@@ -102,20 +103,21 @@ contains
 
    !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards, and
    !> from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first
-   !> one counts. Without a PRINT or COLUMN card, all links that are not ground are printed; in the listing of a drawing its points as well,
-   !> and of links without axes of their own the angle alone. Unknown words and names and repeated cards are errors.
+   !> one counts. Without a PRINT or COLUMN card, all links that are not ground and all measures are printed; in the
+   !> listing of a drawing its points as well, and of links without axes of their own the angle alone. Unknown words and
+   !> names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
+      type(name_table_t) :: seen(0:request_measure)             ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       type(column_request_t), allocatable :: columns(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
       integer, allocatable :: column_cards(:)       ! (columns) their cards
       integer :: k, n, i, form
 
-      associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
+      associate (sizes => [(size(set%named(k)%card), k=request_link, request_measure)])
          allocate (requests(sum(sizes) + sum(set%number_of([form_pole, form_curve]))))
-         allocate (number(maxval(sizes), request_link:request_pair), source=0)
+         allocate (number(maxval(sizes), request_link:request_measure), source=0)
       end associate
       n = 0
       allocate (columns(0), column_cards(0))
@@ -130,6 +132,7 @@ contains
             end do
             call request_all(request_t(request_point, every=0, listed=.true.))
          end if
+         call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
@@ -187,7 +190,8 @@ contains
          integer, intent(in) :: k
          type(request_t), intent(in) :: request
          type(request_t) :: one
-         integer :: earlier, place, link
+         integer, allocatable :: links(:)
+         integer :: earlier, place
 
          call match_word(set, k, print_words, place)
          if (place == 0) return
@@ -204,7 +208,7 @@ contains
                   call seek_columns(one)
                   return
                end if
-               do place = request_link, request_pair
+               do place = request_link, request_measure
                   one%kind = place
                   call request_all(one)
                end do
@@ -215,11 +219,13 @@ contains
             else
                call look_up(set, one%kind, k, label_b, one%subject)
                if (one%subject == 0) return
-               link = 0
-               if (one%kind == request_link) link = one%subject
-               if (one%kind == request_point) link = set%mechanism%points(one%subject)%link
-               if (one%extremes .and. link > 0) then
-                  if (set%mechanism%links(link)%ground) call add_card_error(set, is_ground, k, label_b)
+               ! A pair moves. The links of a measure are sure in a deck without errors.
+               if (one%extremes .and. one%kind /= request_pair .and. &
+                   (one%kind /= request_measure .or. set%errors%count == 0)) then
+                  links = request_links(set%mechanism, one)
+                  links = pack(links, links > 0)
+                  if (size(links) > 0 .and. all(set%mechanism%links(links)%ground)) &
+                     call add_card_error(set, is_ground, k, label_b)
                end if
                call add_request(one)
             end if
@@ -386,7 +392,8 @@ contains
       type(card_set_t), intent(inout) :: set
       type(request_t) :: one
       integer, allocatable :: part(:)
-      integer :: k, links(3)
+      integer, allocatable :: links(:)
+      integer :: k
 
       if (sum(set%number_of([form_pole, form_curve])) == 0) return
       part = part_of_links(set%mechanism)

@@ -80,6 +80,12 @@ module input_errors
       link_unknown = error_code_t(51, 'IS NOT THE NAME OF A LINK', own_layout), &
       point_unknown = error_code_t(52, 'IS NOT THE NAME OF A POINT', own_layout), &
       pair_unknown = error_code_t(53, 'IS NOT THE NAME OF A PAIR', own_layout), &
+      measure_unknown = error_code_t(47, 'IS NOT THE NAME OF A MEASURE', own_layout), &
+      summand_unknown = error_code_t(55, 'IS NOT THE NAME OF A PAIR OR MEASURE', own_layout), &
+      side_unknown = error_code_t(59, 'IS NOT THE NAME OF A LINE OR LINK', own_layout), &
+      side_twofold = error_code_t(67, 'IS A LINE AND A LINK: RENAME ONE'), &
+      point_twice = error_code_t(62, 'IS NAMED TWICE: NAME TWO POINTS'), &
+      sum_refused = error_code_t(61, 'CANNOT BE ADDED: A LENGTH AND AN ANGLE, OR A SUM THAT CONTAINS ITSELF'), &
       link_unused = error_code_t(54, 'IS A LINK WITHOUT PAIR OR DRIVE, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &

@@ -2,15 +2,15 @@
 !> module says which numbers a row of a kind has, what they are called, or whether one exists.
 module columns
    use kinds, only: label_length
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
-      request_curve, has_guide
-   use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting
+   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_measure, &
+      request_pole, request_curve, has_guide
+   use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
    implicit none
    private
    public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
       row_turning, last_form, table_turning, last_table, of_length, of_angle
    public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
-      cell_at_rest, cell_infinite
+      cell_at_rest, cell_infinite, cell_coincide, last_cell
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2
@@ -24,7 +24,7 @@ module columns
       integer :: dimension = of_length       !< of_length or of_angle
       integer :: order = 0                   !< of the derivative (0 to 2) whose unit, digits and size it has
       integer :: needs = 0                   !< what must be known: 0 the position, 1 velocities, 2 accelerations
-      logical :: there(centre_finite:centre_resting) = .true.   !< by the state of its row: the number exists
+      logical :: there(centre_finite:points_coincide) = .true.   !< by the state of its row: the number exists
    end type row_column_t
 
    !> Rows of one form have the same columns.
@@ -54,7 +54,9 @@ module columns
       enumerator :: cell_spare        !< a number that counts only where the first one of the row has no digit
       enumerator :: cell_at_rest      !< AT REST
       enumerator :: cell_infinite     !< INFINITE
+      enumerator :: cell_coincide     !< COINCIDE
    end enum
+   integer, parameter :: last_cell = cell_coincide
 
    !> The word of a cell without a number.
    type :: cell_word_t
@@ -62,13 +64,14 @@ module columns
       character(8) :: mark = ''              !< in the CSV
    end type cell_word_t
 
-   type(cell_word_t), parameter :: cell_words(cell_none:cell_infinite) = [ &
+   type(cell_word_t), parameter :: cell_words(cell_none:last_cell) = [ &
       cell_word_t('NONE', 'BRAK'), cell_word_t(), cell_word_t(), cell_word_t('UNBOUNDED', 'NIEOGRAN.'), cell_word_t(), &
       cell_word_t(), cell_word_t('AT REST', 'W SPOCZYNKU', 'AT-REST'), &
-      cell_word_t('INFINITE', 'NIESKONCZ.', 'INFINITE')]
+      cell_word_t('INFINITE', 'NIESKONCZ.', 'INFINITE'), cell_word_t('COINCIDE', 'POKRYCIE', 'COINCIDE')]
 
-   logical, parameter :: finite(4) = [.true., .false., .false., .false.], &
-      at_infinity(4) = [.false., .true., .false., .false.], moving(4) = [.true., .true., .true., .false.]
+   logical, parameter :: finite(5) = [.true., .false., .false., .false., .false.], &
+      at_infinity(5) = [.false., .true., .false., .false., .false.], &
+      moving(5) = [.true., .true., .true., .false., .false.]
 
    ! The heads, the word, the place, at, the dimension, the order, what it needs, where it is there.
    type(row_column_t), parameter :: columns_of_rows(*) = [ &
@@ -116,17 +119,24 @@ module columns
       row_column_t('TANGENT', 'STYCZNA', '', 3, [3, 0], of_angle, 0, 1, moving), &
       row_column_t('RADIUS', 'PROMIEN', '', 4, [1, 2], of_length, 0, 2, finite), &
       row_column_t('X-CENTRE', 'X-SRODKA', '', 5, [1, 1], of_length, 0, 2, finite), &
-      row_column_t('Y-CENTRE', 'Y-SRODKA', '', 6, [2, 1], of_length, 0, 2, finite)]
+      row_column_t('Y-CENTRE', 'Y-SRODKA', '', 6, [2, 1], of_length, 0, 2, finite), &
+      ! 40: lengths that are measured, which have no rates where points coincide; 43: angles, which have no value there.
+      row_column_t('LENGTH', 'DLUGOSC', 's', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'v', 2, [1, 1], of_length, 1, 1, finite), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'a', 4, [1, 2], of_length, 2, 2, finite), &
+      row_column_t('ANGLE', 'KAT', 'theta', 1, [1, 0], of_angle, 0, 0, finite), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'omega', 2, [1, 1], of_angle, 1, 1, finite), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'alpha', 4, [1, 2], of_angle, 2, 2, finite)]
 
    !> The numbers of rows with one coordinate on COLUMN cards.
    character(8), parameter :: of_value(0:2) = ['VALUE   ', 'VVALUE  ', 'AVALUE  ']
 
    integer, parameter :: row_link = 1, row_turning = 2, row_point = 3, row_slide = 4, row_angle = 5, row_pole = 6, &
-      row_curve = 7, last_form = 7
+      row_curve = 7, row_length = 8, row_direction = 9, last_form = 9
    type(row_form_t), parameter :: forms(last_form) = [ &
       row_form_t(request_link, 1, 9, 3), row_form_t(request_link, 10, 12, 1), row_form_t(request_point, 13, 18, 2), &
       row_form_t(request_pair, 19, 21, 1), row_form_t(request_pair, 22, 24, 1), row_form_t(request_pole, 25, 33), &
-      row_form_t(request_curve, 34, 39)]
+      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), row_form_t(request_measure, 43, 45, 1)]
 
    !> The kind of tables of links of which only angles are listed; the others are the kinds of requests.
    integer, parameter :: table_turning = 0, last_table = request_curve
@@ -135,6 +145,7 @@ module columns
       row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_link, 0]), &
       row_kind_t('POINT', 'PUNKT', 1, 1, 'POINT', [row_point, 0]), &
       row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
+      row_kind_t('MEASURE', 'WIELKOSC', 1, 1, 'MEASURE', [row_length, row_direction], of_value), &
       row_kind_t('POLE', 'BIEGUN', 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0]), &
       row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0])]
 
@@ -146,8 +157,11 @@ contains
       type(request_t), intent(in) :: request
 
       form_of = kinds_of_rows(request%kind)%forms(1)
-      if (request%kind /= request_pair) return
-      if (.not. has_guide(m%pairs(request%subject)%kind)) form_of = row_angle
+      if (request%kind == request_pair) then
+         if (.not. has_guide(m%pairs(request%subject)%kind)) form_of = row_angle
+      else if (request%kind == request_measure) then
+         if (m%measures(request%subject)%is_angle) form_of = row_direction
+      end if
    end function form_of
 
    !> Finds the column that has one number of the values of rows; 0: no column has it.
@@ -185,6 +199,8 @@ contains
             cell = cell_spare
          case (centre_infinite)
             cell = cell_infinite
+         case (points_coincide)
+            cell = cell_coincide
          case default
             cell = cell_at_rest
          end select

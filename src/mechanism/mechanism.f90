@@ -17,9 +17,16 @@ module mechanism
    type(pair_kind_t), parameter :: pair_kinds(pair_revolute:pair_prismatic) = [pair_kind_t(), pair_kind_t(.true.)]
 
    !> The kinds of what has a name and a row in the tables.
-   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3, request_measure = 4
    !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
-   integer, parameter :: request_pole = 4, request_curve = 5
+   integer, parameter :: request_pole = 5, request_curve = 6
+
+   integer, parameter :: measure_distance = 1   !< DISTANCE: the length from point 1 to point 2
+   integer, parameter :: measure_line = 2    !< LINE: the direction from point 1 to point 2
+   integer, parameter :: measure_angle = 3   !< ANGLE: from subject 1 to subject 2, each a LINE or a link
+   integer, parameter :: measure_xi = 4      !< XI: xi of point 1 in the axes of link 2
+   integer, parameter :: measure_eta = 5     !< ETA: eta of point 1 in the axes of link 2
+   integer, parameter :: measure_sum = 6     !< SUM: of measures and pairs times factors, and a constant
 
    integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
    integer, parameter :: drive_x = 2         !< X: x of point `subject`
@@ -84,7 +91,7 @@ module mechanism
       enumerator :: remark_title_letters        !< a title has letters that are not ASCII
       enumerator :: remark_touching             !< two numbers touch
       enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
-      enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
+      enumerator :: remark_point_unused         !< no pair, drive, measure or PRINT card uses a point
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
@@ -126,6 +133,24 @@ module mechanism
       logical :: drawn(3) = .false.          !< alpha, h, beta: it is the one of the drawing, not of its card
    end type pair_t
 
+   !> What a measure is made of.
+   type :: subject_t
+      integer :: kind = 0                    !< request_link, request_point, request_pair or request_measure
+      integer :: number = 0                  !< of the link, point, pair or measure
+      real(wp) :: factor = 1.0_wp            !< by which a sum takes its value
+   end type subject_t
+
+   !> A scalar that its card measures in the motion.
+   type :: measure_t
+      integer :: kind = measure_distance     !< measure_distance, ..., measure_sum
+      character(label_length) :: name = ''
+      type(subject_t), allocatable :: subjects(:)   !< two; of a sum any number, none of which is a sum
+      real(wp) :: constant = 0.0_wp          !< of a sum, length or rad
+      logical :: is_angle = .false.          !< an angle, otherwise a length
+      logical :: continues = .false.         !< its value is the nearest to its value at the instant before
+      real(wp) :: length = 1.0_wp            !< characteristic length of its mechanism
+   end type measure_t
+
    !> One term of the law of a drive.
    type :: term_t
       integer :: kind = term_harmonic        !< term_harmonic, ..., term_parabola
@@ -143,11 +168,11 @@ module mechanism
       logical :: turns = .false.             !< its card gives the rate in turns a minute
    end type drive_t
 
-   !> What is asked about a link, point or pair: a row of the tables, its extremes, or both; or about the motion of a
-   !> link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
+   !> What is asked about a link, point, pair or measure: a row of the tables, its extremes, or both; or about the
+   !> motion of a link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
    type :: request_t
       integer :: kind = request_link         !< request_link, ..., request_curve
-      integer :: subject = 0                 !< the number of the link, point or pair
+      integer :: subject = 0                 !< the number of the link, point, pair or measure
       integer :: every = 1                   !< a row at every such instant, the first and the last; 0: no row
       logical :: extremes = .false.          !< its extremes over the run
       real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
@@ -217,6 +242,7 @@ module mechanism
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)
+      type(measure_t), allocatable :: measures(:)   !< none: not allocated, or of size 0
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
@@ -287,26 +313,76 @@ contains
       type(drive_t), intent(in) :: drive
       integer :: links(3)
 
-      links = request_links(m, request_t(driven_kinds(drive%kind), drive%subject, second=drive%second))
+      links = subject_links(m, driven_kinds(drive%kind), drive%subject, drive%second)
    end function drive_links
 
-   !> The links whose motion `request` is about, and from which it is seen; of fewer than three some are there again.
+   !> Finds the links whose motion a request is about, and from which it is seen, some of them several times.
    pure function request_links(m, request) result(links)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
+      integer, allocatable :: links(:)       !< (1 or more) their numbers
+
+      if (request%kind == request_measure) then
+         links = measure_links(m, m%measures(request%subject))
+      else
+         links = subject_links(m, request%kind, request%subject, request%second)
+      end if
+   end function request_links
+
+   !> Finds the links of what is no measure; of fewer than three some are there again.
+   pure function subject_links(m, kind, subject, second) result(links)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: kind            !< request_link, ...
+      integer, intent(in) :: subject         !< the number of the link, point or pair
+      integer, intent(in) :: second          !< the link from which a motion is seen; 0: the fixed plane
       integer :: links(3)
 
-      select case (request%kind)
+      select case (kind)
       case (request_link, request_pole)
-         links = request%subject
+         links = subject
       case (request_point, request_curve)
-         links = m%points(request%subject)%link
+         links = m%points(subject)%link
       case default
-         links(:2) = pair_links(m, m%pairs(request%subject))
+         links(:2) = pair_links(m, m%pairs(subject))
          links(3) = links(2)
       end select
-      if (request%second > 0) links(3) = request%second
-   end function request_links
+      if (second > 0) links(3) = second
+   end function subject_links
+
+   !> Finds the links of the subjects of a measure, some of them several times.
+   pure recursive function measure_links(m, measure) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(measure_t), intent(in) :: measure
+      integer, allocatable :: links(:)       !< (any number) of a measure that is right, 1 or more
+      integer :: k
+
+      allocate (links(0))
+      do k = 1, size(measure%subjects)
+         associate (one => measure%subjects(k))
+            if (one%number == 0) cycle
+            if (one%kind == request_measure) then
+               links = [links, measure_links(m, m%measures(one%number))]
+            else
+               links = [links, subject_links(m, one%kind, one%number, 0)]
+            end if
+         end associate
+      end do
+   end function measure_links
+
+   !> Finds a measure and those of which it is made.
+   pure recursive function measures_within(m, i) result(list)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i               !< its number
+      integer, allocatable :: list(:)        !< (1 or more) their numbers, some of them several times
+      integer :: k
+
+      list = [i]
+      do k = 1, size(m%measures(i)%subjects)
+         associate (one => m%measures(i)%subjects(k))
+            if (one%kind == request_measure) list = [list, measures_within(m, one%number)]
+         end associate
+      end do
+   end function measures_within
 
    !> Tells whether pairs of a kind have a guide, on which a link slides; otherwise it turns about a joint.
    elemental logical function has_guide(kind)

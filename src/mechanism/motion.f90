@@ -62,6 +62,13 @@ module motion
       enumerator :: singular_dead        !< a dead point: no finite velocities exist
    end enum
 
+   !> The value of a measure that continues, at the last instant at which it has one.
+   type :: turned_t
+      real(wp) :: angle = 0.0_wp                         !< rad
+      logical :: is_known = .false.                      !< there was such an instant
+      logical :: is_latest = .false.                     !< it was the last one
+   end type turned_t
+
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
@@ -77,6 +84,8 @@ module motion
       !> (links) `known` and `mark` of each link, if they differ: those of the whole are then the worst. Not allocated:
       !> all links as the whole.
       integer, allocatable :: link_known(:), link_mark(:)
+      !> (measures) From these values those that continue go on; not allocated: none does, or no instant is taken yet.
+      type(turned_t), allocatable :: turned(:)
    end type motion_t
 
 contains

@@ -1,17 +1,18 @@
-!> The rows of the tables: the motion of links, of any point of any link, and of pairs; instant centres, and centres of
-!> curvature.
+!> The rows of the tables: the motion of links, of any point of any link, and of pairs; measures; instant centres, and
+!> centres of curvature.
 module points
    use kinds, only: wp, label_length
    use mechanism, only: settings_t, mechanism_t, request_t, pair_t, has_guide, request_link, request_point, &
-      request_pair, request_pole, request_curve, is_centre, instant_count, request_links
+      request_pair, request_measure, request_pole, request_curve, is_centre, instant_count, request_links, &
+      subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
    use names, only: subject_name
    use columns, only: form_of
-   use instant_centres, only: centre_t, pole_of, curve_of, seen_from
-   use planar, only: pi, direction, rotated, point_of, add_rotating
-   use motion, only: motion_t, known_of, mark_none
+   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
+   use planar, only: pi, direction, rotated, point_of, add_rotating, cross
+   use motion, only: motion_t, turned_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, find_row, difference, is_due, is_listed, is_fixed
+   public :: row_t, find_row, keep_turns, difference, is_due, is_listed, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
@@ -22,6 +23,13 @@ module points
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
    end type row_t
+
+   !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
+   !> between them.
+   real(wp), parameter :: same_place = 4.0_wp*epsilon(1.0_wp)
+   !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
+   real(wp), parameter :: half_turn_margin = 1.0e-9_wp
+   real(wp), parameter :: full_turn = 2.0_wp*pi
 
    !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
    type(row_t), protected :: new_row = row_t()
@@ -65,19 +73,16 @@ contains
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
       real(wp) :: p(2, 0:2)
-      integer :: links(3), k
 
       row = new_row
       row%kind = request%kind
       row%form = form_of(m, request)
-      ! What is known of a row is what is known of its links.
-      links = request_links(m, request)
-      do k = 1, size(links)
-         if (m%links(links(k))%ground .or. known_of(q, links(k)) >= row%known) cycle
-         row%known = known_of(q, links(k))
-         row%mark = q%mark
-         if (allocated(q%link_mark)) row%mark = q%link_mark(links(k))
-      end do
+      ! Without an allocation, but for measures.
+      if (request%kind == request_measure) then
+         call find_known(m, q, request_links(m, request), row%known, row%mark)
+      else
+         call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%mark)
+      end if
 
       associate (i => request%subject)
          if (.not. is_centre(request%kind)) row%name = subject_name(m, request%kind, i)
@@ -97,6 +102,9 @@ contains
          case (request_pair)
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
+         case (request_measure)
+            if (row%known >= 0) call find_measure(m, q, i, row%value(1, :), row%state, row%weight)
+            return
          case (request_pole)
             row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
             if (row%known < 1) return
@@ -115,6 +123,23 @@ contains
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end subroutine find_row
+
+   !> Finds how much is known of a row: that is what is known of its links.
+   pure subroutine find_known(m, q, links, known, mark)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: links(:)        !< their numbers
+      integer, intent(inout) :: known        !< as in `motion_t`: what is known without them
+      integer, intent(inout) :: mark         !< why the rest is not
+      integer :: k
+
+      do k = 1, size(links)
+         if (m%links(links(k))%ground .or. known_of(q, links(k)) >= known) cycle
+         known = known_of(q, links(k))
+         mark = q%mark
+         if (allocated(q%link_mark)) mark = q%link_mark(links(k))
+      end do
+   end subroutine find_known
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
@@ -164,6 +189,96 @@ contains
       p = x(:2, :)
       call add_rotating(u(1), u(2), x(3, 1), x(3, 2), p(:, 0), p(:, 1), p(:, 2))
    end function point_motion
+
+   !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
+   !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
+   !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
+   pure recursive subroutine find_measure(m, q, i, s, state, closest)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(out) :: s(0:2)        !< length or rad; 0 where it does not exist
+      integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
+      real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
+      real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
+      integer :: k
+
+      s = 0.0_wp
+      associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
+         select case (measure%kind)
+         case (measure_distance, measure_line)
+            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            distance = norm2(d(:, 0))
+            closest = min(closest, distance/measure%length)
+            if (distance <= same_place*measure%length) then
+               state = points_coincide
+               return
+            end if
+            s(1) = cross(d(:, 0), d(:, 1))/distance
+            if (measure%kind == measure_distance) then
+               s = [distance, dot_product(d(:, 0), d(:, 1))/distance, &
+                  s(1)*(s(1)/distance) + dot_product(d(:, 0), d(:, 2))/distance]
+            else
+               s(0) = atan2(d(2, 0), d(1, 0))
+               s(1) = s(1)/distance
+               s(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, 1))/distance)*s(1))/distance
+            end if
+         case (measure_xi, measure_eta)
+            d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            s = d(merge(1, 2, measure%kind == measure_xi), :)
+         case default
+            do k = 1, size(subjects)
+               select case (subjects(k)%kind)
+               case (request_link)
+                  x = link_motion(q, subjects(k)%number)
+                  one = x(3, :)
+               case (request_pair)
+                  one = pair_motion(m, q, m%pairs(subjects(k)%number))
+               case default
+                  call find_measure(m, q, subjects(k)%number, one, state, closest)
+               end select
+               if (measure%kind == measure_sum) s = s + subjects(k)%factor*one
+               if (measure%kind == measure_angle) s = one - s
+            end do
+            s(0) = s(0) + measure%constant
+         end select
+         if (.not. measure%continues .or. state == points_coincide) return
+      end associate
+      s(0) = between_half_turns(s(0))
+      if (.not. allocated(q%turned)) return
+      if (.not. q%turned(i)%is_known) return
+      associate (turns => (q%turned(i)%angle - s(0))/full_turn)
+         if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) s(0) = s(0) + full_turn*anint(turns)
+      end associate
+   end subroutine find_measure
+
+   !> Gives a direction above -pi and up to pi. One that is -pi but for rounding is pi.
+   pure real(wp) function between_half_turns(angle) result(x)
+      real(wp), intent(in) :: angle          !< rad
+
+      x = angle - full_turn*anint(angle/full_turn)
+      if (x <= half_turn_margin - pi) x = x + full_turn
+   end function between_half_turns
+
+   !> Takes the values of the measures that continue as those from which the next instant goes on.
+   pure subroutine keep_turns(m, q)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
+      type(row_t) :: row
+      integer :: i
+
+      if (.not. allocated(m%measures)) return
+      if (.not. any(m%measures%continues)) return
+      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
+      do i = 1, size(m%measures)
+         if (.not. m%measures(i)%continues) cycle
+         call find_row(m, q, request_t(request_measure, i), row)
+         associate (turned => q%turned(i))
+            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
+            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
+         end associate
+      end do
+   end subroutine keep_turns
 
    !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
    !> relative angle phi_j - phi_i of a revolute pair.

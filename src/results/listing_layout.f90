@@ -8,7 +8,7 @@ module listing_layout
    use planar, only: degree
    use mechanism, only: drive_t, settings_t, request_t, request_link
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning, last_form, &
-      table_turning, last_table, cell_none, cell_infinite, of_length, of_angle
+      table_turning, last_table, cell_none, last_cell, of_length, of_angle
    use independent, only: set_t, request_of
    use drives, only: growing_sizes
    use names, only: drive_name, more
@@ -60,7 +60,7 @@ module listing_layout
       character(label_length) :: unit(2) = ''         !< of lengths and angles
       character(label_length + 4) :: per(0:2) = ''    !< what they are divided by in a derivative
       logical :: per_below = .false.       !< that stands in a line below the units, which are long
-      character(numeral_length) :: words(cell_none:cell_infinite)   !< in the place of a number
+      character(numeral_length) :: words(cell_none:last_cell)   !< in the place of a number
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
       character(:), allocatable :: more_drives                    !< ' AND 3 MORE', or ''

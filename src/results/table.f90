@@ -4,7 +4,7 @@ module table
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use columns, only: cell_words, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
-      cell_infinite
+      last_cell
    use numerals, only: numeral_length, full_length, max_decimals, put_fixed, put_full, whole
    use known_digits, only: put_known, nothing_known, unknown_digit
    use text_output, only: output_t, add, replaced
@@ -44,7 +44,7 @@ contains
    !> Gives the words of cells without a number, each at the end of its field.
    pure function words_of_cells(polish) result(words)
       logical, intent(in) :: polish          !< in Polish
-      character(numeral_length) :: words(cell_none:cell_infinite)
+      character(numeral_length) :: words(cell_none:last_cell)
 
       words = cell_words%english
       if (polish) words = cell_words%polish

@@ -16,7 +16,7 @@ module set_analysis
    use block_rank, only: values_t, decomposed, max_rows
    use block_state, only: state_t
    use independent, only: request_of
-   use points, only: row_t, find_row
+   use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back
    implicit none
@@ -139,7 +139,11 @@ contains
    !> back comes again from the engine. Times between two instants do not come, nor do a lane's if no row is asked for.
    subroutine keep_instant(s)
       type(set_analysis_t), intent(inout) :: s
+      integer :: c
 
+      do c = 1, size(s%list)
+         call keep_turns(s%now%parts(c), s%now%motions(c))
+      end do
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
       else
@@ -212,6 +216,7 @@ contains
       if (present(growth)) growth = 0.0_wp
       if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
          q = new_motion(size(s%now%parts(c)%links))
+         if (allocated(s%now%motions(c)%turned)) q%turned = s%now%motions(c)%turned
          call look_at(s%list(c), t, q, is_found)
          rows%known = -1
          if (is_found) call take(q)
