@@ -117,7 +117,8 @@ contains
       if (.not. allocated(failure)) then
          call watch_signals
          o%share%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
-         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) o%share%unit = width
+         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0 .or. sets(i)%requests%drive > 0), o), &
+            i=1, size(sets))])) o%share%unit = width
          ! One process where sets take no time, or are to be drawn on one page, or nothing can be written.
          processes = options%jobs
          work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
@@ -291,18 +292,19 @@ contains
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
-      logical :: full
+      logical :: full, has_ratios
       integer :: n, k
 
       n = first
       full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
+      has_ratios = any([(any(m%parts(k)%requests%drive > 0), k=1, m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
          call put_variant_heads(o%files(out_listing), summary)
       end if
-      if (are_together(m, full, o)) then
+      if (are_together(m, full .or. has_ratios, o)) then
          call run_together()
       else
          do while (n <= last)
@@ -411,14 +413,14 @@ contains
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of the set `m`, which `prints` tables or not: then as many are solved
-   !> together as there are lanes.
-   pure logical function are_together(m, prints, o)
+   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables or ratios,
+   !> or not: then as many are solved together as there are lanes.
+   pure logical function are_together(m, not_have, o)
       class(settings_t), intent(in) :: m
-      logical, intent(in) :: prints
+      logical, intent(in) :: not_have
       class(outputs_t), intent(in) :: o
 
-      are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
+      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
    end function are_together
 
    !> Solves and writes the set a%now, instant by instant; `full`: its tables too. `row`: how many instants are

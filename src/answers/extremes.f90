@@ -2,13 +2,13 @@
 !> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use planar, only: pi, without_turns
+   use planar, only: pi, in_degrees, without_turns
    use mechanism, only: mechanism_t, request_t
    use motion, only: motion_t
-   use scales, only: characteristic_length, characteristic_rate
+   use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: joints_of, largest_frequency
-   use points, only: row_t, is_fixed
-   use columns, only: columns_of_rows, forms, form_of, column_at, of_angle
+   use points, only: row_t, is_fixed, column_of_ratio
+   use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t
    use table, only: format_t
@@ -52,6 +52,7 @@ module extremes
    type :: coordinate_t
       integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
       integer :: form = 0                              !< of the row
+      integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
@@ -137,6 +138,41 @@ contains
       asked = pack([(i, i=1, size(is_asked))], is_asked)
    end function rows_asked
 
+   !> Makes the coordinate of a ratio: a search has it as the velocity of a coordinate of which nothing is known, and the
+   !> rate of the ratio as the acceleration.
+   pure subroutine take_ratio(c, length, rate, degrees)
+      type(coordinate_t), intent(inout) :: c   !< has the places of the numbers of its row
+      real(wp), intent(in) :: length         !< characteristic length of the mechanism
+      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      logical, intent(in) :: degrees         !< the deck's unit of angles
+
+      c%column = column_of_ratio
+      c%columns = [0, c%columns(:1)]
+      c%sought = [.false., c%sought(:1)]
+      ! No digit of the first one counts.
+      c%size_of(0) = sqrt(huge(1.0_wp))
+      c%size_of(1) = usual_size(columns_of_rows(c%columns(1))%dimension, 0, length, rate, degrees)
+      c%size_of(2) = c%size_of(1)*rate
+   end subroutine take_ratio
+
+   !> Makes of the extremes of the rate of a ratio those of its derivative by the drive. Only of a drive with a constant
+   !> rate they are at the same places; of another one they are not told.
+   pure subroutine settle_ratio(c, m)
+      type(coordinate_t), intent(inout) :: c   !< of a ratio, after the last instant
+      type(mechanism_t), intent(in) :: m     !< its mechanism, which has one drive
+      real(wp) :: rate
+
+      rate = m%drives(1)%polynomial(2)
+      if (m%degrees .and. .not. is_length(m%drives(1))) rate = in_degrees(rate)
+      c%sought(2) = c%sought(2) .and. .not. (allocated(m%drives(1)%terms) .or. abs(m%drives(1)%polynomial(3)) > 0.0_wp) &
+         .and. abs(rate) > 0.0_wp
+      if (.not. c%sought(2)) return
+      c%found(:, 2)%value = c%found(:, 2)%value/rate
+      c%found(:, 2)%error = c%found(:, 2)%error/abs(rate)
+      c%size_of(2) = c%size_of(2)/abs(rate)
+      if (rate < 0.0_wp) c%found(:, 2) = c%found([greatest, least], 2)
+   end subroutine settle_ratio
+
    !> Tells of which coordinates (3) of the row of `request` extremes are asked for: their own, or of a derivative.
    pure function are_sought(m, request) result(sought)
       type(mechanism_t), intent(in) :: m     !< whose request it is
@@ -183,10 +219,12 @@ contains
                         one%row = q
                         one%column = i
                         one%form = form_of(own, request)
+                        one%columns = [(column_at(one%form, i, k), k=0, 2)]
                         one%sought = request%sought(i, :)
-                        one%is_angle = columns_of_rows(column_at(one%form, i, 0))%dimension == of_angle
+                        one%is_angle = columns_of_rows(one%columns(0))%dimension == of_angle
                         if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
+                        if (is_ratio(one%form)) call take_ratio(one, length, rate, s%degrees)
                         allocate (one%places(0), one%reversals(0))
                      end associate
                   end do
@@ -302,9 +340,13 @@ contains
       integer, intent(in) :: c
       type(motion_t), intent(in) :: last
       real(wp) :: d(3, size(m%links)), length
+      integer :: i
 
       length = characteristic_length(m)
       associate (track => x%tracks(c))
+         do i = 1, size(track%coordinates)
+            if (is_ratio(track%coordinates(i)%form)) call settle_ratio(track%coordinates(i), m)
+         end do
          if (min(track%start%known, last%known) < 0) return
          d = last%position - track%start%position
          d(3, :) = without_turns(d(3, :))

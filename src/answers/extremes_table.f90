@@ -5,7 +5,7 @@
 module extremes_table
    use kinds, only: wp
    use mechanism, only: request_t, request_link
-   use columns, only: columns_of_rows, column_at, forms, table_turning, cell_none, cell_unbounded, of_length, of_angle
+   use columns, only: columns_of_rows, forms, table_of, table_turning, cell_none, cell_unbounded, of_angle
    use table, only: number_text
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
@@ -54,7 +54,8 @@ contains
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
-         call put_heads(o, l, part, merge(links_table, request%kind, request%kind == request_link), table)
+         call put_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
+            request%kind == request_link), table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
          if (drive > size(l%drives)) drive = 0
@@ -212,7 +213,7 @@ contains
          type(coordinate_t), intent(in) :: c
          character(:), allocatable :: name
 
-         name = column_name(l, columns_of_rows(column_at(c%form, c%column, 0)))
+         name = column_name(l, columns_of_rows(c%columns(0)))
       end function name_of
 
       !> A row of `fields` (own coordinates, 0:2), with a label before it.
@@ -226,7 +227,8 @@ contains
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
             do c = 1, size(own)
-               last = end_of_column(l, own(c)%form, column_at(own(c)%form, own(c)%column, k))
+               if (own(c)%columns(k) == 0) cycle
+               last = end_of_column(l, own(c)%form, own(c)%columns(k))
                line(last - numeral_length + 1:last) = adjustr(fields(c, k))
             end do
          end do
@@ -241,7 +243,9 @@ contains
          real(wp), intent(in) :: value, error
          character(:), allocatable :: text
 
-         text = number_text(l%own(part)%format(merge(of_angle, of_length, c%is_angle), k), value, error)
+         associate (column => columns_of_rows(c%columns(k)))
+            text = number_text(l%own(part)%format(column%dimension, column%order), value, error)
+         end associate
       end function text_of
    end subroutine put_extremes
 end module extremes_table

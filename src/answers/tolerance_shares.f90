@@ -88,6 +88,8 @@ contains
       call put(o, ' '//phrase(say_shares, s%polish))
       if (any([(any(is_centre(s%parts(c)%requests%kind)), c=1, s%count)])) &
          call put(o, ' --- '//phrase(say_no_shares, s%polish))
+      if (any([(any(s%parts(c)%requests%drive > 0), c=1, s%count)])) &
+         call put(o, ' --- '//phrase(say_no_ratio_shares, s%polish))
       do c = 1, s%count
          do d = 1, size(s%parts(c)%tolerances)
             if (a%jams(d, c)) &

@@ -2,8 +2,8 @@
 module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: request_t
-   use columns, only: cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
+   use mechanism, only: mechanism_t, request_t
+   use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
    use table, only: format_t, cell_t, choose_digits
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
@@ -14,8 +14,8 @@ module variant_rows
    use set_analysis, only: set_analysis_t
    use set_motion, only: is_flagged
    use listing_layout, only: layout_t, angle_unit, column_name, column_unit
-   use csv, only: marks, table_t, new_table, drive_columns, dotted
-   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, strokes_of, &
+   use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
+   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, strokes_of, &
       ratio_format
    use ranges, only: low, high
    use answers, only: answers_t
@@ -32,7 +32,7 @@ module variant_rows
    type :: summary_column_t
       character(80) :: name = ''
       logical :: printed = .false.                  !< it is in the listing too
-      character(3*label_length) :: above = '', below = ''   !< the lines over it
+      character(6*label_length) :: above = '', below = ''   !< the lines over it
       character(3*label_length) :: unit = ''
       type(format_t) :: format = format_t(decimals=0)
       logical :: by_size = .false.                  !< instead, each value has the digits for its own size
@@ -152,6 +152,17 @@ contains
          call add_column(c)
       end subroutine add_drive
 
+      !> Gives the name of what a request is about: ROCKER, MU BY ANGLE CRANK.
+      function name_of(m, request) result(name)
+         type(mechanism_t), intent(in) :: m  !< whose request it is
+         type(request_t), intent(in) :: request
+         character(:), allocatable :: name
+
+         name = trim(subject_name(m, request%kind, request%subject))
+         if (request%drive > 0) &
+            name = name//' '//phrase(say_by, set%polish)//' '//trim(drive_name(m, m%drives(request%drive)))
+      end function name_of
+
       !> Adds the columns of what EXTREMES asks for.
       subroutine add_extremes()
          type(summary_column_t) :: c
@@ -166,7 +177,7 @@ contains
                request = request_of(set, column%request)
                word = column_name(l, column%row_column_t)
                c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
-                  above=subject_name(set%parts(part), request%kind, request%subject), &
+                  above=name_of(set%parts(part), request), &
                   format=l%own(part)%format(column%dimension, column%order))
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
@@ -175,7 +186,7 @@ contains
                   call add_column(summary_column_t(trim(c%name)//'.t'))
                   call add_drive(first_drive(set, column%request), trim(c%name), '', '')
                end do
-               if (column%order > 0) cycle
+               if (column%order > 0 .or. request%drive > 0) cycle
                c%name = trim(column%name)//'.stroke'
                c%below = word//' '//phrase(say_stroke, set%polish)
                c%by_size = .true.
@@ -240,7 +251,7 @@ contains
       type(answers_t), intent(in) :: asked
       type(variant_row_t), intent(inout) :: r
       type(strokes_t) :: strokes
-      integer :: n, i, k, which
+      integer :: n, i, k, which, order
 
       n = s%numbers + 1
       call next(cell_t(cell_count, real(r%solved, wp)))
@@ -285,12 +296,11 @@ contains
 
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
-            k = findloc(asked%extremes%tracks(part)%coordinates%request == c%request &
-               .and. asked%extremes%tracks(part)%coordinates%column == c%at(1), .true., dim=1)
+            call find_number(asked%extremes%tracks(part)%coordinates, c, k, order)
             associate (one => asked%extremes%tracks(part)%coordinates(k))
                do which = least, greatest
-                  associate (e => one%found(which, c%order))
-                     if (e%exists) then
+                  associate (e => one%found(which, order))
+                     if (e%exists .and. one%sought(order)) then
                         r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
                         if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
                         r%cells(n + 2) = cell_t(cell_number, e%t)
@@ -299,7 +309,7 @@ contains
                   end associate
                   n = n + 3
                end do
-               if (c%order > 0) cycle
+               if (order > 0) cycle
                strokes = strokes_of(asked%extremes, one)
                ! It may be small: then the rounding of the difference counts.
                if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
@@ -320,6 +330,22 @@ contains
          r%cells(n) = cell
       end subroutine next
    end subroutine fill_row
+
+   !> Finds where the extremes of a column are.
+   pure subroutine find_number(coordinates, column, k, order)
+      type(coordinate_t), intent(in) :: coordinates(:)   !< of its mechanism
+      type(table_column_t), intent(in) :: column
+      integer, intent(out) :: k              !< the number of the coordinate
+      integer, intent(out) :: order          !< of its derivative
+
+      do k = 1, size(coordinates)
+         if (coordinates(k)%request /= column%request) cycle
+         do order = 0, 2
+            if (coordinates(k)%columns(order) == 0) cycle
+            if (all(columns_of_rows(coordinates(k)%columns(order))%at == column%at)) return
+         end do
+      end do
+   end subroutine find_number
 
    !> The value of drive number `d` (0: none) at the time `t`.
    type(cell_t) function drive_cell(set, d, t) result(cell)

@@ -5,7 +5,7 @@ module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
    use mechanism
-   use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error
+   use card_sets, only: card_set_t, has_drawing, look_up, look_up_kinds, match_word, add_card_error
    use columns, only: columns_of_rows, form_of, quantity_of, row_forms => forms
    use cards
    use input_errors
@@ -27,6 +27,9 @@ module deck_options
    !> The words of PRINT: 0 for everything, then the kinds request_link to request_measure.
    character(*), parameter :: print_words(0:request_measure) = &
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
+   !> The word after these: ratios of pairs or measures.
+   character(*), parameter :: ratio_word = 'RATIOS'
+   integer, parameter :: word_ratio = request_measure + 1
 
 contains
 
@@ -108,11 +111,12 @@ contains
    !> names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:request_measure)             ! for each word, the names on earlier cards of the same form
+      type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       type(column_request_t), allocatable :: columns(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
       integer, allocatable :: column_cards(:)       ! (columns) their cards
+      integer, allocatable :: part(:)               ! (links) their independent mechanisms, where ratios need them
       integer :: k, n, i, form
 
       associate (sizes => [(size(set%named(k)%card), k=request_link, request_measure)])
@@ -190,10 +194,10 @@ contains
          integer, intent(in) :: k
          type(request_t), intent(in) :: request
          type(request_t) :: one
-         integer, allocatable :: links(:)
+         integer, allocatable :: links(:), ratios(:)
          integer :: earlier, place
 
-         call match_word(set, k, print_words, place)
+         call match_word(set, k, [character(8) :: print_words, ratio_word], place)
          if (place == 0) return
          one = request
          one%kind = place - 1
@@ -212,6 +216,8 @@ contains
                   one%kind = place
                   call request_all(one)
                end do
+            else if (one%kind == word_ratio) then
+               call read_ratios(k, one, ratios)
             else if (name == '') then
                if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
                   call add_card_error(set, word_unknown, k, label_a, 'THE ITEMS OF THIS SET')
@@ -287,8 +293,12 @@ contains
          character(:), allocatable :: words
          integer :: place, i, j, first
 
-         call match_word(set, k, print_words(request_link:), place)
+         call match_word(set, k, [character(8) :: print_words(request_link:), ratio_word], place)
          if (place == 0) return
+         if (place == word_ratio) then
+            call read_ratio_columns(k)
+            return
+         end if
          request = request_t(place, every=0)
          call look_up(set, place, k, label_b, request%subject)
          if (request%subject == 0) return
@@ -315,6 +325,107 @@ contains
          if (size(columns) == first .and. set%cards(k)%label(label_c) /= '') &
             call add_card_error(set, word_unknown, k, label_c, words)
       end subroutine read_column
+
+      !> Asks what `request` does about the ratios that card `k` names: of a pair or measure, or of all.
+      subroutine read_ratios(k, request, list)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer, allocatable, intent(out) :: list(:)   !< (any number) the numbers of the requests for these ratios
+         integer :: kind, subject
+
+         allocate (list(0))
+         if (set%cards(k)%label(label_b) /= '') then
+            call look_up_kinds(set, [request_pair, request_measure], summand_unknown, k, label_b, kind, subject)
+            if (subject > 0) call add_ratios(k, request, kind, subject, list)
+         else
+            do kind = request_pair, request_measure
+               do subject = 1, size(set%named(kind)%card)
+                  call add_ratios(k, request, kind, subject, list)
+               end do
+            end do
+         end if
+      end subroutine read_ratios
+
+      !> Asks what `request` does about the ratios of a pair or measure by each drive of its independent mechanism. Which
+      !> of these drives can move it, the structure says later.
+      subroutine add_ratios(k, request, kind, subject, list)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer, intent(in) :: kind, subject   !< request_pair or request_measure, and the number
+         integer, allocatable, intent(inout) :: list(:)   !< gets the numbers of the requests
+         type(request_t) :: one
+         integer :: i
+
+         ! What the quantity is about is sure in a deck without errors.
+         if (set%errors%count > 0) return
+         one = request
+         one%kind = kind
+         one%subject = subject
+         one%drive = 0
+         associate (drives => drives_of(one))
+            if (one%extremes .and. size(drives) > 1) then
+               call add_card_error(set, ratio_drives, k, merge(label_b, label_a, set%cards(k)%label(label_b) /= ''))
+               return
+            end if
+            do i = 1, size(drives)
+               one%drive = drives(i)
+               call add_ratio(one, list)
+            end do
+         end associate
+      end subroutine add_ratios
+
+      !> Finds the drives of the independent mechanism of the pair or measure of a request.
+      function drives_of(request) result(list)
+         type(request_t), intent(in) :: request
+         integer, allocatable :: list(:)     !< their numbers
+         integer :: own, i
+
+         if (.not. allocated(part)) part = part_of_links(set%mechanism)
+         associate (m => set%mechanism)
+            own = maxval(part(request_links(m, request)))
+            list = pack([(i, i=1, size(m%drives))], &
+               [(own > 0 .and. maxval(part(drive_links(m, m%drives(i)))) == own, i=1, size(m%drives))])
+         end associate
+      end function drives_of
+
+      !> Adds a request for a ratio, or what it asks to the one that has been there already.
+      subroutine add_ratio(request, list)
+         type(request_t), intent(in) :: request
+         integer, allocatable, intent(inout) :: list(:)   !< gets its number
+         integer :: i
+
+         i = findloc(requests(:n)%drive == request%drive .and. requests(:n)%kind == request%kind .and. &
+            requests(:n)%subject == request%subject, .true., dim=1)
+         if (i == 0) then
+            if (n == size(requests)) requests = [requests, requests, request]
+            n = n + 1
+            i = n
+            requests(i) = request
+         else if (request%extremes) then
+            requests(i)%extremes = .true.
+            requests(i)%sought = .true.
+         end if
+         list = [list, i]
+      end subroutine add_ratio
+
+      !> Reads the COLUMN card `k`, of ratios: VALUE, or the derivative DERIV, by each drive.
+      subroutine read_ratio_columns(k)
+         integer, intent(in) :: k            !< the number of the card in the set
+         integer, allocatable :: list(:)
+         integer :: i, order
+
+         order = findloc(['VALUE', 'DERIV'], set%cards(k)%label(label_c), dim=1) - 1
+         if (set%cards(k)%label(label_c) == '') order = 0
+         if (order < 0) then
+            call add_card_error(set, word_unknown, k, label_c, 'VALUE, DERIV')
+            return
+         end if
+         call read_ratios(k, request_t(every=0), list)
+         do i = 1, size(list)
+            requests(list(i))%in_columns = .true.
+            call add_column(k, column_request_t(list(i), [1, order]))
+         end do
+      end subroutine read_ratio_columns
 
       !> Adds a `column` of the COLUMN card `k`. One that is there already is an error.
       subroutine add_column(k, column)
@@ -351,6 +462,10 @@ contains
 
          do i = 1, n
             if (.not. requests(i)%in_columns .or. requests(i)%extremes) cycle
+            ! The ratios of a mechanism with several drives are not searched.
+            if (requests(i)%drive > 0) then
+               if (size(drives_of(requests(i))) > 1) cycle
+            end if
             requests(i)%extremes = .true.
             requests(i)%dwell = request%dwell
             requests(i)%sought = numbers_in_columns(i, 3)

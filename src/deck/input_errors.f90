@@ -92,6 +92,7 @@ module input_errors
       vary_number = error_code_t(56, 'IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO', own_layout), &
       vary_equal = error_code_t(58, 'EQUALS THE FIRST VALUE: A RANGE NEEDS TWO DIFFERENT VALUES'), &
+      ratio_drives = error_code_t(66, 'HAS SEVERAL DRIVES: EXTREMES OF ITS RATIOS ARE NOT SEARCHED'), &
       vary_tie = error_code_t(63, 'TIES NUMBERS WITH DIFFERENT COUNTS OF VALUES; SEE CARD'), &
       vary_many = error_code_t(64, 'THE GRID HAS TOO MANY VARIANTS; ALLOWED:')
    ! Pairs and drives.

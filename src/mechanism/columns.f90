@@ -1,19 +1,27 @@
 !> Columns, forms and kinds of rows as data: who prints, searches or sums up the numbers of rows asks here. No other
 !> module says which numbers a row of a kind has, what they are called, or whether one exists.
 module columns
-   use kinds, only: label_length
+   use kinds, only: wp, label_length
+   use planar, only: degree
+   use scales, only: is_length
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_measure, &
-      request_pole, request_curve, has_guide
+      request_pole, request_curve, request_ratio, has_guide
    use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
    implicit none
    private
    public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
-      row_turning, last_form, table_turning, last_table, of_length, of_angle
+      row_turning, row_ratio, last_form, table_turning, last_table, of_length, of_angle, last_dimension
+   public :: table_of, is_ratio, usual_size, quantities, drives
    public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
       cell_at_rest, cell_infinite, cell_coincide, last_cell
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2
+   !> Those of ratios of the first two to the first two: in the deck's units, whatever their angles are in.
+   integer, parameter :: length_by_length = 3, length_by_angle = 4, angle_by_length = 5, angle_by_angle = 6, &
+      last_dimension = 6
+   integer, parameter :: quantities(length_by_length:last_dimension) = [of_length, of_length, of_angle, of_angle], &
+      drives(length_by_length:last_dimension) = [of_length, of_angle, of_length, of_angle]
 
    !> One number of a row, wherever it is printed.
    type :: row_column_t
@@ -21,7 +29,7 @@ module columns
       character(5) :: word = ''              !< after the name in the head of --table; '': it has no column there
       integer :: place = 0                   !< in the listing, 1 to 9; 0: it is not there
       integer :: at(2) = 0                   !< its place in the value (3, 0:2) of a row: coordinate, derivative or axes
-      integer :: dimension = of_length       !< of_length or of_angle
+      integer :: dimension = of_length       !< of_length, ...
       integer :: order = 0                   !< of the derivative (0 to 2) whose unit, digits and size it has
       integer :: needs = 0                   !< what must be known: 0 the position, 1 velocities, 2 accelerations
       logical :: there(centre_finite:points_coincide) = .true.   !< by the state of its row: the number exists
@@ -36,7 +44,7 @@ module columns
 
    !> The words of a kind of rows: the kind of a request, or `table_turning`.
    type :: row_kind_t
-      character(8) :: english = '', polish = ''    !< over the names in the listing
+      character(12) :: english = '', polish = ''   !< over the names in the listing
       integer :: names = 1                   !< names in a row, each with a column of its own
       integer :: rows = 1                    !< in the CSV: one, or one for each of the three axes of `at`,
       character(7) :: csv(0:2) = ''          !< and their kinds
@@ -126,20 +134,33 @@ module columns
       row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'a', 4, [1, 2], of_length, 2, 2, finite), &
       row_column_t('ANGLE', 'KAT', 'theta', 1, [1, 0], of_angle, 0, 0, finite), &
       row_column_t('VELOCITY', 'PREDKOSC', 'omega', 2, [1, 1], of_angle, 1, 1, finite), &
-      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'alpha', 4, [1, 2], of_angle, 2, 2, finite)]
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'alpha', 4, [1, 2], of_angle, 2, 2, finite), &
+      ! 46: ratios, by the dimensions of the quantity and of the drive.
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], length_by_length, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], length_by_length, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], length_by_angle, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], length_by_angle, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], angle_by_length, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], angle_by_length, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], angle_by_angle, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], angle_by_angle, 1, 0, finite)]
 
    !> The numbers of rows with one coordinate on COLUMN cards.
    character(8), parameter :: of_value(0:2) = ['VALUE   ', 'VVALUE  ', 'AVALUE  ']
 
    integer, parameter :: row_link = 1, row_turning = 2, row_point = 3, row_slide = 4, row_angle = 5, row_pole = 6, &
-      row_curve = 7, row_length = 8, row_direction = 9, last_form = 9
+      row_curve = 7, row_length = 8, row_direction = 9, row_ratio = 10, last_form = 13
    type(row_form_t), parameter :: forms(last_form) = [ &
       row_form_t(request_link, 1, 9, 3), row_form_t(request_link, 10, 12, 1), row_form_t(request_point, 13, 18, 2), &
       row_form_t(request_pair, 19, 21, 1), row_form_t(request_pair, 22, 24, 1), row_form_t(request_pole, 25, 33), &
-      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), row_form_t(request_measure, 43, 45, 1)]
+      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), row_form_t(request_measure, 43, 45, 1), &
+      row_form_t(request_ratio, 46, 47, 1), row_form_t(request_ratio, 48, 49, 1), row_form_t(request_ratio, 50, 51, 1), &
+      row_form_t(request_ratio, 52, 53, 1)]
 
-   !> The kind of tables of links of which only angles are listed; the others are the kinds of requests.
-   integer, parameter :: table_turning = 0, last_table = request_curve
+   !> The kind of tables of links of which only angles are listed; the others are the kinds of rows, that of ratios once
+   !> for each of their forms.
+   integer, parameter :: table_turning = 0, last_table = request_ratio + last_form - row_ratio
+   character(8), parameter :: of_ratio(0:2) = ['VALUE   ', 'DERIV   ', '        ']
    type(row_kind_t), parameter :: kinds_of_rows(table_turning:last_table) = [ &
       row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_turning, 0]), &
       row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_link, 0]), &
@@ -147,7 +168,11 @@ module columns
       row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
       row_kind_t('MEASURE', 'WIELKOSC', 1, 1, 'MEASURE', [row_length, row_direction], of_value), &
       row_kind_t('POLE', 'BIEGUN', 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0]), &
-      row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0])]
+      row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0]), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 1, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 2, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 3, 0], of_ratio)]
 
 contains
 
@@ -162,7 +187,43 @@ contains
       else if (request%kind == request_measure) then
          if (m%measures(request%subject)%is_angle) form_of = row_direction
       end if
+      if (request%drive == 0) return
+      form_of = row_ratio + 2*(columns_of_rows(forms(form_of)%first)%dimension - of_length) &
+         + merge(0, 1, is_length(m%drives(request%drive)))
    end function form_of
+
+   !> Finds the kind of the table in which a row is.
+   pure integer function table_of(kind, form) result(table)
+      integer, intent(in) :: kind            !< of the row: request_link, ...
+      integer, intent(in) :: form            !< of the row: row_link, ...
+
+      table = kind
+      if (kind == request_ratio) table = kind + form - row_ratio
+   end function table_of
+
+   !> Tells whether rows of a form are ratios.
+   elemental logical function is_ratio(form)
+      integer, intent(in) :: form            !< row_link, ...
+
+      is_ratio = forms(form)%kind == request_ratio
+   end function is_ratio
+
+   !> Gives the size of a usual number of a dimension. That of a ratio is in the deck's units, otherwise in rad.
+   pure real(wp) function usual_size(dimension, order, length, rate, degrees) result(size_of)
+      integer, intent(in) :: dimension       !< of_length, ...
+      integer, intent(in) :: order           !< of the derivative, from 0: by the time, of a ratio by the drive
+      real(wp), intent(in) :: length         !< characteristic length of the mechanism
+      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      logical, intent(in) :: degrees         !< the deck's unit of angles
+      real(wp) :: sizes(of_length:of_angle)
+
+      if (dimension <= of_angle) then
+         size_of = merge(length, 1.0_wp, dimension == of_length)*rate**order
+      else
+         sizes = [length, merge(1.0_wp/degree, 1.0_wp, degrees)]
+         size_of = sizes(quantities(dimension))/sizes(drives(dimension))**(order + 1)
+      end if
+   end function usual_size
 
    !> Finds the column that has one number of the values of rows; 0: no column has it.
    pure integer function column_at(form, c, k) result(j)

@@ -210,6 +210,7 @@ contains
       end do
       own%requests = m%requests(rows)
       own%requests%second = place(request_link)%of(own%requests%second)
+      own%requests%drive = place(of_drives)%of(own%requests%drive)
       do i = 1, size(own%requests)
          own%requests(i)%subject = place(of_requests(own%requests(i)%kind))%of(own%requests(i)%subject)
       end do

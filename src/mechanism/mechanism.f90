@@ -20,6 +20,8 @@ module mechanism
    integer, parameter :: request_link = 1, request_point = 2, request_pair = 3, request_measure = 4
    !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
    integer, parameter :: request_pole = 5, request_curve = 6
+   !> The kind of the rows of ratios; their requests have the kind of the quantity, and a drive.
+   integer, parameter :: request_ratio = 7
 
    integer, parameter :: measure_distance = 1   !< DISTANCE: the length from point 1 to point 2
    integer, parameter :: measure_line = 2    !< LINE: the direction from point 1 to point 2
@@ -180,6 +182,7 @@ module mechanism
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
       logical :: listed = .false.            !< a row in the listing at every instant, which no card asks for
       logical :: angle_alone = .false.       !< of a link: the rows of the listing have its angle alone
+      integer :: drive = 0                   !< of a ratio: the number of the drive of which the rate is 1; 0: no ratio
       logical :: in_columns = .false.        !< a COLUMN card names it: a row in the CSV at every instant
       logical :: sought(3, 0:2) = .true.     !< the numbers of its row whose extremes are asked for
    end type request_t

@@ -69,6 +69,12 @@ module motion
       logical :: is_latest = .false.                     !< it was the last one
    end type turned_t
 
+   !> The motion at the same position in which one drive alone has a rate, of 1, and none has an acceleration.
+   type :: unit_motion_t
+      real(wp), allocatable :: velocity(:, :), acceleration(:, :)   !< (3, links) as of `motion_t`
+      logical, allocatable :: is_known(:)                !< (links)
+   end type unit_motion_t
+
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
@@ -86,6 +92,8 @@ module motion
       integer, allocatable :: link_known(:), link_mark(:)
       !> (measures) From these values those that continue go on; not allocated: none does, or no instant is taken yet.
       type(turned_t), allocatable :: turned(:)
+      !> (drives) Those by which ratios are asked for are allocated. Not allocated: none is known.
+      type(unit_motion_t), allocatable :: by(:)
    end type motion_t
 
 contains

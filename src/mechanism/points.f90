@@ -3,22 +3,25 @@
 module points
    use kinds, only: wp, label_length
    use mechanism, only: settings_t, mechanism_t, request_t, pair_t, has_guide, request_link, request_point, &
-      request_pair, request_measure, request_pole, request_curve, is_centre, instant_count, request_links, &
+      request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, request_links, &
       subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
-   use names, only: subject_name
-   use columns, only: form_of
+   use names, only: subject_name, drive_name
+   use drives, only: drive_motion
+   use scales, only: is_length
+   use columns, only: columns_of_rows, forms, form_of, of_length
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
-   use planar, only: pi, direction, rotated, point_of, add_rotating, cross
-   use motion, only: motion_t, turned_t, known_of, mark_none
+   use planar, only: pi, degree, direction, rotated, point_of, add_rotating, cross
+   use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular
    implicit none
    private
-   public :: row_t, find_row, keep_turns, difference, is_due, is_listed, is_fixed
+   public :: row_t, column_of_ratio, find_row, keep_turns, difference, is_due, is_listed, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
    type, extends(centre_t) :: row_t
       integer :: kind = request_link        !< request_link, ..., request_curve
-      character(2*label_length + 1) :: name = ''   !< of the link, point or pair; of both links, or point and link
+      !> Of the link, point, pair or measure; of both links, or point and link; of a ratio the quantity BY the drive.
+      character(4*label_length + 6) :: name = ''
       integer :: form = 0                   !< which columns it has
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
@@ -30,6 +33,9 @@ module points
    !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
    real(wp), parameter :: half_turn_margin = 1.0e-9_wp
    real(wp), parameter :: full_turn = 2.0_wp*pi
+
+   !> The coordinate of the row of a ratio that searches along the time take.
+   integer, parameter :: column_of_ratio = 2
 
    !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
    type(row_t), protected :: new_row = row_t()
@@ -74,6 +80,10 @@ contains
       type(row_t), intent(inout) :: row
       real(wp) :: p(2, 0:2)
 
+      if (request%drive > 0) then
+         call find_ratio(m, q, request, row)
+         return
+      end if
       row = new_row
       row%kind = request%kind
       row%form = form_of(m, request)
@@ -123,6 +133,54 @@ contains
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end subroutine find_row
+
+   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure in the motion in which the drive
+   !> alone moves, with the rate 1, in the deck's units. Its value (:, 0) and (:, 1) is the ratio and its derivative by
+   !> the drive. For searches along the time `column_of_ratio` has nothing, the ratio, the rate of the ratio.
+   pure subroutine find_ratio(m, q, request, row)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(inout) :: row
+      type(motion_t) :: unit
+      integer, allocatable :: links(:)
+      real(wp) :: s(0:2), f(3), in_angles, in_drive
+
+      row = new_row
+      row%kind = request_ratio
+      row%form = form_of(m, request)
+      row%name = trim(subject_name(m, request%kind, request%subject))//' BY '//drive_name(m, m%drives(request%drive))
+      links = request_links(m, request)
+      call find_known(m, q, links, row%known, row%mark)
+      if (row%known < 0) return
+      row%known = -1
+      row%mark = mark_singular
+      if (.not. allocated(q%by)) return
+      associate (by => q%by(request%drive))
+         if (.not. allocated(by%velocity)) return
+         if (.not. all(by%is_known(links) .or. m%links(links)%ground)) return
+         unit%position = q%position
+         unit%velocity = by%velocity
+         unit%acceleration = by%acceleration
+      end associate
+      row%known = 2
+      row%mark = mark_none
+      if (request%kind == request_pair) then
+         s = pair_motion(m, unit, m%pairs(request%subject))
+      else
+         call find_measure(m, unit, request%subject, s, row%state, row%weight)
+      end if
+
+      in_angles = 1.0_wp
+      if (m%degrees) in_angles = degree
+      f = drive_motion(m%drives(request%drive), q%t)
+      in_drive = merge(1.0_wp, in_angles, is_length(m%drives(request%drive)))
+      if (columns_of_rows(forms(form_of(m, request_t(request%kind, request%subject)))%first)%dimension == of_length) &
+         in_angles = 1.0_wp
+      row%value(1, 0) = s(1)*(in_drive/in_angles)
+      row%value(1, 1) = s(2)*(in_drive/in_angles)*in_drive
+      row%value(column_of_ratio, 1:) = [row%value(1, 0), row%value(1, 1)*(f(2)/in_drive)]
+   end subroutine find_ratio
 
    !> Finds how much is known of a row: that is what is known of its links.
    pure subroutine find_known(m, q, links, known, mark)

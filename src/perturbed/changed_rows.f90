@@ -11,7 +11,7 @@ module changed_rows
    use block_matrix, only: solve_first, solve_again
    use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t
-   use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
+   use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, get_ratios, &
       slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
@@ -187,6 +187,8 @@ contains
          place%change = max(place%change, abs(e%state%u(k)%value - place%start(k)%value/slide_unit(e, k)))
       end do
       call get_motion(e, q, finite)
+      if (size(e%ratios) > 0) call get_ratios(e, [(missing(e%blocks%unknown(max(1, e%blocks%list(k)%first))) &
+         > missing_nothing, k=1, size(e%blocks%list))], q)
       call forget_links(q)
       if (worst > missing_nothing) call mark_links(e%chain, missing, q)
    end subroutine solve_needed

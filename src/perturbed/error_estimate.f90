@@ -172,6 +172,7 @@ contains
             other = q
             ! By one they could be hidden by the roundings of the rows.
             call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, other)
+            if (allocated(q%by)) call put_ratios_off(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
                ! No sum moves a centre from infinity.
@@ -187,6 +188,26 @@ contains
          end do
          found%changes = min(hypot(found%changes, of_sums), nothing_known)
       end subroutine add_sums
+
+      !> Puts the motions by which ratios are taken off by roundings of the sums that they are, as the motion `other`.
+      subroutine put_ratios_off(k, other)
+         integer, intent(in) :: k            !< the direction
+         type(motion_t), intent(inout) :: other
+         type(motion_t) :: unit
+         integer :: d
+
+         do d = 1, size(other%by)
+            if (.not. allocated(q%by(d)%velocity)) cycle
+            unit%position = q%position
+            unit%velocity = q%by(d)%velocity
+            unit%acceleration = q%by(d)%acceleration
+            unit%known = 2
+            unit%origin = q%origin
+            call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, unit)
+            other%by(d)%velocity = unit%velocity
+            other%by(d)%acceleration = unit%acceleration
+         end do
+      end subroutine put_ratios_off
    end subroutine estimate_errors
 
    !> The change (3, 0:2) by a rounding, from the rows `middle` and `one`, of which a `part` is that of one rounding.

@@ -172,7 +172,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
 
-      has_tolerances = allocated(m%tolerances) .and. .not. is_centre(request%kind)
+      has_tolerances = allocated(m%tolerances) .and. .not. is_centre(request%kind) .and. request%drive == 0
    end function has_tolerances
 
    !> Finds what the next joint of the rise that has the number of tolerance `one` says of derivatives at the time `t`.

@@ -104,14 +104,17 @@ contains
          integer, intent(in) :: i
          type(listed_column_t), intent(inout) :: column
          type(request_t) :: request
+         character(:), allocatable :: name
 
          column%request = s%columns(i)%request
          request = request_of(s, column%request)
          associate (part => s%rows(column%request)%part)
             column%number = columns_of_rows(column_at(form_of(s%parts(part), request), s%columns(i)%at(1), &
                s%columns(i)%at(2)))
-            call put_heads(column, subject_name(s%parts(part), request%kind, request%subject), &
-               column_name(l, column%number), &
+            name = subject_name(s%parts(part), request%kind, request%subject)
+            if (request%drive > 0) name = trim(name)//' '//phrase(say_by, s%polish)//' ' &
+               //drive_name(s%parts(part), s%parts(part)%drives(request%drive))
+            call put_heads(column, trim(name), column_name(l, column%number), &
                l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
          end associate
       end subroutine take_number

@@ -13,7 +13,7 @@ module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: request_t, request_link, request_point
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, cell_of, cell_words, &
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, cell_words, &
       cell_number, of_angle
    use scales, only: is_length
    use drives, only: drive_motion
@@ -30,7 +30,7 @@ module csv
    implicit none
    private
    public :: csv_head, csv_instant, marks
-   public :: table_t, new_table, table_head, table_instant, drive_columns, dotted
+   public :: table_t, table_column_t, new_table, table_head, table_instant, drive_columns, dotted
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    !> The mark where nothing is missing but known digits.
@@ -47,7 +47,7 @@ module csv
    !> A column after those of time and drives.
    type, extends(row_column_t) :: table_column_t
       integer :: request = 0                        !< its number among those of the set
-      character(2*label_length + 6) :: name = ''    !< ROCKER.phi, TIP.vx, SLOT.v
+      character(6*label_length) :: name = ''        !< ROCKER.phi, TIP.vx, SLOT.v, MU.by.ANGLE.CRANK
    end type table_column_t
 
    !> The columns of a set.
@@ -255,11 +255,17 @@ contains
             ! A point that has the name of a link in the table has that of its own link before it.
             if (request%kind == request_point .and. find_name(links, name) > 0) &
                name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
+            ! Of a ratio the first word comes before the name of the drive.
+            if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
+               //trim(t%drives(findloc(s%drives%part == s%rows(i)%part .and. s%drives%number == request%drive, .true., &
+               dim=1)))
          end associate
          n = n + 1
          t%columns(n)%row_column_t = columns_of_rows(j)
          t%columns(n)%request = i
-         t%columns(n)%name = name//'.'//columns_of_rows(j)%word
+         t%columns(n)%name = name
+         if (.not. (is_ratio(form(i)) .and. j == forms(form(i))%first)) &
+            t%columns(n)%name = name//'.'//columns_of_rows(j)%word
       end subroutine add_column
    end function new_table
 

@@ -13,6 +13,7 @@ module listing
    use following, only: certificate_counts_t
    use independent, only: set_t
    use set_motion, only: set_motion_t, is_flagged
+   use columns, only: table_of
    use points, only: row_t
    use rows, only: finished_row_t, word_worst, word_rss
    use listing_layout, only: layout_t, new_layout, put_folded, angle_unit, choose_time_digits
@@ -134,7 +135,8 @@ contains
             if (.not. row%listed) cycle
             if (is_told(row%part) .and. row%known < 0) cycle
             if (.not. begun) call begin_instant()
-            call put_heads(o, l, row%part, merge(l%links_table, row%kind, row%kind == request_link), table)
+            call put_heads(o, l, row%part, merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), &
+               table)
             call put_row(o, l, d, row, row%shown, row%doubt, 0, table)
             if (.not. allocated(row%others)) cycle
             ! The effect of tolerances, with more decimals: the worst case, and the root of the sum of squares.

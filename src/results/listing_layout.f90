@@ -8,7 +8,8 @@ module listing_layout
    use planar, only: degree
    use mechanism, only: drive_t, settings_t, request_t, request_link
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning, last_form, &
-      table_turning, last_table, cell_none, last_cell, of_length, of_angle
+      table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, &
+      usual_size, cell_none, last_cell, of_length, of_angle
    use independent, only: set_t, request_of
    use drives, only: growing_sizes
    use names, only: drive_name, more
@@ -34,7 +35,7 @@ module listing_layout
 
    !> The digits of one independent mechanism.
    type :: digits_t
-      type(format_t) :: format(2, 0:2)       !< (length or angle, derivative)
+      type(format_t) :: format(last_dimension, 0:2)   !< (of_length, ...; derivative)
       !> By the kind of a table: the lines over its rows, joined by new_line('a').
       character(4*(row_length + 1)) :: heads(table_turning:last_table)
       integer :: head_length(table_turning:last_table) = 0
@@ -57,8 +58,8 @@ module listing_layout
       integer :: links_table = request_link   !< the kind of the tables of links
       integer :: shift(last_form) = 0      !< places that the columns of a form of rows are further on
       logical :: has(last_form) = .false.  !< there are such rows
-      character(label_length) :: unit(2) = ''         !< of lengths and angles
-      character(label_length + 4) :: per(0:2) = ''    !< what they are divided by in a derivative
+      character(label_length) :: unit(last_dimension) = ''   !< of lengths and angles; of the quantity of a ratio
+      character(label_length + 4) :: per(last_dimension, 0:2) = ''   !< what they are divided by in a derivative
       logical :: per_below = .false.       !< that stands in a line below the units, which are long
       character(numeral_length) :: words(cell_none:last_cell)   !< in the place of a number
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
@@ -89,7 +90,7 @@ contains
       subroutine choose_own_digits()
          type(format_t) :: largest(of_length:of_angle, 0:2)
          real(wp) :: length, rate, angle
-         integer :: c, k
+         integer :: c, k, i
          logical :: mixed
 
          angle = 1.0_wp
@@ -105,17 +106,28 @@ contains
                   call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
                      f(of_angle, k))
                end do
+               if (all(s%parts(c)%requests%drive == 0)) cycle
+               do i = of_angle + 1, last_dimension
+                  do k = 0, 1
+                     call choose_digits(log10(usual_size(i, k, length, rate, s%degrees)), 0, f(i, k))
+                  end do
+               end do
             end associate
          end do
          l%digits_t = l%own(1)
-         largest = l%own(1)%format
+         largest = l%own(1)%format(:of_angle, :)
          mixed = .false.
          do c = 2, s%count
-            mixed = mixed .or. any(l%own(c)%format%power /= l%own(1)%format%power)
-            l%format%decimals = min(l%format%decimals, l%own(c)%format%decimals)
-            largest%decimals = max(largest%decimals, l%own(c)%format%decimals)
+            associate (all_of => l%format(:of_angle, :), own => l%own(c)%format(:of_angle, :))
+               mixed = mixed .or. any(own%power /= l%own(1)%format(:of_angle, :)%power)
+               all_of%decimals = min(all_of%decimals, own%decimals)
+               largest%decimals = max(largest%decimals, own%decimals)
+            end associate
          end do
-         if (.not. mixed .and. all(largest%decimals - l%format%decimals <= 1)) l%own = l%digits_t
+         if (mixed .or. any(largest%decimals - l%format(:of_angle, :)%decimals > 1)) return
+         do c = 1, s%count
+            l%own(c)%format(:of_angle, :) = l%format(:of_angle, :)
+         end do
       end subroutine choose_own_digits
 
       !> Chooses the table of links and the columns of tables with rows of two forms; then writes the lines over rows.
@@ -132,18 +144,28 @@ contains
          end do
          do k = table_turning, last_table
             associate (of_table => kinds_of_rows(k)%forms)
-               if (of_table(2) == 0) then
+               if (of_table(2) == 0 .and. .not. is_ratio(of_table(1))) then
                   l%has(of_table(1)) = .true.
-               else if (l%has(of_table(1))) then
+               else if (of_table(2) > 0 .and. l%has(of_table(1))) then
                   l%shift(of_table(2)) = behind_first
                end if
             end associate
          end do
 
-         l%unit = [character(label_length) :: s%length_unit, angle_unit(s)]
-         l%per = [character(label_length + 4) :: '', '/'//s%time_unit, '/'//trim(s%time_unit)//'**2']
-         l%per_below = maxval(len_trim(l%unit)) + len_trim(l%per(2)) >= numeral_length
+         l%unit(:of_angle) = [character(label_length) :: s%length_unit, angle_unit(s)]
+         do i = of_length, of_angle
+            l%per(i, :) = [character(label_length + 4) :: '', '/'//s%time_unit, '/'//trim(s%time_unit)//'**2']
+         end do
+         l%per_below = maxval(len_trim(l%unit)) + len_trim(l%per(of_length, 2)) >= numeral_length
+         ! Of a ratio they are those of the quantity and of the drive.
+         do i = of_angle + 1, last_dimension
+            l%unit(i) = l%unit(quantities(i))
+            associate (by => l%unit(of_drives(i)))
+               l%per(i, :1) = [character(label_length + 4) :: '/'//by, '/'//trim(by)//'**2']
+            end associate
+         end do
          do k = table_turning, last_table
+            if (is_ratio(kinds_of_rows(k)%forms(1)) .and. .not. l%has(kinds_of_rows(k)%forms(1))) cycle
             do i = 1, s%count
                call take_heads(l, l%own(i), k)
             end do
@@ -197,7 +219,7 @@ contains
                   if (power /= 0) call put_word(lines(2), power_text(power), last)
                   if (l%per_below) then
                      call put_word(lines(3), trim(l%unit(c%dimension)), last)
-                     call put_word(lines(4), trim(l%per(c%order)), last)
+                     call put_word(lines(4), trim(l%per(c%dimension, c%order)), last)
                   else
                      call put_word(lines(3), column_unit(l, c), last)
                   end if
@@ -252,7 +274,7 @@ contains
       type(row_column_t), intent(in) :: c        !< the column
       character(:), allocatable :: unit
 
-      unit = trim(l%unit(c%dimension))//trim(l%per(c%order))
+      unit = trim(l%unit(c%dimension))//trim(l%per(c%dimension, c%order))
    end function column_unit
 
    !> Chooses between two words by the language of the listing.

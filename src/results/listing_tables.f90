@@ -2,13 +2,14 @@
 module listing_tables
    use kinds, only: wp
    use drives, only: drive_motion
-   use columns, only: columns_of_rows, forms, kinds_of_rows, cell_of, cell_number, cell_spare
+   use columns, only: columns_of_rows, forms, kinds_of_rows, is_ratio, cell_of, cell_number, cell_spare
    use points, only: row_t
    use text_output, only: output_t, put
    use numerals, only: whole, put_fixed, numeral_length
    use known_digits, only: nothing_known
    use table, only: format_t, put_cell, put_number, number_text
    use listing_layout
+   use phrases, only: phrase, say_by
    implicit none
    private
    public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text, law_error
@@ -189,12 +190,14 @@ contains
 
       ! One name, or two in columns of their own.
       line = ' '//row%name
-      end_of = name_length
-      if (kinds_of_rows(row%kind)%names == 2) then
+      end_of = kinds_of_rows(row%kind)%names*name_length
+      if (is_ratio(form)) then
+         j = index(row%name, ' ')
+         line(j + 1:) = ' '//phrase(say_by, l%polish)//row%name(index(row%name, ' BY ') + 3:)
+      else if (end_of > name_length) then
          j = index(row%name, ' ')
          line(j + 1:) = ''
          line(name_length + 1:) = ' '//row%name(j + 1:)
-         end_of = 2*name_length
       end if
 
       ! Found once for all columns, since it takes as long as a number.

@@ -112,6 +112,7 @@ module phrases
       say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
       say_mechanism = phrase_t('INDEPENDENT MECHANISM', 'NIEZALEZNY MECHANIZM'), &
       say_block = phrase_t('BLOCK', 'BLOK'), &
+      say_by = phrase_t('BY', 'WZGLEDEM'), &
       say_unknowns = phrase_t('UNKNOWNS', 'NIEWIADOME'), &
       say_paths = phrase_t('PATHS', 'SCIEZKI'), &
       say_finite = phrase_t('FINITE', 'SKONCZONE'), &
@@ -137,6 +138,7 @@ module phrases
       say_shares = phrase_t('TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
       say_no_shares = phrase_t('POLES AND CURVES HAVE NO TOLERANCES', 'BIEGUNY I TORY NIE MAJA TOLERANCJI'), &
+      say_no_ratio_shares = phrase_t('RATIOS HAVE NO TOLERANCES', 'PRZELOZENIA NIE MAJA TOLERANCJI'), &
       say_small_shares = phrase_t('CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:'), &
       say_jams = phrase_t('ITS TOLERANCE BREAKS A REDUNDANT EQUATION (THE MECHANISM JAMS)', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')

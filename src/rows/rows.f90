@@ -3,7 +3,7 @@
 module rows
    use kinds, only: wp
    use motion, only: motion_t, new_motion
-   use columns, only: columns_of_rows, forms, kinds_of_rows, row_turning, of_length
+   use columns, only: columns_of_rows, forms, kinds_of_rows, row_turning, is_ratio, usual_size
    use points, only: row_t, find_row, is_due, is_listed
    use assemblies, only: assemblies_t
    use error_estimate, only: estimate_of, row_error
@@ -66,30 +66,32 @@ contains
                row%in_doubt = errors%taken .and. errors%in_doubt
                if (row%in_doubt) then
                   row%doubt = estimate_of(row%row_t, m, errors, n)
-                  call find_digits(row, errors%sizes%length, errors%sizes%rate)
+                  call find_digits(row, errors%sizes%length, errors%sizes%rate, m%degrees)
                end if
                if (errors%asked) row%error = row_error(m, errors, motions%motions(c), n)
 
                if (allocated(row%others)) deallocate (row%others)
                if (.not. (allocated(m%tolerances) .or. (present(assemblies) .and. step == 0))) cycle
-               ! Rows with three lines in the CSV have no others.
-               if (kinds_of_rows(row%kind)%rows == 1) call find_others(row, motions, i, step, assemblies)
+               ! Rows with three lines in the CSV have no others, and ratios have none.
+               if (kinds_of_rows(row%kind)%rows == 1 .and. .not. is_ratio(row%form)) &
+                  call find_others(row, motions, i, step, assemblies)
             end associate
          end associate
       end do
    end subroutine find_rows
 
    !> Finds the numbers of a row with a known digit: the error is below a tenth of the number or of a usual one.
-   pure subroutine find_digits(row, length, rate)
+   pure subroutine find_digits(row, length, rate, degrees)
       type(finished_row_t), intent(inout) :: row
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
       real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      logical, intent(in) :: degrees         !< the deck's unit of angles
       integer :: j
 
       do j = forms(row%form)%first, forms(row%form)%last
          associate (column => columns_of_rows(j), c => columns_of_rows(j)%at(1), k => columns_of_rows(j)%at(2))
             row%has_digit(c, k) = .not. 10.0_wp*row%doubt(c, k) > max(abs(row%value(c, k)), &
-               merge(length, 1.0_wp, column%dimension == of_length)*rate**column%order)
+               usual_size(column%dimension, column%order, length, rate, degrees))
          end associate
       end do
    end subroutine find_digits
