@@ -164,8 +164,8 @@ contains
 
       rate = m%drives(1)%polynomial(2)
       if (m%degrees .and. .not. is_length(m%drives(1))) rate = in_degrees(rate)
-      c%sought(2) = c%sought(2) .and. .not. (allocated(m%drives(1)%terms) .or. abs(m%drives(1)%polynomial(3)) > 0.0_wp) &
-         .and. abs(rate) > 0.0_wp
+      c%sought(2) = c%sought(2) .and. abs(rate) > 0.0_wp .and. .not. abs(m%drives(1)%polynomial(3)) > 0.0_wp
+      if (allocated(m%drives(1)%terms)) c%sought(2) = c%sought(2) .and. size(m%drives(1)%terms) == 0
       if (.not. c%sought(2)) return
       c%found(:, 2)%value = c%found(:, 2)%value/rate
       c%found(:, 2)%error = c%found(:, 2)%error/abs(rate)

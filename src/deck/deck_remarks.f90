@@ -209,7 +209,7 @@ contains
             merge(angles//repeat(' ', len(of_some)), angles//of_some, &
             all(m%requests%angle_alone .or. m%requests%kind /= request_link))
          if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
-         if (allocated(m%measures) .and. m%variants == 0) &
+         if (allocated(m%measures) .and. m%variants == 0 .and. .not. allocated(m%columns)) &
             call add_default(form_print, [character(label_length) :: 'MEASURES', '', '1'])
          m%echo = m%echo(1:n)
       end associate

@@ -93,6 +93,7 @@ contains
             state%u(k)%value = arbitrary(k)
             call set_direction(b, k, state)
          end do
+         state%drive_value(0, 1:) = arbitrary([(k, k=1, size(m%drives))] + 2*b%unknowns)
          state%drive_value(1, d) = 1.0_wp
          moves = 0
          do i = 1, size(b%list)
