@@ -202,6 +202,7 @@ contains
             unit%velocity = q%by(d)%velocity
             unit%acceleration = q%by(d)%acceleration
             unit%known = 2
+            unit%link_known = merge(2, -1, q%by(d)%is_known)
             unit%origin = q%origin
             call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, unit)
             other%by(d)%velocity = unit%velocity

@@ -22,10 +22,12 @@ contains
       type(dice_t), intent(inout) :: r
       character(8), parameter :: plain(*) = [character(8) :: 'RANGE', 'CIRCUITS', 'ASSEMBLY', 'PROVE']
       character(8), parameter :: kinds(*) = [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS']
+      character(8), parameter :: column_kinds(*) = [character(8) :: 'LINKS', 'POINTS', 'PAIRS', 'RATIOS']
+      character(8), parameter :: quantities(*) = [character(8) :: 'X', 'VY', 'PHI', 'APHI', 'VALUE', 'AVALUE', 'DERIV']
       character(80) :: card
 
       card = ''
-      select case (throw(r, 10))
+      select case (throw(r, 12))
       case (1:4)
          card = plain(throw(r, size(plain)))
          ! The circuits of many links can take minutes.
@@ -41,6 +43,15 @@ contains
          card = 'BRANCH'
          if (chance(r, 0.5_wp)) card(9:16) = any_name(d, r, ['LINK    '])
          write (card(33:48), '(es16.8e3)') between(r, 0.0_wp, 10.0_wp)
+      case (10)
+         card = 'COLUMN  '//column_kinds(throw(r, size(column_kinds)))
+         if (card(9:16) == 'LINKS') card(17:24) = any_name(d, r, ['LINK    '])
+         if (card(9:16) == 'POINTS') card(17:24) = any_name(d, r, ['POINT   ', 'JOINT   '])
+         if (any(card(9:16) == column_kinds(3:))) card(17:24) = any_pair(d, r)
+         if (chance(r, 0.5_wp)) card(25:32) = quantities(throw(r, size(quantities)))
+      case (11)
+         card = merge('PRINT   ', 'EXTREMES', chance(r, 0.7_wp))//'RATIOS'
+         if (chance(r, 0.5_wp)) card(17:24) = any_pair(d, r)
       case default
          if (chance(r, 0.5_wp)) call vary(d, r)
          if (chance(r, 0.5_wp)) call tolerate(d, r)
@@ -72,6 +83,18 @@ contains
       i = pick(r, find_cards(d, cards))
       if (i > 0) name = label(d%line(i), 1)
    end function any_name
+
+   !> The name of a pair.
+   function any_pair(d, r) result(name)
+      type(draft_t), intent(in) :: d
+      type(dice_t), intent(inout) :: r
+      character(8) :: name
+      integer :: i
+
+      name = ''
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'JOINT   ']))
+      if (i > 0) name = label(d%line(i), merge(1, 3, name_of(d%line(i)) == 'JOINT'))
+   end function any_pair
 
    !> A few values for a number of a card.
    subroutine vary(d, r)
@@ -144,7 +167,7 @@ contains
          is_name = .true.
       case ('DRIVE')
          is_name = k >= 2 .and. label(line, k) /= 'RPM'
-      case ('PRINT', 'EXTREMES')
+      case ('PRINT', 'COLUMN', 'EXTREMES')
          is_name = k == 2
       case default
          is_name = .false.
