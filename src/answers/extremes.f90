@@ -3,7 +3,7 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, request_measure
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
    use drives, only: joints_of, largest_frequency
@@ -54,6 +54,7 @@ module extremes
       integer :: form = 0                              !< of the row
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
+      logical :: is_measure = .false.                  !< it may be known less well where two points are close
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
@@ -170,6 +171,7 @@ contains
                         one%column = i
                         one%form = form_of(own, request)
                         one%is_angle = columns_of_rows(column_at(one%form, i, 0))%dimension == of_angle
+                        one%is_measure = request%kind == request_measure
                         one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
                         allocate (one%places(0), one%reversals(0))
@@ -231,6 +233,8 @@ contains
                better = better .or. gain + best%error > e%error
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
+            ! A value that is alike and much better known.
+            better = better .or. (c%is_measure .and. abs(gain) <= open .and. e%error < badly_known*best%error)
             if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
             if (.not. better) cycle
             open = merge(abs(e%t - best%t), 0.0_wp, near)

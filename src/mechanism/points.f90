@@ -6,13 +6,13 @@ module points
       request_pair, request_measure, request_pole, request_curve, is_centre, instant_count, request_links, &
       subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
    use names, only: subject_name
-   use columns, only: form_of
+   use columns, only: form_of, columns_of_rows, forms
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use planar, only: pi, direction, rotated, point_of, add_rotating, cross
    use motion, only: motion_t, turned_t, known_of, mark_none
    implicit none
    private
-   public :: row_t, find_row, keep_turns, difference, is_due, is_listed, is_fixed
+   public :: row_t, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
@@ -131,6 +131,15 @@ contains
       end do
    end subroutine find_known
 
+   !> Finds how much of a row exists, as in `motion_t`: where points coincide, only the value of a length does.
+   pure integer function known_at(row)
+      type(row_t), intent(in) :: row
+
+      known_at = row%known
+      if (row%state /= points_coincide) return
+      known_at = merge(0, -1, row%known >= 0 .and. columns_of_rows(forms(row%form)%first)%there(points_coincide))
+   end function known_at
+
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
@@ -241,6 +250,35 @@ contains
          if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) s(0) = s(0) + full_turn*anint(turns)
       end associate
    end subroutine find_measure
+
+   !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
+   !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
+   !> times as much for the direction. Where points coincide there is nothing that could grow.
+   pure recursive real(wp) function growth_in_measure(m, q, i, rate) result(growth)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q        !< all of it is known
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(in) :: rate           !< characteristic rate
+      real(wp) :: d(2, 0:2), distance, v
+      integer :: k
+
+      growth = 0.0_wp
+      associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
+         if (any(measure%kind == [measure_distance, measure_line])) then
+            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            distance = norm2(d(:, 0))
+            if (distance <= same_place*measure%length) return
+            v = norm2(d(:, 1))/(distance*rate)
+            growth = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
+            if (measure%kind == measure_line) growth = growth*measure%length/distance
+         else
+            do k = 1, size(subjects)
+               if (subjects(k)%kind == request_measure) growth = max(growth, &
+                  abs(subjects(k)%factor)*growth_in_measure(m, q, subjects(k)%number, rate))
+            end do
+         end if
+      end associate
+   end function growth_in_measure
 
    !> Gives a direction above -pi and up to pi. One that is -pi but for rounding is pi.
    pure real(wp) function between_half_turns(angle) result(x)
