@@ -192,6 +192,7 @@ contains
    !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
    !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
    !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
+   !> Between points of one link d is at rest in its axes, and what is constant has no rates, not even by rounding.
    pure recursive subroutine find_measure(m, q, i, s, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -200,13 +201,20 @@ contains
       integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
       real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
       real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
+      logical :: is_rigid
       integer :: k
 
       s = 0.0_wp
       associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
          select case (measure%kind)
          case (measure_distance, measure_line)
-            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            is_rigid = m%points(subjects(1)%number)%link == m%points(subjects(2)%number)%link
+            if (is_rigid) then
+               d(:, 0) = m%points(subjects(2)%number)%offset - m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            end if
             distance = norm2(d(:, 0))
             closest = min(closest, distance/measure%length)
             if (distance <= same_place*measure%length) then
@@ -221,9 +229,18 @@ contains
                s(0) = atan2(d(2, 0), d(1, 0))
                s(1) = s(1)/distance
                s(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, 1))/distance)*s(1))/distance
+               if (is_rigid) then
+                  x = link_motion(q, m%points(subjects(1)%number)%link)
+                  s = s + x(3, :)
+               end if
             end if
          case (measure_xi, measure_eta)
-            d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            if (m%points(subjects(1)%number)%link == subjects(2)%number) then
+               d(:, 0) = m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            end if
             s = d(merge(1, 2, measure%kind == measure_xi), :)
          case default
             do k = 1, size(subjects)
