@@ -244,7 +244,7 @@ contains
                   text = real_text(card, i)
                else
                   text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
-                  if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(min(i, 2)) /= '')
+                  if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
                column = real_column + (i - 1)*real_width
                set%mechanism%echo(n)(column:column + real_width - 1) = text
