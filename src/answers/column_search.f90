@@ -16,7 +16,8 @@ module column_search
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: node_t, sample_t, beside_joint
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
-   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, note_velocity, note_interval, alike, never_better
+   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, note_velocity, note_interval, &
+      alike, never_better
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
@@ -77,7 +78,7 @@ contains
                   meets=rows(row)%state == points_coincide, growth=grows)
                if (present(always)) sample%error = error(k, :, row)
                node%is_known = node%is_known .and. sample%known == 2
-               ! Where points of a measure coincide the node is known, and the measure, if it is a length, has its value.
+               ! Where points of a measure coincide the node is known, and a length has its value.
                sample%known = known_at(rows(row))
                if (.not. sample%meets) node%is_known = node%is_known .and. all(sample%error < nothing_known)
             end associate

@@ -102,10 +102,11 @@ contains
    !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE
    !> and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts.
    !> Without a PRINT card, all links that are not ground and all measures are printed; in the listing of a drawing its
-   !> points as well, and of links without axes of their own the angle alone. Unknown words and names and repeated cards are errors.
+   !> points as well, and of links without axes of their own the angle alone. Unknown words and names and repeated
+   !> cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:request_measure)             ! for each word, the names on earlier cards of the same form
+      type(name_table_t) :: seen(0:request_measure)   ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
       integer :: k, n, i, form

@@ -67,7 +67,7 @@ contains
          where (.not. link) m%links%ground = .true.
          point(pack(m%requests%subject, &
             m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
-         do i = 1, merge(size(m%measures), 0, allocated(m%measures))
+         do i = 1, measure_count(m)
             associate (subjects => m%measures(i)%subjects)
                point(pack(subjects%number, subjects%kind == request_point)) = .true.
             end associate

@@ -31,8 +31,9 @@ module set_analysis
       real(wp), allocatable :: turned(:, :)                 !< (measures, 0:steps) rad; huge: not known
    end type path_t
 
-   !> A LINE that turns by more than this angle (rad) from one instant to the next may have turned the other way.
-   real(wp), parameter :: largest_turn = 2.0_wp*pi/3.0_wp
+   !> A LINE that turns by more than 120 degrees from one instant to the next, but for rounding, may have turned the
+   !> other way (rad).
+   real(wp), parameter :: largest_turn = 2.0_wp*pi/3.0_wp + 1.0e-9_wp
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -99,7 +100,8 @@ contains
       do c = 1, s%now%count
          associate (own => s%now%parts(c))
             if (.not. allocated(own%measures)) cycle
-            if (any(own%measures%continues) .and. any(own%requests%extremes .and. own%requests%kind == request_measure)) &
+            if (any(own%measures%continues) .and. &
+                any(own%requests%extremes .and. own%requests%kind == request_measure)) &
                allocate (s%paths(c)%turned(size(own%measures), 0:max(0, s%now%steps)))
          end associate
       end do

@@ -203,9 +203,11 @@ contains
       do k = 1, size(s%drives)
          call write_drive(s%drives(k), s%digits, unit)
       end do
-      do k = 1, merge(size(s%measures), 0, allocated(s%measures))
-         call write_measure(s, s%measures(k), k, unit)
-      end do
+      if (allocated(s%measures)) then
+         do k = 1, size(s%measures)
+            call write_measure(s, s%measures(k), k, unit)
+         end do
+      end if
       call write_rest(s, unit)
    end subroutine write_scheme
 
