@@ -96,7 +96,7 @@ contains
          end if
          associate (node => track%nodes(track%filled + 1))
             known = node%is_known
-            track%is_lost = any(node%samples%known < 0)
+            track%is_lost = node%is_lost
          end associate
          call add_node(x, s, c)
          if (k == s%now%steps) call search_waiting(x, s, c)
@@ -223,6 +223,9 @@ contains
             do k = 1, size(limits, 2)
                do i = 0, 2
                   associate (one => limits(i, k), size_of => x%tracks(c)%coordinates(k)%size_of(i))
+                     one = extreme_t()
+                     ! Points of a measure coincide.
+                     if (any([(near(n)%samples(k)%known < 2, n=1, places)])) cycle
                      f = [(near(n)%samples(k)%f(i), n=1, places)]
                      one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
                      one%error = 2.0_wp*abs(dot_product(five - four, f)) &

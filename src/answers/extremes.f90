@@ -3,7 +3,7 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, in_degrees, without_turns
-   use mechanism, only: mechanism_t, request_t
+   use mechanism, only: mechanism_t, request_t, request_measure
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: joints_of, largest_frequency
@@ -55,6 +55,7 @@ module extremes
       integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
+      logical :: is_measure = .false.                  !< it may be known less well where two points are close
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
@@ -222,6 +223,7 @@ contains
                         one%columns = [(column_at(one%form, i, k), k=0, 2)]
                         one%sought = request%sought(i, :)
                         one%is_angle = columns_of_rows(one%columns(0))%dimension == of_angle
+                        one%is_measure = request%kind == request_measure
                         if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
                         if (is_ratio(one%form)) call take_ratio(one, length, rate, s%degrees)
@@ -284,6 +286,8 @@ contains
                better = better .or. gain + best%error > e%error
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
+            ! A value that is alike and much better known.
+            better = better .or. (c%is_measure .and. abs(gain) <= open .and. e%error < badly_known*best%error)
             if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
             if (.not. better) cycle
             open = merge(abs(e%t - best%t), 0.0_wp, near)

@@ -235,8 +235,8 @@ contains
       call look_up_kinds(set, [kind], unknown(kind), k, i, found, n)
    end subroutine look_up
 
-   !> Finds what a label of a card names, which may be of several kinds. A name that none of them has is an error, unless
-   !> a card that could define it was not understood; a blank label is an error of its own.
+   !> Finds what a label of a card names, which may be of several kinds. A name that none of them has is an error,
+   !> unless a card that could define it was not understood; a blank label is an error of its own.
    subroutine look_up_kinds(set, kinds, code, k, i, kind, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kinds(:)        !< request_link, ..., request_measure: the first that has the name counts

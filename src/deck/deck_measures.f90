@@ -118,7 +118,7 @@ contains
 
       !> Puts the terms of other sums in their place in SUM, measure number `i`.
       recursive subroutine add_up(i)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< its number
          type(subject_t), allocatable :: own(:), terms(:)
          logical :: is_angle(2)
          integer :: j, k

@@ -67,7 +67,7 @@ contains
          where (.not. link) m%links%ground = .true.
          point(pack(m%requests%subject, &
             m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
-         do i = 1, merge(size(m%measures), 0, allocated(m%measures))
+         do i = 1, measure_count(m)
             associate (subjects => m%measures(i)%subjects)
                point(pack(subjects%number, subjects%kind == request_point)) = .true.
             end associate
@@ -245,7 +245,7 @@ contains
                   text = real_text(card, i)
                else
                   text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
-                  if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(min(i, 2)) /= '')
+                  if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
                column = real_column + (i - 1)*real_width
                set%mechanism%echo(n)(column:column + real_width - 1) = text

@@ -5,8 +5,8 @@ module independent
    use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
-      subject_links, measure_links, measures_within, drive_relangle, driven_kinds, request_link, request_point, &
-      request_pair, request_measure, request_curve, is_centre, number_link, number_knot
+      subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
+      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -52,7 +52,7 @@ contains
       type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:), &
          measuring(:)
-      type(subject_t), allocatable :: measured(:)    ! all measures and their subjects, with the part `measuring` of each
+      type(subject_t), allocatable :: measured(:)   ! all measures and their subjects, with the part `measuring` of each
       integer :: link_part(size(m%links)), point_part(size(m%points)), i, k
       real(wp) :: length, rate
 
@@ -142,7 +142,7 @@ contains
 
          do pass = 1, 2
             last = 0
-            do n = 1, merge(size(m%measures), 0, allocated(m%measures))
+            do n = 1, measure_count(m)
                list = measures_within(m, n)
                do j = 1, size(list)
                   associate (subjects => m%measures(list(j))%subjects, first => last + 1)

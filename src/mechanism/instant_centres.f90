@@ -33,8 +33,8 @@ module instant_centres
    !> (:, 0), the centre of curvature (:2, 1), the radius (1, 2); speed and acceleration in characteristic ones (3, 1:).
    type :: centre_t
       integer :: state = centre_finite       !< centre_finite, ...
-      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones; of a measure the least distance
-      !> of two points between which it measures, in characteristic lengths.
+      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones; of a measure the least
+      !> distance of two points between which it measures, in characteristic lengths.
       real(wp) :: weight = 1.0_wp
       real(wp) :: value(3, 0:2) = 0.0_wp     !< lengths in the deck's unit, angles in radians
    end type centre_t

@@ -372,6 +372,14 @@ contains
       end do
    end function measure_links
 
+   !> Counts the measures of a mechanism.
+   pure integer function measure_count(m)
+      class(mechanism_t), intent(in) :: m
+
+      measure_count = 0
+      if (allocated(m%measures)) measure_count = size(m%measures)
+   end function measure_count
+
    !> Finds a measure and those of which it is made.
    pure recursive function measures_within(m, i) result(list)
       type(mechanism_t), intent(in) :: m

@@ -23,6 +23,7 @@ module motion
       enumerator :: diagnostic_beyond           !< the instant lies beyond the limit of motion at `t`, told before
       enumerator :: diagnostic_begins           !< a motion begins, and positions before do not say in which assembly
       enumerator :: diagnostic_surplus          !< a drive is too many, one of those with the numbers `links`
+      enumerator :: diagnostic_turned           !< up to `t` LINE number `measure` has turned by `value` in one step
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 
@@ -34,6 +35,7 @@ module motion
       integer :: kind = 0                      !< diagnostic_inconsistent, ...
       integer :: part = 1                      !< the independent mechanism, in whose numbers it is
       integer :: pair = 0, drive = 0           !< numbers of a pair and a drive
+      integer :: measure = 0                   !< the number of a measure
       integer :: links(max_links) = 0          !< the numbers of links
       integer :: more = 0                      !< links for which there is no room
       integer :: equations = 1                 !< diagnostic_redundant: number of equations

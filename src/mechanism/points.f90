@@ -3,8 +3,8 @@
 module points
    use kinds, only: wp, label_length
    use mechanism, only: settings_t, mechanism_t, request_t, pair_t, has_guide, request_link, request_point, &
-      request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, request_links, &
-      subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
+      request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, &
+      request_links, subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
    use names, only: subject_name, drive_name
    use drives, only: drive_motion
    use scales, only: is_length
@@ -14,7 +14,8 @@ module points
    use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular
    implicit none
    private
-   public :: row_t, column_of_ratio, find_row, keep_turns, difference, is_due, is_listed, is_fixed
+   public :: row_t, column_of_ratio, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, &
+      is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
@@ -199,6 +200,15 @@ contains
       end do
    end subroutine find_known
 
+   !> Finds how much of a row exists, as in `motion_t`: where points coincide, only the value of a length does.
+   pure integer function known_at(row)
+      type(row_t), intent(in) :: row
+
+      known_at = row%known
+      if (row%state /= points_coincide) return
+      known_at = merge(0, -1, row%known >= 0 .and. columns_of_rows(forms(row%form)%first)%there(points_coincide))
+   end function known_at
+
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
@@ -251,6 +261,7 @@ contains
    !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
    !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
    !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
+   !> Between points of one link d is at rest in its axes, and what is constant has no rates, not even by rounding.
    pure recursive subroutine find_measure(m, q, i, s, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -259,13 +270,20 @@ contains
       integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
       real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
       real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
+      logical :: is_rigid
       integer :: k
 
       s = 0.0_wp
       associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
          select case (measure%kind)
          case (measure_distance, measure_line)
-            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            is_rigid = m%points(subjects(1)%number)%link == m%points(subjects(2)%number)%link
+            if (is_rigid) then
+               d(:, 0) = m%points(subjects(2)%number)%offset - m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            end if
             distance = norm2(d(:, 0))
             closest = min(closest, distance/measure%length)
             if (distance <= same_place*measure%length) then
@@ -280,9 +298,18 @@ contains
                s(0) = atan2(d(2, 0), d(1, 0))
                s(1) = s(1)/distance
                s(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, 1))/distance)*s(1))/distance
+               if (is_rigid) then
+                  x = link_motion(q, m%points(subjects(1)%number)%link)
+                  s = s + x(3, :)
+               end if
             end if
          case (measure_xi, measure_eta)
-            d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            if (m%points(subjects(1)%number)%link == subjects(2)%number) then
+               d(:, 0) = m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            end if
             s = d(merge(1, 2, measure%kind == measure_xi), :)
          case default
             do k = 1, size(subjects)
@@ -309,6 +336,35 @@ contains
          if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) s(0) = s(0) + full_turn*anint(turns)
       end associate
    end subroutine find_measure
+
+   !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
+   !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
+   !> times as much for the direction. Where points coincide there is nothing that could grow.
+   pure recursive real(wp) function growth_in_measure(m, q, i, rate) result(growth)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q        !< all of it is known
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(in) :: rate           !< characteristic rate
+      real(wp) :: d(2, 0:2), distance, v
+      integer :: k
+
+      growth = 0.0_wp
+      associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
+         if (any(measure%kind == [measure_distance, measure_line])) then
+            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            distance = norm2(d(:, 0))
+            if (distance <= same_place*measure%length) return
+            v = norm2(d(:, 1))/(distance*rate)
+            growth = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
+            if (measure%kind == measure_line) growth = growth*measure%length/distance
+         else
+            do k = 1, size(subjects)
+               if (subjects(k)%kind == request_measure) growth = max(growth, &
+                  abs(subjects(k)%factor)*growth_in_measure(m, q, subjects(k)%number, rate))
+            end do
+         end if
+      end associate
+   end function growth_in_measure
 
    !> Gives a direction above -pi and up to pi. One that is -pi but for rounding is pi.
    pure real(wp) function between_half_turns(angle) result(x)

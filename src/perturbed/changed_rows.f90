@@ -3,7 +3,7 @@
 module changed_rows
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, new_motion, forget_links
+   use motion, only: motion_t, turned_t, new_motion, forget_links
    use points, only: row_t, find_row
    use blocks, only: largest_known
    use block_state, only: unknown_t
@@ -37,6 +37,7 @@ module changed_rows
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
+      type(turned_t), allocatable :: turned(:)   !< (measures) angles of measures go on from there
       !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -66,6 +67,7 @@ contains
 
       place%only_driven = q%known < 0
       place%is_singular = q%known == 0
+      if (allocated(q%turned)) place%turned = q%turned
       if (.not. allocated(place%start)) allocate (place%start(0:e%blocks%unknowns))
       place%start(:) = e%state%u
       do k = 1, ubound(place%start, 1)
@@ -129,6 +131,7 @@ contains
             p%q%link_known = spread(-1, 1, size(p%m%links))
          end if
       end if
+      if (allocated(place%turned)) p%q%turned = place%turned
       do i = 1, size(rows)
          call find_row(p%m, p%q, p%m%requests(i), rows(i))
       end do

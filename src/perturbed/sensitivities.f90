@@ -9,6 +9,7 @@ module sensitivities
    use known_digits, only: nothing_known
    use motion, only: motion_t
    use points, only: row_t, find_row
+   use instant_centres, only: points_coincide
    use block_engine, only: block_engine_t
    use digits_in_doubt, only: sizes_t
    use rounded_numbers, only: caution
@@ -77,7 +78,8 @@ contains
       call find_rows(middle)
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
-         found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)))
+         found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &
+            .and. row%state /= points_coincide)
       end do
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))

@@ -381,6 +381,10 @@ contains
       case (diagnostic_surplus)
          text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(r%links(k))), &
             k=1, count(r%links > 0))], m%polish)//more(r%more, m%polish)
+      case (diagnostic_turned)
+         text = 'LINE '//trim(m%measures(r%measure)%name)//' '//phrase(say_turned_by, m%polish)//' ' &
+            //measure(m, r, error_digits)//' '//phrase(say_in_step, m%polish)//' '//time(m, r%t)//': ' &
+            //phrase(say_turned_far, m%polish)
       case (diagnostic_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

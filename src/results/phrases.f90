@@ -74,6 +74,10 @@ module phrases
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
       say_too_long = phrase_t('REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', &
          'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE'), &
+      say_turned_by = phrase_t('TURNS BY', 'OBRACA SIE O'), &
+      say_in_step = phrase_t('IN THE STEP TO T =', 'W KROKU DO CHWILI T ='), &
+      say_turned_far = phrase_t('ITS WHOLE TURNS ARE UNCERTAIN, USE SMALLER TIME STEPS', &
+         'LICZBA OBROTOW NIEPEWNA, PODAJ CHWILE BLIZSZE SIEBIE'), &
       say_blocked = phrase_t('THE MOTION IS FOLLOWED TO T =', 'RUCH SLEDZONO DO CHWILI T ='), &
       say_close = phrase_t('LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
          'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)'), &

@@ -2,7 +2,9 @@
 !> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line
+   use scales, only: characteristic_length
+   use planar, only: pi
    use structure, only: findings_t
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
@@ -11,8 +13,8 @@ module set_analysis
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
-   use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, motion_t, new_motion, &
-      mark_inconsistent
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, diagnostic_turned, motion_t, &
+      new_motion, turned_t, mark_inconsistent
    use block_rank, only: values_t, decomposed, max_rows
    use block_state, only: state_t
    use independent, only: request_of
@@ -24,6 +26,15 @@ module set_analysis
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, rows_at, &
       sample_set, prove_set, set_bounds, set_closing_diagnostics
 
+   !> The angles from which measures go on between the instants of TIME, where extremes are searched for.
+   type :: path_t
+      real(wp), allocatable :: turned(:, :)                 !< (measures, 0:steps) rad; huge: not known
+   end type path_t
+
+   !> A LINE that turns by more than 120 degrees from one instant to the next, but for rounding, may have turned the
+   !> other way (rad).
+   real(wp), parameter :: largest_turn = 2.0_wp*pi/3.0_wp + 1.0e-9_wp
+
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
@@ -33,6 +44,9 @@ module set_analysis
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
       logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
+      type(path_t), allocatable :: paths(:)                 !< (parts)
+      integer :: taken = 0                                  !< instants so far
+      logical :: told_turn = .false.                        !< it is told that a LINE turns far from instant to instant
    end type set_analysis_t
 
 contains
@@ -71,7 +85,27 @@ contains
          end if
          call make_estimator(s%estimators(c), s%now%parts(c))
       end do
+      call begin_paths(s)
    end subroutine begin_analysis
+
+   !> Begins the paths of the set: no instant is taken yet.
+   subroutine begin_paths(s)
+      type(set_analysis_t), intent(inout) :: s
+      integer :: c
+
+      s%taken = 0
+      s%told_turn = .false.
+      if (allocated(s%paths)) deallocate (s%paths)
+      allocate (s%paths(s%now%count))
+      do c = 1, s%now%count
+         associate (own => s%now%parts(c))
+            if (.not. allocated(own%measures)) cycle
+            if (any(own%measures%continues) .and. &
+                any(own%requests%extremes .and. own%requests%kind == request_measure)) &
+               allocate (s%paths(c)%turned(size(own%measures), 0:max(0, s%now%steps)))
+         end associate
+      end do
+   end subroutine begin_paths
 
    !> Makes `s`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
    !> `make_set_analysis` makes it, with the structure and the memory that it has. `is_done`: these fit, and all of
@@ -94,6 +128,10 @@ contains
          own%points(:) = m%points
          own%pairs(:) = m%pairs
          own%drives(:) = m%drives
+         if (allocated(own%measures)) then
+            own%measures = m%measures
+            own%measures%length = characteristic_length(own)
+         end if
          call renew_analysis(s%list(1), own, is_done)
          if (.not. is_done) return
          s%now%motions(1) = new_motion(size(own%links))
@@ -101,6 +139,7 @@ contains
       end associate
       s%certificate_counts = certificate_counts_t()
       s%told_drives = .false.
+      call begin_paths(s)
    end subroutine renew_set_analysis
 
    !> Solves instant `t` of the set.
@@ -142,14 +181,43 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
-         call keep_turns(s%now%parts(c), s%now%motions(c))
+         if (allocated(s%now%parts(c)%measures)) call keep_measures(s, c)
       end do
+      s%taken = s%taken + 1
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
       else
          call count_worst_motion(s)
       end if
    end subroutine keep_instant
+
+   !> Keeps the angles of measures that go on from instant to instant. Tells once, at the first instant, that a LINE
+   !> turns far.
+   subroutine keep_measures(s, c)
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c               !< the number of the independent mechanism
+      type(turned_t), allocatable :: before(:)
+      integer :: i
+
+      associate (own => s%now%parts(c), q => s%now%motions(c))
+         if (allocated(q%turned)) before = q%turned
+         call keep_turns(own, q)
+         if (.not. allocated(q%turned)) return
+         if (allocated(s%paths(c)%turned) .and. s%taken <= s%now%steps) &
+            s%paths(c)%turned(:, s%taken) = merge(q%turned%angle, huge(1.0_wp), q%turned%is_known)
+         if (.not. allocated(before) .or. s%told_turn) return
+         do i = 1, size(before)
+            if (own%measures(i)%kind /= measure_line) cycle
+            if (.not. (before(i)%is_latest .and. q%turned(i)%is_latest)) cycle
+            if (abs(q%turned(i)%angle - before(i)%angle) <= largest_turn) cycle
+            if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
+            q%diagnostics = [q%diagnostics, diagnostic_t(diagnostic_turned, c, measure=i, t=q%t, is_angle=.true., &
+               value=abs(q%turned(i)%angle - before(i)%angle))]
+            s%told_turn = .true.
+            return
+         end do
+      end associate
+   end subroutine keep_measures
 
    !> Counts the certificate of an instant: it is that of its worst motion.
    subroutine count_worst_motion(s)
@@ -216,16 +284,32 @@ contains
       if (present(growth)) growth = 0.0_wp
       if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
          q = new_motion(size(s%now%parts(c)%links))
-         if (allocated(s%now%motions(c)%turned)) q%turned = s%now%motions(c)%turned
+         if (allocated(s%now%motions(c)%turned)) q%turned = turned_near(t)
          call look_at(s%list(c), t, q, is_found)
          rows%known = -1
-         if (is_found) call take(q)
+         if (.not. is_found) return
+         if (allocated(q%turned)) call keep_turns(s%now%parts(c), q)
+         call take(q)
       else
          call come_back(s%list(c))
          call take(s%now%motions(c))
       end if
 
    contains
+
+      !> Gives the angles of measures at the instant of TIME before a time.
+      function turned_near(t) result(turned)
+         real(wp), intent(in) :: t           !< time
+         type(turned_t), allocatable :: turned(:)   !< (measures)
+         integer :: k
+
+         turned = s%now%motions(c)%turned
+         if (.not. allocated(s%paths(c)%turned)) return
+         k = floor((t - s%now%t0)/(s%now%t1 - s%now%t0)*s%now%steps)
+         k = max(0, min(k, s%taken - 1, s%now%steps))
+         turned%angle = s%paths(c)%turned(:, k)
+         turned%is_known = turned%angle < huge(1.0_wp)
+      end function turned_near
 
       !> Takes the rows of the motion `q`, and its errors.
       subroutine take(q)

@@ -2,7 +2,7 @@
 !> of times, then by golden section around the grid's largest and least values. Only dead centres use a derivative, the
 !> velocity.
 module hand_extremes
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair
+   use mechanism, only: mechanism_t, request_link, request_point, request_pair, request_measure
    use quad_jet, only: qp, pi_q, jet_t, degree_q
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t, length_by_hand, rate_by_hand
@@ -393,12 +393,13 @@ contains
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c
       character(:), allocatable :: word
-      character(7), parameter :: names(3, 4) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
-         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT'], [3, 4])
+      character(7), parameter :: names(3, 6) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
+         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT', 'LENGTH', '', 'ANGLE', 'DLUGOSC', '', 'KAT'], [3, 6])
       integer :: language
 
       language = merge(2, 1, m%polish)
       if (g%row(q, 0)%kind == request_pair) language = language + 2
+      if (g%row(q, 0)%kind == request_measure) language = language + 4
       word = trim(names(g%row(q, 0)%column(c), language))
    end function column_word
 

@@ -2,14 +2,14 @@
 !> the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's tables is
 !> used.
 module hand_tables
-   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pole, drive_angle, drive_x, drive_y, &
-      drive_relangle, drive_slide
+   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pair, request_measure, request_pole, &
+      drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: hand_row_t, row_by_hand, has_pairs, pair_slots
+   use hand_rows, only: hand_row_t, row_by_hand, has_form, pair_slots
    use hand_tolerances, only: spread_lines
    use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
@@ -21,6 +21,7 @@ module hand_tables
    !> In English and in Polish.
    character(10), parameter :: instant_words(2) = [character(10) :: ' INSTANT ', ' CHWILA ']
    character(4), parameter :: none_words(2) = [character(4) :: 'NONE', 'BRAK']
+   character(8), parameter :: coincide_words(2) = [character(8) :: 'COINCIDE', 'POKRYCIE']
    character(40), parameter :: unknown_words(2) = [character(40) :: 'DIGITS LOST TO ROUNDING', &
       'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE']
    character(40), parameter :: singular_words(2, 2) = reshape([character(40) :: 'CHANGE POINT', &
@@ -30,22 +31,26 @@ module hand_tables
    !> Two links with a smaller sine of the angle between them are in line: an instant is a change point but for the
    !> rounding of a double, and angles are off by its root at most.
    real(qp), parameter :: parallel = 1.0e-6_qp
-   !> The heads over links, points, pairs, and links of which only the angle is listed; their words end where the numbers do.
-   character(line_length), parameter :: heads(4, 2) = reshape([character(line_length) :: &
+   !> The heads over links, points, pairs, measures, and links of which only the angle is listed; their words end where the
+   !> numbers do.
+   character(line_length), parameter :: heads(5, 2) = reshape([character(line_length) :: &
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
       ' POINT              X           Y                      VX          VY                      AX          AY', &
       ' PAIR           SLIDE    VELOCITY            ACCELERATION       ANGLE    VELOCITY            ACCELERATION', &
+      ' MEASURE       LENGTH    VELOCITY            ACCELERATION       ANGLE    VELOCITY            ACCELERATION', &
       ' LINK                                     PHI                                VPHI' &
       //'                                APHI', &
       ' OGNIWO             X           Y          FI          VX          VY         VFI' &
       //'          AX          AY         AFI', &
       ' PUNKT              X           Y                      VX          VY                      AX          AY', &
       ' PARA         PRZESUW    PREDKOSC          PRZYSPIESZENIE         KAT    PREDKOSC          PRZYSPIESZENIE', &
+      ' WIELKOSC     DLUGOSC    PREDKOSC          PRZYSPIESZENIE         KAT    PREDKOSC          PRZYSPIESZENIE', &
       ' OGNIWO                                    FI                                 VFI' &
-      //'                                 AFI'], [4, 2])
+      //'                                 AFI'], [5, 2])
    !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
-   integer, parameter :: columns(3, 4) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 0, 0, 2], [3, 4])
+   integer, parameter :: columns(3, 5) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 1, 0, 2, 0, 0, 2], [3, 5])
+   integer, parameter :: of_angles_alone = 5
    !> The heads over pairs are those of slides, then those of angles; these begin here.
    integer, parameter :: before_angles = name_length + 4*field_length
    !> Of x, y, phi: a length (1) or an angle (2).
@@ -98,7 +103,7 @@ contains
             if (kind >= request_pole) then
                call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
             else if (kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
-               call put_heads(o, m, scales, 4, language)
+               call put_heads(o, m, scales, of_angles_alone, language)
             else
                call put_heads(o, m, scales, kind, language)
             end if
@@ -163,12 +168,15 @@ contains
       character(line_length) :: line(3), names
       character(30) :: power, unit, per
       integer :: c, k, at
-      logical :: has_room
+      logical :: has_room, has_slots
 
       has_room = max(3, len_trim(m%length_unit)) + len('/'//trim(m%time_unit)//'**2') <= field_length - 1
       names = heads(kind, language)
-      if (kind == 3 .and. .not. has_pairs(m, .true.)) names = names(:name_length)//names(before_angles + 1:)
-      if (kind == 3 .and. .not. has_pairs(m, .false.)) names(before_angles + 1:) = ''
+      has_slots = any(kind == [request_pair, request_measure])
+      if (has_slots) then
+         if (.not. has_form(m, kind, .true.)) names = names(:name_length)//names(before_angles + 1:)
+         if (.not. has_form(m, kind, .false.)) names(before_angles + 1:) = ''
+      end if
       line = ''
       do k = 0, 2
          per = ''
@@ -177,9 +185,9 @@ contains
          do c = 1, 3
             if (columns(c, kind) == 0) cycle
             at = 3*k + c
-            if (kind == 3) then
-               if (.not. has_pairs(m, c == 1)) cycle
-               at = pair_slots(k, merge(2, 1, c == 3 .and. has_pairs(m, .true.)))
+            if (has_slots) then
+               if (.not. has_form(m, kind, c == 1)) cycle
+               at = pair_slots(k, merge(2, 1, c == 3 .and. has_form(m, kind, .true.)))
             end if
             unit = m%length_unit
             if (columns(c, kind) == 2) unit = merge('DEG', 'RAD', m%degrees)
@@ -326,6 +334,9 @@ contains
             line(first:first + field_length - 1) = repeat(' ', field_length - len(none_words))//none_words(language)
             if (k <= known) line(first:first + field_length - 1) = number_by_hand(row%value(c, k)/unit, &
                error(c, k)/unit, scales%decimals(what, k), scales%power(what, k))
+            ! A length has its value, and no rates.
+            if (row%coincides .and. k <= known .and. (k > 0 .or. what == 2)) &
+               line(first:first + field_length - 1) = repeat(' ', field_length - len(coincide_words))//coincide_words(language)
          end do
       end do
    end function row_line
