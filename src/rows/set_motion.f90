@@ -5,6 +5,7 @@ module set_motion
    use mechanism, only: mechanism_t, request_t, wanted_links
    use motion, only: motion_t, new_motion, mark_none
    use independent, only: set_t, divide, request_of
+   use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: findings_t, structure_t, make_structure
    use blocks, only: blocks_t, largest_known
    use block_state, only: state_t, new_state, set_direction
@@ -80,8 +81,8 @@ contains
       type(request_t) :: request
       integer :: moves(0:b%unknowns), d, i, k
       logical :: finite
-      real(wp) :: largest
-      !> Parts of the largest rate: smaller ones are roundings.
+      real(wp) :: largest(of_length:of_angle)
+      !> Parts of the largest rate of a length or an angle: smaller ones are roundings.
       real(wp), parameter :: rounded_part = sqrt(epsilon(1.0_wp))
 
       if (.not. b%solvable) return
@@ -111,13 +112,13 @@ contains
          q = new_motion(size(m%links))
          q%known = 2
          call move_links(chain, state, 1.0_wp, q, finite)
-         largest = maxval(abs(q%velocity))
+         largest = [maxval(abs(q%velocity(:2, :))), maxval(abs(q%velocity(3, :)))]
          do i = 1, size(m%requests)
             if (m%requests(i)%drive /= d) cycle
             request = m%requests(i)
             request%drive = 0
             call find_row(m, q, request, row)
-            if (abs(row%value(1, 1)) > rounded_part*largest) cycle
+            if (abs(row%value(1, 1)) > rounded_part*largest(columns_of_rows(forms(row%form)%first)%dimension)) cycle
             m%requests(i)%every = 0
             m%requests(i)%extremes = .false.
             m%requests(i)%in_columns = .false.
