@@ -139,8 +139,8 @@ contains
       asked = pack([(i, i=1, size(is_asked))], is_asked)
    end function rows_asked
 
-   !> Makes the coordinate of a ratio: a search has it as the velocity of a coordinate of which nothing is known, and the
-   !> rate of the ratio as the acceleration.
+   !> Makes the coordinate of a ratio: a search takes it as the velocity of a coordinate of which nothing is known, and
+   !> the rate of the ratio as the acceleration.
    pure subroutine take_ratio(c, length, rate, degrees)
       type(coordinate_t), intent(inout) :: c   !< has the places of the numbers of its row
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
@@ -401,8 +401,8 @@ contains
       is_cyclic = is_covered(x) .and. all(x%tracks(c)%closure <= closes_to)
    end function is_cyclic
 
-   !> Derivative `k` of the coordinate `c`, if it is asked for, has a least and a greatest value that differ by more than
-   !> rounding can make, or one of them is not known.
+   !> Derivative `k` of the coordinate `c`, if it is asked for, has a least and a greatest value that differ by more
+   !> than rounding can make, or one of them is not known.
    pure logical function varies(c, k)
       type(coordinate_t), intent(in) :: c
       integer, intent(in) :: k

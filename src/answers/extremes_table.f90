@@ -46,8 +46,13 @@ contains
       call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
       goes_on = .false.
-      links_table = merge(request_link, table_turning, any([(any(forms(x%tracks(c)%coordinates%form)%kind == request_link &
-         .and. x%tracks(c)%coordinates%column < 3), c=1, size(x%tracks))]))
+      ! Links of which only angles are asked for have no columns of places.
+      links_table = table_turning
+      do c = 1, size(x%tracks)
+         associate (list => x%tracks(c)%coordinates)
+            if (any(forms(list%form)%kind == request_link .and. list%column < 3)) links_table = request_link
+         end associate
+      end do
       do q = 1, size(x%asked)
          part = s%rows(x%asked(q))%part
          own = pack(x%tracks(part)%coordinates, x%tracks(part)%coordinates%request == x%asked(q))

@@ -8,7 +8,8 @@ module text_output
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
-   public :: output_t, open_output, open_held, move_text, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: output_t, open_output, open_held, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: move_text
    public :: held_length, write_held, release_output, turn_lost, replaced
 
    integer, parameter :: block_length = 65536

@@ -12,8 +12,8 @@ module analysis
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
    use convergence, only: convergence_t, nothing_gathered, is_solved, ended_inconsistent, ended_unsought, &
       ended_elsewhere
-   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, get_ratios, &
-      get_driven_links, set_drive_values, solve_each
+   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
+      get_ratios, get_driven_links, set_drive_values, solve_each
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics

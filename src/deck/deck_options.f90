@@ -346,8 +346,8 @@ contains
          end if
       end subroutine read_ratios
 
-      !> Asks what `request` does about the ratios of a pair or measure by each drive of its independent mechanism. Which
-      !> of these drives can move it, the structure says later.
+      !> Asks what `request` does about the ratios of a pair or measure by each drive of its independent mechanism.
+      !> Which of these drives can move it, the structure says later.
       subroutine add_ratios(k, request, kind, subject, list)
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t), intent(in) :: request   !< kind and subject do not count

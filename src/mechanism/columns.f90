@@ -12,8 +12,8 @@ module columns
    public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
       row_turning, row_ratio, last_form, table_turning, last_table, of_length, of_angle, last_dimension
    public :: table_of, is_ratio, usual_size, quantities, drives
-   public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
-      cell_at_rest, cell_infinite, cell_coincide, last_cell
+   public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, &
+      cell_spare, cell_at_rest, cell_infinite, cell_coincide, last_cell
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2
@@ -153,9 +153,9 @@ module columns
    type(row_form_t), parameter :: forms(last_form) = [ &
       row_form_t(request_link, 1, 9, 3), row_form_t(request_link, 10, 12, 1), row_form_t(request_point, 13, 18, 2), &
       row_form_t(request_pair, 19, 21, 1), row_form_t(request_pair, 22, 24, 1), row_form_t(request_pole, 25, 33), &
-      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), row_form_t(request_measure, 43, 45, 1), &
-      row_form_t(request_ratio, 46, 47, 1), row_form_t(request_ratio, 48, 49, 1), row_form_t(request_ratio, 50, 51, 1), &
-      row_form_t(request_ratio, 52, 53, 1)]
+      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), &
+      row_form_t(request_measure, 43, 45, 1), row_form_t(request_ratio, 46, 47, 1), &
+      row_form_t(request_ratio, 48, 49, 1), row_form_t(request_ratio, 50, 51, 1), row_form_t(request_ratio, 52, 53, 1)]
 
    !> The kind of tables of links of which only angles are listed; the others are the kinds of rows, that of ratios once
    !> for each of their forms.

@@ -158,8 +158,8 @@ contains
                else
                   associate (row => rows(c%request), at => c%number%at)
                      cell = cell_of(c%number, row%known, row%state)
-                     call put_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, field, &
-                        t%masked)
+                     call put_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, &
+                        field, t%masked)
                   end associate
                end if
                last = last + c%width

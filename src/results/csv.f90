@@ -13,8 +13,8 @@ module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: request_t, request_link, request_point
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, cell_words, &
-      cell_number, of_angle
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, &
+      cell_words, cell_number, of_angle
    use scales, only: is_length
    use drives, only: drive_motion
    use points, only: row_t

@@ -135,8 +135,8 @@ contains
             if (.not. row%listed) cycle
             if (is_told(row%part) .and. row%known < 0) cycle
             if (.not. begun) call begin_instant()
-            call put_heads(o, l, row%part, merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), &
-               table)
+            call put_heads(o, l, row%part, &
+               merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), table)
             call put_row(o, l, d, row, row%shown, row%doubt, 0, table)
             if (.not. allocated(row%others)) cycle
             ! The effect of tolerances, with more decimals: the worst case, and the root of the sum of squares.

@@ -129,7 +129,7 @@ contains
 
       !> Gives a number between 0.25 and 1.25 that has nothing to do with those of others.
       elemental real(wp) function arbitrary(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< of an unknown, or any other
 
          arbitrary = 0.25_wp + mod(k*0.6180339887498949_wp + 0.31_wp*sin(real(k, wp))**2, 1.0_wp)
       end function arbitrary

@@ -99,7 +99,8 @@ for deck in four_bar crank_slider whitworth andrews five_bar pantograph two_loop
    against_unit_runs "$deck" "input/$deck.deck"
    against_velocities "$deck" "input/$deck.deck"
 done
-for seed in $(seq "${SEED:-1}" $((${SEED:-1} + ${N:-12} - 1))); do
+# Of seed 245 lengths are a million times as large as angles.
+for seed in $(seq "${SEED:-1}" $((${SEED:-1} + ${N:-12} - 1))) 245; do
    "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$w/$seed.deck" > /dev/null || continue
    against_velocities "random mechanism $seed" "$w/$seed.deck"
 done
