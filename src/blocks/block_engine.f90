@@ -350,7 +350,7 @@ contains
       integer :: missing(0:e%blocks%unknowns), j, k
       logical :: has_rates, finite
 
-      if (size(e%ratios) == 0) return
+      ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
       if (.not. allocated(found%by)) allocate (found%by(size(e%laws)))
       unit = new_motion(size(found%position, 2))
       do j = 1, size(e%ratios)
@@ -421,7 +421,7 @@ contains
       end do
       call mark_links(e%chain, missing, found)
       call move_links(e%chain, s, e%length, found, finite)
-      call get_ratios(e, .not. e%blocks%list%direct, found)
+      if (size(e%ratios) > 0) call get_ratios(e, .not. e%blocks%list%direct, found)
    end subroutine get_driven_links
 
    !> Finds the state `s` of the motion that is followed; at the first instant that of the deck's estimate, but for what

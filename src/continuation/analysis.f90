@@ -385,7 +385,7 @@ contains
       else
          call get_blocks_motion(a%engine, found, finite)
       end if
-      call get_ratios(a%engine, a%engine%is_singular, found)
+      if (size(a%engine%ratios) > 0) call get_ratios(a%engine, a%engine%is_singular, found)
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows
