@@ -77,7 +77,9 @@ contains
             end associate
          end do
       end do
-      if (.not. moves) call put(o, ' '//phrase(say_at_rest, s%polish))
+      ! What is not sought may move.
+      if (.not. moves .and. all([(all(request_sought(x%asked(q))), q=1, size(x%asked))])) &
+         call put(o, ' '//phrase(say_at_rest, s%polish))
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
@@ -99,6 +101,16 @@ contains
       end do
 
    contains
+
+      !> Tells which numbers of a row are sought.
+      function request_sought(i) result(sought)
+         integer, intent(in) :: i            !< its number among the requests of the set
+         logical :: sought(3, 0:2)
+         type(request_t) :: one
+
+         one = request_of(s, i)
+         sought = one%sought
+      end function request_sought
 
       !> The rows of a link, point or pair of this `name`.
       subroutine put_subject(name)

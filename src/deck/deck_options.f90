@@ -253,12 +253,15 @@ contains
                if (find_name(set%named(one%kind)%table, set%mechanism%points(i)%name) /= i) cycle
             end if
             one%subject = i
+            one%sought = .true.
+            ! The places of axes that nobody has placed are no question.
+            if (one%kind == request_link .and. has_drawing(set)) one%sought(:2, :) = has_axes(i)
             call add_request(one)
          end do
       end subroutine request_all
 
-      !> Adds `request`; to that of its subject, if it has one already, the extremes. These are of all its numbers, but
-      !> of a link whose axes are those of a drawing only of its angle, and of what COLUMN cards name.
+      !> Adds `request`; to that of its subject, if it has one already, the extremes of the numbers that it seeks and of
+      !> those that COLUMN cards name.
       subroutine add_request(request)
          type(request_t), intent(in) :: request
 
@@ -270,11 +273,12 @@ contains
                requests(i)%extremes = .false.
             end if
             if (.not. request%extremes) return
-            if (.not. requests(i)%extremes) requests(i)%dwell = request%dwell
+            if (.not. requests(i)%extremes) then
+               requests(i)%dwell = request%dwell
+               requests(i)%sought = numbers_in_columns(i, 3)
+            end if
             requests(i)%extremes = .true.
-            requests(i)%sought = .true.
-            if (request%kind /= request_link .or. .not. has_drawing(set)) return
-            if (.not. has_axes(request%subject)) requests(i)%sought(:2, :) = numbers_in_columns(i, 2)
+            requests(i)%sought = requests(i)%sought .or. request%sought
          end associate
       end subroutine add_request
 

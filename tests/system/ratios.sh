@@ -181,14 +181,18 @@ equal 'flags: words below the table' ' *** NO POSITION: BEYOND THE LIMIT OF MOTI
 "$kinmat" "$w/printed.deck" > "$w/printed.lst"
 equal 'flags with PRINT' ' --- *: INSTANT FLAGGED, SEE ABOVE' "$(grep -e '^ --- [*]' "$w/printed.lst")"
 
-# Without numbers on its LINK card x and y of a link are no question of EXTREMES; a COLUMN card asks for them.
-{ sed '/^COLUMN/d; $d; s/^TIME.*/TIME    6                       0.0             3.0/' "$w/limit.deck"; card EXTREMES LINKS ROCKER
+# Without numbers on its LINK card x and y of a link are no question of EXTREMES LINKS; a card with its name or a COLUMN card
+# asks for them.
+{ sed '/^COLUMN/d; $d; s/^TIME.*/TIME    6                       0.0             3.0/' "$w/limit.deck"; card EXTREMES LINKS
    echo END; } > "$w/axes.deck"
 "$kinmat" "$w/axes.deck" > "$w/axes.lst"
 equal 'axes that nobody placed' 'LINK PHI VPHI APHI' "$(awk '/^ EXTREMES   T/ { on = 1 } on && /^ LINK/ { $1 = $1; print; exit }' "$w/axes.lst")"
 { sed '$d' "$w/axes.deck"; card COLUMN LINKS ROCKER X; echo END; } > "$w/axis.deck"
 "$kinmat" "$w/axis.deck" > "$w/axis.lst"
 equal 'a column asks for x' 'LINK X Y PHI VX VY VPHI AX AY APHI' "$(awk '/^ EXTREMES   T/ { on = 1 } on && /^ LINK/ { $1 = $1; print; exit }' "$w/axis.lst")"
+{ sed '$d' "$w/axes.deck"; card EXTREMES LINKS ROCKER; echo END; } > "$w/named.deck"
+"$kinmat" "$w/named.deck" > "$w/named.lst"
+equal 'a name asks for x' 'LINK X Y PHI VX VY VPHI AX AY APHI' "$(awk '/^ EXTREMES   T/ { on = 1 } on && /^ LINK/ { $1 = $1; print; exit }' "$w/named.lst")"
 { sed '$d' "$w/axes.deck" | sed '/^EXTREMES/d'; card EXTREMES ALL; card COLUMN LINKS ROCKER VPHI; echo END; } > "$w/all.deck"
 "$kinmat" "$w/all.deck" > "$w/all.lst"
 equal 'EXTREMES ALL with COLUMN: only those' '1 2' "$(awk '/^ EXTREMES   T/ { on = 1 } on && /^ (LINK|PAIR|POINT)/ { kinds++ } on && /^  M(IN|AX)/ { n += NF } END { print kinds, n/2 }' "$w/all.lst")"
