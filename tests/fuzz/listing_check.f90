@@ -10,12 +10,12 @@ module listing_check
    integer, parameter :: longest_word = 20
    character(14), parameter :: heads(*) = [character(14) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
       'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'VELOCITY', 'ACCELERATION', 'PREDKOSC', 'PRZYSPIESZENIE', &
-      'XI-I', 'KSI-I', &
+      'XI-I', 'KSI-I', 'LENGTH', 'DLUGOSC', &
       'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
       'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA']
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
-      'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.']
+      'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.', 'COINCIDE', 'POKRYCIE']
    !> What begins tables of other forms, behind those of the motion.
    character(14), parameter :: other_heads(*) = [character(14) :: 'CONTINUATION:', 'KONTYNUACJA:', 'TOLERANCES:', &
       'TOLERANCJE:', &
@@ -30,6 +30,7 @@ module listing_check
       'REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE']
    !> What a remark holds, after three stars or three dashes.
    character(60), parameter :: diagnostics(*) = [character(60) :: 'CLOSURE ERROR', 'BLAD ZAMKNIECIA', &
+      'IN THE STEP TO T =', 'W KROKU DO CHWILI T =', 'WHOLE TURNS ARE UNCERTAIN', 'LICZBA OBROTOW NIEPEWNA', &
       'AT THE LIMIT', 'NA KRESIE RUCHU', &
       'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
       'A DRIVE IS TOO MANY, REMOVE ONE OF: ', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z: ', &

@@ -5,7 +5,7 @@ module csv_rows
    use csv_cells, only: cells, cell_length, split, whole_text
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
    use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, &
-      request_pole, pair_prismatic
+      request_measure, request_pole, pair_prismatic
    use jet_closure, only: body_jet_t
    implicit none
    private
@@ -41,6 +41,7 @@ contains
       type(rows_t), intent(out) :: rows
       character(:), allocatable, intent(inout) :: wrong
       integer :: i
+      logical :: is_measure
 
       rows%given = m%links%ground
       allocate (rows%body(size(m%links)), rows%value(2, size(m%requests)), rows%due(size(m%requests)))
@@ -58,9 +59,14 @@ contains
             call pass_centre(unit, m, i, wrong)
             rows%due(i) = .false.
          end if
+         is_measure = rows%due(i) .and. m%requests(i)%kind == request_measure
+         if (is_measure) then
+            call pass_measure(unit, m, i, wrong)
+            rows%due(i) = .false.
+         end if
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
-         if (rows%due(i) .and. (allocated(m%tolerances) .or. m%proves .or. (m%assemblies .and. k == 0))) &
+         if ((rows%due(i) .or. is_measure) .and. (allocated(m%tolerances) .or. m%proves .or. (m%assemblies .and. k == 0))) &
             call pass_others(unit)
       end do
    end subroutine read_instant
@@ -89,6 +95,27 @@ contains
          end do
       end do
    end subroutine pass_centre
+
+   !> The row of a measure, request `i`, whose values `fuzz_mechanisms` compares with those of a known motion.
+   subroutine pass_measure(unit, m, i, wrong)
+      integer, intent(in) :: unit, i
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable, intent(inout) :: wrong
+      character(600) :: line
+      character(cell_length) :: cell(cells)
+      integer :: k, status
+
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) call blame(wrong, 'CSV: A ROW IS MISSING')
+      if (status /= 0) return
+      call split(line, cell, status)
+      if (cell(4) /= 'MEASURE' .or. cell(5) /= m%measures(m%requests(i)%subject)%name) &
+         call blame(wrong, 'CSV: '//trim(cell(4))//' '//trim(cell(5))//' IS NO MEASURE OF THE DECK')
+      do k = 6, 14
+         if (verify(trim(cell(k)), '0123456789+-.E') > 0) call blame(wrong, 'CSV: "'//trim(cell(k))//'" IS NO NUMBER')
+      end do
+      if (all(cell(6:14) == '') .and. cell(15) == '') call blame(wrong, 'CSV: A MEASURE WITHOUT VALUE AND MARK')
+   end subroutine pass_measure
 
    !> What tolerances make of the row above, its proved bounds, and the same of other assemblies: rows whose kind has
    !> several words.
