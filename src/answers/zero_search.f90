@@ -37,6 +37,8 @@ module zero_search
    real(wp), parameter :: closed = 4.0_wp
    !> The slope at a zero is that to the last value that is so many times the noise.
    real(wp), parameter :: above_noise = 3.0_wp
+   !> A value that differs by this part of the characteristic one at both ends of a closed bracket jumps there.
+   real(wp), parameter :: large_part = 1.0e-3_wp
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
    !> A time that is known to this part of the largest of the run, by a bound of what rounding leaves open, needs no
@@ -136,7 +138,7 @@ contains
       do n = 1, max_iterations
          if (.not. (t - ends(1))*(ends(2) - t) > 0.0_wp) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
          if (abs(ends(2) - ends(1)) <= closed*spacing(maxval(abs(ends)))) then
-            jumps = order == 0 .and. minval(abs(g_end)) > above_noise*c%noise(0)
+            jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > large_part*c%noise(0)/noise_part
             exit
          end if
          call look_at_column(s, c, t, at)

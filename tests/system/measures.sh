@@ -96,7 +96,17 @@ equal 'AT cards in their order' '0 90 180 270 360 450 360 270' "$(measured "$w/a
    turning; card DRIVE ANGLE CRANK '' 350.0 90.0; card TIME 2 '' '' 0.0 2.0; card PRINT MEASURES OA; echo END; } > "$w/begin.deck"
 "$kinmat" --no-listing --csv "$w/begin.csv" "$w/begin.deck"
 equal 'at the first instant' '180 270 360 -10 80 170' "$(measured "$w/begin.csv" | awk '{ printf "%s%.0f", sep, $3; sep = " " }')"
-# Backwards past a dead point of the rod's drive, beyond which there are no positions.
+# Over change points, also those at which an instant stands and has no velocities: directions of points of two links, in a
+# linkage whose change points are passed, count turns as the angle of their link does.
+for deck in antiparallelogram_across antiparallelogram_at parallelogram_at; do
+   with $deck "$(card LINE A0 A-CR OA; card LINE B0 B-RO OB; card ANGLE OA OB OAB; card PRINT MEASURES)" | sed -e 's/^POINT   B-RO /&/' > "$w/deck"
+   "$kinmat" --no-listing --csv "$w/csv" "$w/deck"
+   equal "$deck: directions over change points" '0 off' "$(awk -F, '$5 == "CRANK" && $4 == "LINK" { crank[$2] = $8 } $5 == "ROCKER" { rocker[$2] = $8 }
+      $5 == "OA" { a[$2] = $6 } $5 == "OB" { b[$2] = $6 } $5 == "OAB" { ab[$2] = $6 }
+      END { for (k in a) { n++; x = a[k] - crank[k]; y = b[k] - rocker[k] - b[0] + rocker[0]; z = ab[k] - b[k] + a[k] - ab[0] + b[0] - a[0]
+         if (x*x + y*y + z*z > 1e-10) off++ } if (n < 10) print n " instants"; print off + 0 " off" }' "$w/csv")"
+done
+# Backwards.
 { turning; card DRIVE ANGLE CRANK '' '' -120.0; card TIME 30 '' '' 0.0 10.0; card PRINT MEASURES '' 30; echo END; } > "$w/back.deck"
 "$kinmat" --no-listing --csv "$w/back.csv" "$w/back.deck"
 equal 'backwards' '-1200' "$(measured "$w/back.csv" | awk '$2 == "OA" { x = sprintf("%.0f", $3) } END { print x }')"
