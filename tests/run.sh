@@ -38,7 +38,7 @@ parts() {
    circuits of twins|40|"$BUILD/release/twins_by_chance" 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
-   measures|50|tests/system/measures.sh
+   measures|58|tests/system/measures.sh
    all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250

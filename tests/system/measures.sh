@@ -171,6 +171,14 @@ for by in 1.0E-3 1.0E-5; do
       "$(awk '/^ EXTREMES  / { on = 1 } on && /^ PO / { name = 1 } name && $1 == "MIN" { x = $2 } name && /^  AT T/ { print x, $3; exit }' "$w/listing")"
 done
 
+# Near such a place digits of the direction are lost, as roundings grow with the inverse of the distance.
+for by in 1.0E-6 1.0E-10 1.0E-13 1.0E-15; do
+   meeting 4 | sed -e "s/^POINT   Q .*/&\nPOINT   PM      BLOCK           0.5             $by/" -e 's/^LINE    P /LINE    PM/' -e '/^EXTREMES/d' > "$w/deck"
+   "$kinmat" --csv "$w/csv" "$w/deck" | awk '/^ INSTANT 1 / { on = 1 } on && /^ DIRPO/ { print $2; exit }'
+done > "$w/near"
+equal 'digits near points that meet' '-90.0000?? -90.?????? -1??.?????? ?' "$(tr '\n' ' ' < "$w/near" | sed 's/ $//')"
+equal 'the CSV near points that meet' 'UNKNOWN' "$(awk -F, '$2 == 1 && $5 == "DIRPO" { print $6 $9 $12 $15 }' "$w/csv")"
+
 # The rows of measures: without PRINT, PRINT ALL, PRINT MEASURES, but PRINT PAIRS; the table, the CSV.
 names() { "$kinmat" --no-listing --csv "$w/csv" "$1"; cut -d, -f4 "$w/csv" | sort -u | tr '\n' ' '; }
 for print in '' 'PRINT   ALL' 'PRINT   MEASURESMU' 'PRINT   PAIRS'; do
