@@ -73,7 +73,7 @@ contains
       phi = (-45.0_qp + 90.0_qp*time_jet(t))*degree_q
       crank = fixed_place(0.0_qp, 0.0_qp)
       wheel = fixed_place(1.0_qp, 0.0_qp)
-      pin = polar(crank, real(sqrt(0.5d0), qp), phi)
+      pin = polar(crank, 0.70710678118654757_qp, phi)
       ! The slot's axis is turned by half a turn against the way from the axle to the pin.
       slot = direction(pin, wheel)
       links = [body('BASE', crank, constant_jet(0.0_qp)), body('CRANK', crank, phi), body('WHEEL', wheel, slot), &

@@ -155,7 +155,7 @@ PO DWELL LENGTH MIN 0.100000 0.900000 1.100000
 QO DWELL LENGTH MIN 0.100000 1.144761 1.323790
 DIRPO DWELL ANGLE MIN 10.000000 0.000000 1.000000
 DIRQO DWELL ANGLE MAX 10.000000 0.000000 1.236068
-RESERVE MIN -0.500000 1.000000
+DOUBLE MIN 0.000000 1.000000
 TRUTH
    equal "points that meet, $steps steps" '' "$(sed 's/ *$//' "$w/found" > "$w/lines"; while read -r line; do grep -qxF -- "$line" "$w/lines" || echo "$line"; done < "$w/expected")"
 done
