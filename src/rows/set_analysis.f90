@@ -45,7 +45,8 @@ module set_analysis
       type(certificate_counts_t) :: certificate_counts      !< of all instants
       logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
       type(path_t), allocatable :: paths(:)                 !< (parts)
-      integer :: taken = 0                                  !< instants so far
+      logical :: has_turns = .false.                        !< some measure goes on from instant to instant
+      integer :: taken = 0                                  !< instants so far, if so
       logical :: told_turn = .false.                        !< it is told that a LINE turns far from instant to instant
    end type set_analysis_t
 
@@ -93,6 +94,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer :: c
 
+      s%has_turns = .false.
       s%taken = 0
       s%told_turn = .false.
       if (allocated(s%paths)) deallocate (s%paths)
@@ -100,6 +102,7 @@ contains
       do c = 1, s%now%count
          associate (own => s%now%parts(c))
             if (.not. allocated(own%measures)) cycle
+            s%has_turns = s%has_turns .or. any(own%measures%continues)
             if (any(own%measures%continues) .and. &
                 any(own%requests%extremes .and. own%requests%kind == request_measure)) &
                allocate (s%paths(c)%turned(size(own%measures), 0:max(0, s%now%steps)))
@@ -180,10 +183,12 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer :: c
 
-      do c = 1, size(s%list)
-         if (allocated(s%now%parts(c)%measures)) call keep_measures(s, c)
-      end do
-      s%taken = s%taken + 1
+      if (s%has_turns) then
+         do c = 1, size(s%list)
+            call keep_measures(s, c)
+         end do
+         s%taken = s%taken + 1
+      end if
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
       else

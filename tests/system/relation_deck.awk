@@ -223,6 +223,8 @@ function draw(k,  dx, dy) {
 function change_card(k,  n) {
    if (change == "whole" && joints && name ~ /^(PRISM|CYLINDER|DRIVE)$/) draw(k)
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
+   # The relations of measures stand in measures.sh.
+   if (change == "whole" && name ~ /^(DISTANCE|LINE|ANGLE|XI|ETA|SUM)$/) return
    if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
