@@ -15,13 +15,14 @@ module job
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
    use system_calls, only: watch_signals, signal_received, write_bytes
-   use text_output, only: put, flush_output, turn_lost
+   use text_output, only: output_t, put, flush_output, turn_lost
    use processes, only: processor_count, end_process
    use command_line
    use outputs, only: outputs_t, open_outputs, open_table, close_outputs, is_over
    use shares, only: run_shares, next_part, write_in_turn
    use listing, only: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold, &
       remarks_text
+   use column_table, only: column_table_t, new_column_table, note_columns, put_columns
    use csv, only: csv_head, csv_instant, table_t, new_table, table_head, table_instant
    use solver_log, only: log_head, log_instant
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
@@ -29,10 +30,12 @@ module job
    use picture, only: put_picture
    use animation, only: put_animation
    use circuits, only: circuits_t
-   use circuits_table, only: find_all_circuits
+   use set_circuits, only: find_all_circuits
    use circuits_picture, only: put_circuits
-   use answers, only: answers_t, new_answers, take_instant, put_answers
-   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
+   use answers, only: answers_t, new_answers, take_instant, finish_answers
+   use answer_tables, only: put_answers
+   use counts, only: note_flag
+   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
       put_variants_end
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
@@ -41,8 +44,9 @@ module job
    use numerals, only: whole
    use motion_proof, only: holds
    use set_motion, only: new_set_motion, has_words
+   use rows, only: finished_row_t, find_rows
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, begin_analysis, advance_set, &
-      sample_set, prove_set, set_closing_diagnostics
+      sample_set, prove_set, set_certificates, set_closing_diagnostics
    use analysis, only: redundancy_error
    implicit none
    private
@@ -67,8 +71,8 @@ contains
    !> Does what `options` say. `status`: the exit status; `message`: lines for standard error, '' for none.
    subroutine run_job(options, status, message)
       type(options_t), intent(in) :: options
-      integer, intent(out) :: status
-      character(:), allocatable, intent(out) :: message
+      integer, intent(out) :: status         !< exit status
+      character(:), allocatable, intent(out) :: message !< lines for standard error
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
       type(findings_t), allocatable, save :: findings(:)
@@ -115,7 +119,8 @@ contains
       if (.not. allocated(failure)) then
          call watch_signals
          o%share%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
-         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) o%share%unit = width
+         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0 .or. sets(i)%requests%drive > 0), o), &
+            i=1, size(sets))])) o%share%unit = width
          ! One process where sets take no time, or are to be drawn on one page, or nothing can be written.
          processes = options%jobs
          work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
@@ -213,7 +218,7 @@ contains
    !> its own: a picture shows links that no table asks for, and what is printed must not depend on it.
    subroutine draw_set(m, sets, o, pages)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: sets
+      integer, intent(in) :: sets            !< their count
       type(writers_t), intent(inout) :: o
       type(page_t), intent(inout), target :: pages(out_svg:)
       type(mechanism_t) :: film
@@ -238,7 +243,7 @@ contains
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    subroutine run_set(m, i, first, last, findings, o)
       type(mechanism_t), intent(inout) :: m
-      integer, intent(in) :: i, first, last
+      integer, intent(in) :: i, first, last  !< numbers of the set and of variants
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       type(failure_t), allocatable :: failure
@@ -282,25 +287,26 @@ contains
    !> Solves and writes the variants `first` to `last` of `v`, those of the set `m`.
    subroutine run_variants(m, first, last, v, o)
       class(set_t), intent(in) :: m
-      integer, intent(in) :: first, last
+      integer, intent(in) :: first, last     !< numbers of variants
       type(variation_t), intent(inout) :: v
       type(writers_t), intent(inout) :: o
       type(layout_t) :: layout
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
-      logical :: full
+      logical :: full, has_ratios
       integer :: n, k
 
       n = first
       full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
+      has_ratios = any([(any(m%parts(k)%requests%drive > 0), k=1, m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
          call put_variant_heads(o%files(out_listing), summary)
       end if
-      if (are_together(m, full, o)) then
+      if (are_together(m, full .or. has_ratios, o)) then
          call run_together()
       else
          do while (n <= last)
@@ -323,6 +329,7 @@ contains
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
+         type(variant_row_t) :: rows(width)
          type(lanes_t) :: lanes
          integer :: k, count
 
@@ -330,34 +337,39 @@ contains
          do while (n <= last)
             count = min(width, last - n + 1)
             do k = 1, count
-               runs(k)%row = new_row(summary, v, n + k - 1)
-               call start(runs(k))
+               rows(k) = new_row(summary, v, n + k - 1)
+               call start(runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
             do k = 1, count
                if (is_over(o)) return
-               if (runs(k)%row%rejected == '') call fill_row(summary, runs(k)%s%now, runs(k)%asked, runs(k)%row)
-               if (runs(k)%row%rejected /= '') call fill_row(summary, m, runs(k)%asked, runs(k)%row)
-               call write_row(runs(k)%row)
+               if (rows(k)%rejected == '') then
+                  rows(k)%counts_t = runs(k)%counts
+                  call fill_row(summary, runs(k)%s%now, runs(k)%asked, rows(k))
+               else
+                  call fill_row(summary, m, runs(k)%asked, rows(k))
+               end if
+               call write_row(rows(k))
                n = n + 1
             end do
          end do
       end subroutine run_together
 
-      !> Makes the variant of `v` whose row `r` has, unless it is refused.
-      subroutine start(r)
+      !> Makes the variant of `v` whose `row` this is, unless it is refused.
+      subroutine start(r, row)
          type(lane_run_t), intent(inout) :: r
+         type(variant_row_t), intent(inout) :: row
          type(findings_t) :: findings
          logical :: is_done
 
-         call build_variant(v, r%row%number, r%m, r%row%rejected)
-         r%is_over = r%row%rejected /= ''
+         call build_variant(v, row%number, r%m, row%rejected)
+         r%is_over = row%rejected /= ''
          if (r%is_over) return
          ! A variant with the structure of the one before takes over what that has made.
          call renew_set_analysis(r%m, r%s, is_done)
          if (.not. is_done) then
-            call check_variant(r%m, findings, r%row)
-            r%is_over = r%row%rejected /= ''
+            call check_variant(r%m, findings, row)
+            r%is_over = row%rejected /= ''
             if (r%is_over) return
             call make_set_analysis(r%m, r%s, findings)
          end if
@@ -409,14 +421,14 @@ contains
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of the set `m`, which `prints` tables or not: then as many are solved
-   !> together as there are lanes.
-   pure logical function are_together(m, prints, o)
+   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables or ratios,
+   !> or not: then as many are solved together as there are lanes.
+   pure logical function are_together(m, not_have, o)
       class(settings_t), intent(in) :: m
-      logical, intent(in) :: prints
+      logical, intent(in) :: not_have        !< the set has tables or ratios, which lanes do not have
       class(outputs_t), intent(in) :: o
 
-      are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
+      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
    end function are_together
 
    !> Solves and writes the set a%now, instant by instant; `full`: its tables too. `row`: how many instants are
@@ -424,19 +436,26 @@ contains
    subroutine run_motion(a, findings, full, o, row, asked)
       type(set_analysis_t), intent(inout) :: a
       type(findings_t), intent(inout) :: findings
-      logical, intent(in) :: full
-      type(writers_t), intent(inout) :: o
+      logical, intent(in) :: full            !< with tables
+      type(writers_t), intent(inout), target :: o
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(listing_state_t) :: state
+      type(column_table_t), target :: columns
+      type(output_t), pointer :: page        ! for what is printed at the instants
+      type(finished_row_t), allocatable :: rows(:)
       integer, allocatable :: every(:)       ! rows are printed at each so many instants
-      logical :: lists, due
+      logical :: lists, due, talks
       integer :: k, n, last, next            ! instants: the last, and the next with rows
 
       call begin_analysis(a, findings)
+      allocate (rows(size(a%now%rows)))
       lists = full .and. o%asked(out_listing)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
-      every = [(a%now%parts(n)%requests%every, n=1, a%now%count)]
+      if (lists) call new_column_table(o%layout, a%now, columns)
+      page => o%files(out_listing)
+      if (columns%alone) page => columns%remarks
+      every = [(merge(1, a%now%parts(n)%requests%every, a%now%parts(n)%requests%in_columns), n=1, a%now%count)]
       every = pack(every, every > 0)
       last = instant_count(a%now) - 1
       next = merge(0, huge(next), size(every) > 0)
@@ -449,14 +468,17 @@ contains
             call prove_set(a, due)
             if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
-         call note_flag(row, a)
+         call note_flag(row%counts_t, a)
 
          ! Only what is shown needs samples.
          if (o%asked(out_table) .or. (due .and. (lists .or. o%asked(out_csv)))) call sample_set(a, o%options%errors)
-         if (lists .and. (due .or. has_words(a%now))) &
-            call listing_instant(o%files(out_listing), o%layout, a%now, k, state)
-         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, k, o%varies, a%assemblies)
-         if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now)
+         talks = lists .and. (due .or. has_words(a%now))
+         if (talks .or. o%asked(out_table) .or. (due .and. o%asked(out_csv))) &
+            call find_rows(a%now, k, o%asked(out_table) .or. allocated(columns%columns), rows, a%assemblies)
+         if (talks) call listing_instant(page, o%layout, a%now, rows, k, state)
+         if (allocated(columns%columns)) call note_columns(columns, o%layout, a%now, rows)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), a%now, rows, k, o%varies)
+         if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now, rows)
          if (o%asked(out_log)) then
             do n = 1, size(a%list)
                call log_instant(o%files(out_log), k, instant(a%now, k), a%list(n)%convergence, a%list(n)%branch)
@@ -464,15 +486,18 @@ contains
          end if
          call write_in_turn(o)
 
-         call take_instant(asked, a, k, due)
+         call take_instant(asked, a, rows, k, due)
          if (.not. is_over(o)) cycle
-         if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
+         if (lists) call put_untold(page, a%now%polish, state)
+         if (lists) call put_columns(o%files(out_listing), columns, a%now%polish)
          if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return
       end do
-      if (lists) call put_untold(o%files(out_listing), a%now%polish, state)
+      if (lists) call put_untold(page, a%now%polish, state)
+      if (lists) call put_columns(o%files(out_listing), columns, a%now%polish)
+      if (lists) call finish_answers(asked, a)
       if (lists) call put_answers(o%files(out_listing), o%layout, asked, a)
-      if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, a%certificate_counts, &
+      if (lists) call listing_end(o%files(out_listing), a%now, row%solved, row%flagged, set_certificates(a), &
          maxval([(redundancy_error(a%list(n)), n=1, size(a%list))]), set_closing_diagnostics(a))
    end subroutine run_motion
 
@@ -482,7 +507,7 @@ contains
       type(writers_t), intent(inout) :: o
       class(settings_t), intent(in) :: m
       type(phrase_t), intent(in) :: words
-      integer, intent(in) :: number
+      integer, intent(in) :: number          !< from 1; of an instant from 0
 
       if (o%ended) return
       o%ended = .true.

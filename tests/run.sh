@@ -23,11 +23,11 @@ parts() {
    unit tests|500|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
-   the closed forms|830|"$BUILD/release/check_forms" input/*.deck
+   the closed forms|1100|"$BUILD/release/check_forms" input/*.deck
    the reader of listings|93|tests/system/reader.sh
    the documents|1300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
-   proofs|162|"$BUILD/release/proof_bounds" input/*.deck
+   proofs|185|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    tolerances|49|tests/system/tolerances.sh
@@ -38,6 +38,8 @@ parts() {
    circuits of twins|40|"$BUILD/release/twins_by_chance" 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
+   ratios and columns|75|tests/system/ratios.sh
+   measures|58|tests/system/measures.sh
    all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250

@@ -3,28 +3,26 @@
 module answers
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
-   use listing_layout, only: layout_t
-   use text_output, only: output_t
+   use rows, only: finished_row_t
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: note_instant
    use dwells, only: dwell_t, find_dwells
-   use extremes_table, only: put_extremes
-   use tolerance_shares, only: shares_t, note_tolerances, put_shares
-   use ranges, only: range_t, put_ranges
-   use assembly_table, only: put_assemblies
+   use tolerance_shares, only: shares_t, note_tolerances
+   use ranges, only: range_t
    use circuits, only: circuits_t
-   use circuits_table, only: find_ranges, find_all_circuits, put_circuits
-   use proof_table, only: proof_table_t, note_proof, put_proofs
+   use set_circuits, only: find_ranges, find_all_circuits
+   use proofs, only: proofs_t, note_proof
    implicit none
    private
-   public :: answers_t, new_answers, take_instant, put_answers
+   public :: answers_t, new_answers, take_instant, finish_answers
 
    type :: answers_t
       logical :: extremes_asked = .false.
       logical :: shares_asked = .false.
       type(extremes_t) :: extremes
+      type(dwell_t), allocatable :: dwells(:)       !< after the last instant
       type(shares_t) :: shares
-      type(proof_table_t) :: proofs
+      type(proofs_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one)
       integer :: assemblies = -1                    !< of all parts, where they are asked for and all are known
       type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
@@ -36,7 +34,7 @@ contains
    !> shares of tolerances.
    subroutine new_answers(s, lists, a)
       type(set_analysis_t), intent(in) :: s
-      logical, intent(in) :: lists
+      logical, intent(in) :: lists           !< the tables of the set are written
       type(answers_t), intent(out) :: a
       integer :: c
 
@@ -51,35 +49,25 @@ contains
 
    !> Takes instant number `k`, to which `s` has advanced, and what is asked for between it and those before. `due`: it
    !> is printed.
-   subroutine take_instant(a, s, k, due)
+   subroutine take_instant(a, s, rows, k, due)
       type(answers_t), intent(inout) :: a
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: k
-      logical, intent(in) :: due
+      type(finished_row_t), intent(in) :: rows(:)
+      integer, intent(in) :: k               !< the number of the instant, from 0
+      logical, intent(in) :: due             !< it is printed
 
       if (s%now%proves) call note_proof(a%proofs, s, k, due)
       if (s%now%ranges .and. k == 0) call find_ranges(s, a%ranges)
       if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
-      if (a%shares_asked) call note_tolerances(a%shares, s%now, k)
+      if (a%shares_asked .and. due) call note_tolerances(a%shares, s%now, rows)
       if (a%extremes_asked) call note_instant(a%extremes, s, k)
    end subroutine take_instant
 
-   !> Writes the answers after the last instant.
-   subroutine put_answers(o, l, a, s)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(answers_t), intent(in) :: a
-      type(set_analysis_t), intent(inout) :: s
-      type(dwell_t), allocatable :: dwells(:)
+   !> Finds after the last instant what the whole run answers.
+   subroutine finish_answers(a, s)
+      type(answers_t), intent(inout) :: a
+      type(set_analysis_t), intent(inout) :: s   !< after its last instant
 
-      if (a%extremes_asked) then
-         call find_dwells(a%extremes, s, dwells)
-         call put_extremes(o, l, s%now, a%extremes, dwells)
-      end if
-      if (s%now%ranges) call put_ranges(o, s%now, a%ranges)
-      if (s%now%assemblies) call put_assemblies(o, l, s)
-      if (allocated(a%circuits)) call put_circuits(o, s%now, a%circuits)
-      if (a%shares_asked) call put_shares(o, l, a%shares, s%now)
-      if (s%now%proves) call put_proofs(o, l, a%proofs, s%now)
-   end subroutine put_answers
+      if (a%extremes_asked) call find_dwells(a%extremes, s, a%dwells)
+   end subroutine finish_answers
 end module answers

@@ -11,6 +11,7 @@ module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, drive_x, drive_y
+   use separations, only: separation
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve
    use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
@@ -233,7 +234,7 @@ contains
       lies = along >= -same .and. along <= h + same
       if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + same
       if (lies) call step_along(c, a, along, b, lies)
-      if (lies) lies = same_place(c, b%q, q)
+      if (lies) lies = same_place(b%q, q)
    end subroutine lies_between
 
    !> The coordinates of the position `b` less those of `a` (3, links), without whole turns if `turns_off`.
@@ -254,11 +255,10 @@ contains
    end function offset_from
 
    !> Whether two positions (3, links) are one, but for whole turns.
-   pure logical function same_place(c, a, b)
-      type(curve_t), intent(in) :: c
+   pure logical function same_place(a, b)
       real(wp), intent(in) :: a(:, :), b(:, :)
 
-      same_place = maxval(abs(offset_from(c, a, b, .true.))) <= same
+      same_place = maxval(separation(a, b, 1.0_wp)) <= same
    end function same_place
 
    !> The point `p` near the position `q` (3, links) at which `border` (coordinates) times the difference from `q` is 0.

@@ -328,7 +328,7 @@ contains
          associate (p => found%list(i)%points(k))
             if (.not. p%is_change) cycle
             do j = 1, size(found%meetings)
-               if (same_place(found%curve, found%meetings(j)%q, p%q)) exit
+               if (same_place(found%meetings(j)%q, p%q)) exit
             end do
             if (j > size(found%meetings)) then
                value = p%value(0) + found%list(i)%shift

@@ -10,11 +10,13 @@
 module column_search
    use kinds, only: wp
    use known_digits, only: nothing_known
-   use set_motion, only: find_row_in_set
+   use points, only: row_t, known_at
+   use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: node_t, sample_t, beside_joint
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
-   use extremes, only: extremes_t, track_t, offer_sample, note_velocity, note_interval, alike, never_better
+   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, note_velocity, note_interval, &
+      alike, never_better
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
@@ -44,58 +46,50 @@ module column_search
 contains
 
    !> Finds the `node` of the `track` at the last instant of `s` or a time `t` between the instants. `always`: its
-   !> errors too where no digit of a table is in doubt. With `growth` instead, by how much roundings grow, that of the
-   !> motion which `s` has now, whose digits are safe: the engine need not have found it.
-   subroutine find_node(s, track, t, node, always, growth)
+   !> errors too where no digit of a table is in doubt.
+   subroutine find_node(s, track, t, node, always)
       type(set_analysis_t), intent(inout) :: s
       type(track_t), intent(inout) :: track
       real(wp), intent(in) :: t
       type(node_t), intent(inout) :: node
-      logical, intent(in), optional :: always
-      real(wp), intent(in), optional :: growth
-      real(wp) :: grows
+      logical, intent(in) :: always
+      real(wp) :: growth
       integer :: i
 
       if (.not. allocated(node%samples)) allocate (node%samples(size(track%coordinates)))
       node%t = t
       node%is_known = .true.
-      associate (rows => track%rows, error => track%error, c => s%now%rows(track%requests(1))%part)
-         if (present(always)) then
-            call rows_at(s, c, track%requests, t, rows, always, error, grows)
-         else
-            grows = growth
-            do i = 1, size(rows)
-               call find_row_in_set(s%now, track%requests(i), rows(i))
-            end do
-         end if
+      associate (rows => track%rows, error => track%error)
+         call rows_at(s, track%requests, t, rows, always, error, growth)
+         node%is_lost = any(rows%known < 0)
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
                sample%t = t
                sample%f = rows(row)%value(k, :)
                sample%known = rows(row)%known
-               sample%growth = grows
-               sample%error = 0.0_wp
-               node%is_known = node%is_known .and. sample%known == 2
-               if (.not. present(always)) cycle
+               sample%meets = rows(row)%state == points_coincide
+               sample%growth = growth
                sample%error = error(k, :, row)
-               node%is_known = node%is_known .and. all(sample%error < nothing_known)
+               node%is_known = node%is_known .and. sample%known == 2
+               ! Where points of a measure coincide the node is known, and a length has its value.
+               sample%known = known_at(rows(row))
+               if (.not. sample%meets) node%is_known = node%is_known .and. all(sample%error < nothing_known)
             end associate
          end do
       end associate
    end subroutine find_node
 
    !> Finds the node of mechanism `c` that comes next, at the time `t`, and whether something turns between the last
-   !> three: `always` and `growth` as in `find_node`.
-   subroutine find_next(x, s, c, t, always, growth)
+   !> three: `always` as in `find_node`.
+   subroutine find_next(x, s, c, t, always)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       real(wp), intent(in) :: t
-      logical, intent(in), optional :: always
-      real(wp), intent(in), optional :: growth
+      logical, intent(in) :: always
 
       associate (track => x%tracks(c))
-         call find_node(s, track, t, track%nodes(track%filled + 1), always, growth)
+         call find_node(s, track, t, track%nodes(track%filled + 1), always)
          if (track%filled == 2) call look_for_turns(track)
       end associate
    end subroutine find_next
@@ -107,7 +101,7 @@ contains
       type(track_t), intent(inout) :: track
       real(wp) :: jerk(2), noise(3), f(3), low, high
       integer :: i, k
-      logical :: pair, simple
+      logical :: pair, simple, meets(3)
 
       associate (a => track%nodes(1), middle => track%nodes(2), b => track%nodes(3))
          pair = is_pair(track, a, middle, b)
@@ -115,6 +109,10 @@ contains
          if (.not. b%is_known) return
          do i = 1, size(track%coordinates)
             associate (one => track%coordinates(i))
+               meets = [a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets]
+               ! Where points of a measure coincide at all nodes there is nothing to find.
+               track%turns = track%turns .or. (any(meets) .and. .not. all(meets))
+               if (any(meets)) cycle
                call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, jerk, noise, simple)
                track%turns = track%turns .or. .not. simple
                do k = 1, 2
@@ -318,7 +316,9 @@ contains
             do k = 0, sample%known
                call offer_sample(one, k, sample, .false., x%step)
             end do
-            if (next .and. sample%known == 2) call note_velocity(one, sample)
+            ! A length that is 0, since its points coincide, turns there.
+            if (next .and. (sample%known == 2 .or. (sample%meets .and. sample%known == 0))) &
+               call note_velocity(one, sample)
          end associate
       end do
    end subroutine take_node
@@ -333,9 +333,11 @@ contains
       type(node_t), intent(in), optional :: between
       type(node_t) :: middle
       real(wp) :: shortest, jerk(2), noise(3, size(x%tracks(c)%coordinates))
-      logical :: simple(size(x%tracks(c)%coordinates)), is_last
+      logical, dimension(size(x%tracks(c)%coordinates)) :: simple, has_kink
+      logical :: is_last, meets(3)
       integer :: i
 
+      has_kink = .false.
       associate (track => x%tracks(c), length => abs(b%t - a%t))
          shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
          if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
@@ -355,14 +357,21 @@ contains
             return
          end if
          do i = 1, size(simple)
-            call find_jerk(a%samples(i), middle%samples(i), b%samples(i), track%coordinates(i)%size_of, jerk, &
-               noise(:, i), simple(i))
+            ! Where points of a measure coincide at one of the three nodes it is searched up to there.
+            meets = [a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets]
+            simple(i) = all(meets)
+            if (.not. any(meets)) call find_jerk(a%samples(i), middle%samples(i), b%samples(i), &
+               track%coordinates(i)%size_of, jerk, noise(:, i), simple(i))
          end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
-            if (.not. all(simple)) call note_interval(x%open, x%way, a%t, b%t, shortest)
+            do i = 1, size(simple)
+               if (.not. simple(i) .and. length <= 2.0_wp*shortest) &
+                  has_kink(i) = jumps(s, track%coordinates(i), a%samples(i), middle%samples(i), b%samples(i))
+            end do
+            if (.not. all(simple .or. has_kink)) call note_interval(x%open, x%way, a%t, b%t, shortest)
             call take_node(x, c, middle, .false.)
-            call search_columns(x, s, c, a, middle, b, noise(3, :))
+            call search_columns(x, s, c, a, middle, b, noise(3, :), has_kink)
          else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, middle)
@@ -372,14 +381,41 @@ contains
       end associate
    end subroutine search_part
 
+   !> Tells whether points of a measure coincide in a short part: the rate of a length jumps there, or a direction.
+   !> The place of that is found by halving. The parts beside this one are searched.
+   logical function jumps(s, one, a, middle, b)
+      type(set_analysis_t), intent(inout) :: s
+      type(coordinate_t), intent(in) :: one
+      type(sample_t), intent(in) :: a, middle, b   !< at the ends and in the middle of the part
+      type(row_t) :: row(1)
+      real(wp) :: t, ends(2)
+      integer :: k
+
+      jumps = a%meets .or. middle%meets .or. b%meets
+      if (jumps) return
+      k = merge(0, 1, one%is_angle)
+      ends = [a%t, b%t]
+      do
+         t = ends(1) + 0.5_wp*(ends(2) - ends(1))
+         call rows_at(s, [one%request], t, row)
+         if (row(1)%known < 2) return
+         jumps = row(1)%weight <= alike
+         if (jumps .or. abs(ends(2) - ends(1)) <= 4.0_wp*spacing(maxval(abs(ends)))) return
+         associate (f => row(1)%value(one%column, k))
+            ends(merge(1, 2, abs(f - a%f(k)) < abs(f - b%f(k)))) = t
+         end associate
+      end do
+   end function jumps
+
    !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`.
    !> Rounding may leave the `noise` (coordinates) of their third derivatives open.
-   subroutine search_columns(x, s, c, a, middle, b, noise)
+   subroutine search_columns(x, s, c, a, middle, b, noise, has_kink)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, middle, b
       real(wp), intent(in) :: noise(:)
+      logical, intent(in) :: has_kink(:)     !< (coordinates) only a length is searched, which turns where it is 0
       type(sample_t), allocatable :: path(:), known(:)
       type(sample_t) :: found
       type(column_t) :: column
@@ -395,10 +431,12 @@ contains
          if (n < size(joints)) smooth(2) = x%way*min(x%way*smooth(2), x%way*(joints(n + 1) - beside))
       end associate
       do i = 1, size(x%tracks(c)%coordinates)
+         if (any([a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets])) cycle
+         if (has_kink(i) .and. x%tracks(c)%coordinates(i)%is_angle) cycle
          associate (one => x%tracks(c)%coordinates(i))
             path = [a%samples(i), middle%samples(i), b%samples(i)]
             column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
-               max(difference_part*x%step, difference_angle*one%size_of(0)/one%size_of(1))), smooth, middle=middle%t, &
+               max(difference_part*x%step, difference_angle*one%size_of(1)/one%size_of(2))), smooth, middle=middle%t, &
                half=0.5_wp*(b%t - a%t), &
                curve=curve_through(path(1), path(2), path(3), one%size_of))
             do k = 0, 2
@@ -409,13 +447,13 @@ contains
             ! one on either side of each of these. Where accelerations are alike and rounding explains the change of
             ! their derivative, none is told.
             jerk = [on_curve(column, 3, a%t), on_curve(column, 3, b%t)]
-            if (differ_in_sign(jerk(1), jerk(2)) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
+            if (differ_in_sign(jerk(1), jerk(2)) .and. .not. has_kink(i) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
                .or. maxval(path%f(2)) - minval(path%f(2)) > 2.0_wp*max(alike*one%size_of(2), column%noise(2)))) then
                call find_turn(s, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call take_found(2)
             end if
-            do order = 2, 1, -1
+            do order = merge(1, 2, has_kink(i)), 1, -1
                known = path
                last = 0
                do k = 1, size(known)

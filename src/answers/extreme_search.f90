@@ -13,9 +13,9 @@
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
-   use set_analysis, only: set_analysis_t
+   use set_analysis, only: set_analysis_t, apart_from_first
    use nodes, only: node_t, extreme_t, times_between, beside_joint
-   use extremes, only: extremes_t, end_t, offer, badly_known, note_end, note_interval
+   use extremes, only: extremes_t, end_t, offer, badly_known, note_interval, settle_ratios
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
    private
@@ -87,9 +87,7 @@ contains
       associate (track => x%tracks(c), q => s%now%motions(c))
          t = q%t
          track%halvings = 0
-         if (k == 0) then
-            track%start = q
-         else if (searches) then
+         if (searches .and. k > 0) then
             now = track%nodes(track%filled + 1)
             known = now%is_known
             call search_step()
@@ -98,11 +96,14 @@ contains
          end if
          associate (node => track%nodes(track%filled + 1))
             known = node%is_known
-            track%is_lost = any(node%samples%known < 0)
+            track%is_lost = node%is_lost
          end associate
          call add_node(x, s, c)
          if (k == s%now%steps) call search_waiting(x, s, c)
-         if (k == s%now%steps) call note_end(x, s%now%parts(c), c, q)
+         if (k == s%now%steps) then
+            track%closure = apart_from_first(s, c)
+            call settle_ratios(track%coordinates, s%now%parts(c))
+         end if
          if (.not. known) call note_interval(x%gaps, x%way, t, t, 0.0_wp)
          track%last = end_t(t, .not. known, q%singularity == singular_change)
       end associate
@@ -225,6 +226,9 @@ contains
             do k = 1, size(limits, 2)
                do i = 0, 2
                   associate (one => limits(i, k), size_of => x%tracks(c)%coordinates(k)%size_of(i))
+                     one = extreme_t()
+                     ! Points of a measure coincide.
+                     if (any([(near(n)%samples(k)%known < 2, n=1, places)])) cycle
                      f = [(near(n)%samples(k)%f(i), n=1, places)]
                      one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
                      one%error = 2.0_wp*abs(dot_product(five - four, f)) &

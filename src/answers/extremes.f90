@@ -2,22 +2,22 @@
 !> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic, term_harmonic
-   use motion, only: motion_t
-   use scales, only: characteristic_length, characteristic_rate
-   use drives, only: joints_of
-   use points, only: row_t, is_fixed, coordinates_of
+   use planar, only: pi, in_degrees, without_turns
+   use mechanism, only: mechanism_t, request_t, request_measure
+   use scales, only: characteristic_length, characteristic_rate, is_length
+   use separations, only: closes, closes_to
+   use drives, only: joints_of, largest_frequency
+   use points, only: row_t, is_fixed, column_of_ratio
+   use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
    use digits_in_doubt, only: safe_growth
-   use independent, only: set_t, request_of
+   use independent, only: set_t
    use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, extreme_words, &
-      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_end, note_interval, is_cyclic, is_covered, &
-      is_angle, column_of, varies, strokes_t, strokes_of, ratio_decimals, closes_to, badly_known, alike, &
-      never_better
+   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, &
+      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_interval, is_cyclic, is_covered, &
+      varies, strokes_t, strokes_of, settle_ratios, badly_known, alike, never_better
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
    !> errors below a table's last digit reach it.
@@ -29,16 +29,10 @@ module extremes
    real(wp), parameter :: above_errors = 10.0_wp
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
-   !> A motion is cyclic if its end differs from its beginning by less, in the same units: a turn of 6.2831853 rad is
-   !> one. Times of reversals repeat within this part of the run.
-   real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
    !> So many parts at least has a turn of a drive, and a period of a harmonic law.
    integer, parameter :: parts_of_turn = 12
-   !> Digits after the point of a ratio of times.
-   integer, parameter :: ratio_decimals = 6
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
-   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
@@ -50,8 +44,12 @@ module extremes
    !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
    type :: coordinate_t
       integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
+      integer :: form = 0                              !< of the row
+      integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
       integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
       logical :: is_angle = .false.
+      logical :: is_measure = .false.                  !< it may be known less well where two points are close
+      logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
@@ -79,7 +77,6 @@ module extremes
       type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
-      type(motion_t), allocatable :: start             !< the motion at the first instant
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
       type(end_t) :: last                              !< the last instant
@@ -134,12 +131,64 @@ contains
       asked = pack([(i, i=1, size(is_asked))], is_asked)
    end function rows_asked
 
+   !> Makes the coordinate of a ratio: a search takes it as the velocity of a coordinate of which nothing is known, and
+   !> the rate of the ratio as the acceleration.
+   pure subroutine take_ratio(c, length, rate, degrees)
+      type(coordinate_t), intent(inout) :: c   !< has the places of the numbers of its row
+      real(wp), intent(in) :: length         !< characteristic length of the mechanism
+      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      logical, intent(in) :: degrees         !< the deck's unit of angles
+
+      c%column = column_of_ratio
+      c%columns = [0, c%columns(:1)]
+      c%sought = [.false., c%sought(:1)]
+      ! No digit of the first one counts.
+      c%size_of(0) = sqrt(huge(1.0_wp))
+      c%size_of(1) = usual_size(columns_of_rows(c%columns(1))%dimension, 0, length, rate, degrees)
+      c%size_of(2) = c%size_of(1)*rate
+   end subroutine take_ratio
+
+   !> Makes of the extremes of the rates of ratios those of their derivatives by the drive. Only of a drive with a
+   !> constant rate they are at the same places; of another one they are not told.
+   pure subroutine settle_ratios(coordinates, m)
+      type(coordinate_t), intent(inout) :: coordinates(:)   !< after the last instant
+      type(mechanism_t), intent(in) :: m     !< their mechanism, which has one drive if one of them is a ratio
+      real(wp) :: rate
+      integer :: i
+
+      do i = 1, size(coordinates)
+         if (.not. is_ratio(coordinates(i)%form)) cycle
+         associate (c => coordinates(i), drive => m%drives(1))
+            rate = drive%polynomial(2)
+            if (m%degrees .and. .not. is_length(drive)) rate = in_degrees(rate)
+            c%sought(2) = c%sought(2) .and. abs(rate) > 0.0_wp .and. .not. abs(drive%polynomial(3)) > 0.0_wp
+            if (allocated(drive%terms)) c%sought(2) = c%sought(2) .and. size(drive%terms) == 0
+            if (.not. c%sought(2)) cycle
+            c%found(:, 2)%value = c%found(:, 2)%value/rate
+            c%found(:, 2)%error = c%found(:, 2)%error/abs(rate)
+            c%size_of(2) = c%size_of(2)/abs(rate)
+            if (rate < 0.0_wp) c%found(:, 2) = c%found([greatest, least], 2)
+         end associate
+      end do
+   end subroutine settle_ratios
+
+   !> Tells of which coordinates (3) of the row of `request` extremes are asked for: their own, or of a derivative.
+   pure function are_sought(m, request) result(sought)
+      type(mechanism_t), intent(in) :: m     !< whose request it is
+      type(request_t), intent(in) :: request
+      logical :: sought(3)
+      integer :: i
+
+      sought = [(i <= forms(form_of(m, request))%coordinates, i=1, 3)] .and. any(request%sought, dim=2)
+   end function are_sought
+
    !> Ready for the first instant of the set `s`.
    subroutine new_extremes(s, x)
       class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
       integer, allocatable :: asked(:)
       real(wp) :: length, rate, fastest
+      logical :: sought(3)
       integer :: i, c, n, q, k
 
       x%asked = rows_asked(s)
@@ -154,21 +203,28 @@ contains
             allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(coordinates_of(own%requests(s%rows(asked(q))%number)%kind), &
+            allocate (track%coordinates(sum([(count(are_sought(own, own%requests(s%rows(asked(q))%number))), &
                q=1, size(asked))])))
             n = 0
             do q = 1, size(asked)
                associate (request => own%requests(s%rows(asked(q))%number))
-                  do i = 1, coordinates_of(request%kind)
+                  sought = are_sought(own, request)
+                  do i = 1, size(sought)
+                     if (.not. sought(i)) cycle
                      n = n + 1
                      associate (one => track%coordinates(n))
                         one%request = asked(q)
                         one%part = c
                         one%row = q
                         one%column = i
-                        one%is_angle = is_angle(own, request, i)
-                        one%dwell = request%dwell(merge(2, 1, one%is_angle))
+                        one%form = form_of(own, request)
+                        one%columns = [(column_at(one%form, i, k), k=0, 2)]
+                        one%sought = request%sought(i, :)
+                        one%is_angle = columns_of_rows(one%columns(0))%dimension == of_angle
+                        one%is_measure = request%kind == request_measure
+                        if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
+                        if (is_ratio(one%form)) call take_ratio(one, length, rate, s%degrees)
                         allocate (one%places(0), one%reversals(0))
                      end associate
                   end do
@@ -179,35 +235,13 @@ contains
             fastest = 0.0_wp
             do i = 1, merge(size(own%drives), 0, n > 0)
                track%joints = [track%joints, joints_of(own%drives(i))]
-               if (allocated(own%drives(i)%terms)) fastest = max(fastest, maxval(abs(own%drives(i)%terms%r(2)), &
-                  mask=own%drives(i)%terms%kind == term_harmonic))
+               fastest = max(fastest, largest_frequency(own%drives(i)))
             end do
             track%joints = track%joints(order_along(track%joints, x%way))
             track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
          end associate
       end do
    end subroutine new_extremes
-
-   !> Column `c` of `request` holds angles.
-   pure logical function is_angle(m, request, c)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      integer, intent(in) :: c
-
-      is_angle = request%kind == request_link .and. c == 3
-      if (request%kind == request_pair) is_angle = m%pairs(request%subject)%kind /= pair_prismatic
-   end function is_angle
-
-   !> The column of the tables that has coordinate `c` of the row of `request`: of a pair one of two, by whether it
-   !> `is_angle`.
-   pure integer function column_of(request, is_angle, c) result(column)
-      type(request_t), intent(in) :: request
-      logical, intent(in) :: is_angle
-      integer, intent(in) :: c
-
-      column = c
-      if (request%kind == request_pair) column = merge(3, 1, is_angle)
-   end function column_of
 
    !> Derivative number `k` of `sample` may be an extreme of the coordinate `c`; a place is kept, if its dwells are
    !> asked for. `at_zero`: the sample is at a zero of the next derivative. `step` of TIME.
@@ -250,6 +284,8 @@ contains
                better = better .or. gain + best%error > e%error
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
+            ! A value that is alike and much better known.
+            better = better .or. (c%is_measure .and. abs(gain) <= open .and. e%error < badly_known*best%error)
             if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
             if (.not. better) cycle
             open = merge(abs(e%t - best%t), 0.0_wp, near)
@@ -299,28 +335,6 @@ contains
       c%speed = speed
    end subroutine note_velocity
 
-   !> Takes the motion `last` of mechanism `c`, `m`, at the end of the run.
-   subroutine note_end(x, m, c, last)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: c
-      type(motion_t), intent(in) :: last
-      real(wp) :: d(3, size(m%links)), length
-
-      length = characteristic_length(m)
-      associate (track => x%tracks(c))
-         if (min(track%start%known, last%known) < 0) return
-         d = last%position - track%start%position
-         d(3, :) = without_turns(d(3, :))
-         track%closure = [maxval(abs(d(:2, :)))/length, maxval(abs(d(3, :))), 0.0_wp]
-         ! At a change point velocities are not unique.
-         if (min(track%start%known, last%known) < 1) return
-         d = last%velocity - track%start%velocity
-         d(:2, :) = d(:2, :)/length
-         track%closure(3) = maxval(abs(d))/characteristic_rate(m, length)
-      end associate
-   end subroutine note_end
-
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
    !> more than `apart_by` apart are one.
    pure subroutine note_interval(list, way, from, to, apart_by)
@@ -356,18 +370,18 @@ contains
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: c
 
-      is_cyclic = is_covered(x) .and. all(x%tracks(c)%closure <= closes_to)
+      is_cyclic = is_covered(x) .and. closes(x%tracks(c)%closure)
    end function is_cyclic
 
-   !> Derivative `k` of the coordinate `c` has a least and a greatest value that differ by more than rounding can make,
-   !> or one of them is not known.
+   !> Derivative `k` of the coordinate `c`, if it is asked for, has a least and a greatest value that differ by more
+   !> than rounding can make, or one of them is not known.
    pure logical function varies(c, k)
       type(coordinate_t), intent(in) :: c
       integer, intent(in) :: k
 
       associate (e => c%found(:, k))
-         varies = .not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
-            > unseen(k)*c%size_of(k) + above_errors*sum(e%error)
+         varies = c%sought(k) .and. (.not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
+            > unseen(k)*c%size_of(k) + above_errors*sum(e%error))
       end associate
    end function varies
 

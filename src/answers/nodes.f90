@@ -16,6 +16,7 @@ module nodes
       real(wp) :: f(0:2) = 0.0_wp       !< value, rate, acceleration
       real(wp) :: error(0:2) = 0.0_wp   !< of them, where digits of a table could be in doubt
       integer :: known = -1             !< as in `row_t`; 2: all of `f`
+      logical :: meets = .false.        !< points of a measure coincide: at most its value is known
       real(wp) :: growth = 0.0_wp       !< by which roundings grow where no digits could be in doubt
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
    end type sample_t
@@ -26,6 +27,7 @@ module nodes
       !> All of the motion is known, and of no number all digits are open: such a one cannot be told to be an extreme,
       !> nor to be none.
       logical :: is_known = .false.
+      logical :: is_lost = .false.             !< of some row nothing is known
       type(sample_t), allocatable :: samples(:)   !< (coordinates)
    end type node_t
 

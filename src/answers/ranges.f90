@@ -4,22 +4,16 @@
 module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi, without_turns
+   use planar, only: pi
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
+   use separations, only: motions_apart, closes
    use drives, only: drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
-   use independent, only: set_t
-   use names, only: drive_name
-   use text_output, only: output_t, put
-   use numerals, only: whole
-   use listing, only: limit_words, full_turn_words
-   use listing_layout, only: put_folded
-   use phrases
    implicit none
    private
-   public :: range_t, find_range, put_ranges, held_at, put_estimate, low, high, side_words
+   public :: range_t, find_range, held_at, put_estimate, low, high
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -28,11 +22,8 @@ module ranges
    !> How close its end is looked for where no limit is known. Reason: rounding leaves about the root of a rounding open
    !> there, and a try that fails takes as long as a long run.
    real(wp), parameter :: closest = max(1.0e-7_wp, 64.0_wp*sqrt(epsilon(1.0_wp)))
-   !> A motion closes where positions agree to this part of a radian and of the characteristic length.
-   real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
    integer, parameter :: low = 1, high = 2
-   character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
 
    !> The range of a drive. An end without a limit is the last value to which the drive was followed.
    type :: range_t
@@ -46,42 +37,6 @@ module ranges
    end type range_t
 
 contains
-
-   !> The lines of `list` at the end of the set `s`.
-   subroutine put_ranges(o, s, list)
-      type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: s
-      type(range_t), intent(in) :: list(:)
-      character(:), allocatable :: words
-      integer :: i, side
-
-      call put(o, '')
-      call put(o, ' '//phrase(say_range, s%polish))
-      if (size(list) == 0) call put(o, '   '//phrase(say_none, s%polish))
-      do i = 1, size(list)
-         associate (r => list(i), m => s%parts(list(i)%part))
-            words = trim(drive_name(m, m%drives(r%drive)))
-            if (r%is_of_branch) words = words//'   '//phrase(say_range_of_branch, m%polish)
-            call put(o, ' '//words)
-            if (r%is_all) then
-               call put(o, '   '//full_turn_words(r%turns, m%polish))
-            else
-               do side = low, high
-                  words = limit_words(m, r%limit(side))
-                  ! Where no limit is told rounding is too coarse to follow the motion farther.
-                  if (r%has_limit(side) .and. r%limit(side)%links(1) == 0) &
-                     words = words//'   '//phrase(say_close, m%polish)
-                  if (r%has_limit(side)) then
-                     call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
-                  else
-                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' '//words)
-                  end if
-               end do
-            end if
-            if (r%change_points > 0) call put(o, '   '//phrase(say_on_the_way, m%polish)//' '//whole(r%change_points))
-         end associate
-      end do
-   end subroutine put_ranges
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
    subroutine find_range(m, start, drive, r)
@@ -149,7 +104,7 @@ contains
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step, part, off(3, size(d%links))
+      real(wp) :: t, step, part, apart(3)
       integer :: i, k, steps_a_turn, begin
       logical :: is_angle, grows
 
@@ -203,10 +158,9 @@ contains
             cycle
          end if
          if (mod(k - begin, steps_a_turn) /= 0) cycle
-         off = now%position - first%position
-         off(:2, :) = off(:2, :)/characteristic_length(d)
-         off(3, :) = without_turns(off(3, :))
-         r%is_all = all(abs(off) <= closes_to)
+         apart = motions_apart(d, first, now)
+         ! The drive has one rate: what is in its place is as fast.
+         r%is_all = closes(apart(:2))
          r%turns = (k - begin)/steps_a_turn
          if (r%is_all) return
       end do

@@ -3,7 +3,8 @@
 !> where to begin, and mostly the first motion shows that the zero is no new extreme.
 module zero_search
    use kinds, only: wp
-   use points, only: row_t
+   use points, only: row_t, known_at
+   use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: sample_t
    implicit none
@@ -36,6 +37,8 @@ module zero_search
    real(wp), parameter :: closed = 4.0_wp
    !> The slope at a zero is that to the last value that is so many times the noise.
    real(wp), parameter :: above_noise = 3.0_wp
+   !> A value that differs by this part of the characteristic one at both ends of a closed bracket jumps there.
+   real(wp), parameter :: large_part = 1.0e-3_wp
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
    !> A time that is known to this part of the largest of the run, by a bound of what rounding leaves open, needs no
@@ -100,8 +103,9 @@ contains
       type(row_t) :: row(1)
       real(wp) :: error(3, 0:2, 1), growth
 
-      call rows_at(s, s%now%rows(c%request)%part, [c%request], t, row, with_errors, error, growth)
-      sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), row(1)%known, growth)
+      call rows_at(s, [c%request], t, row, with_errors, error, growth)
+      sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), known_at(row(1)), &
+         row(1)%state == points_coincide, growth)
    end subroutine look_at_column
 
    !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
@@ -115,13 +119,16 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
       type(sample_t) :: at
-      real(wp) :: t, ends(2), g(2), last, last_g, slope, step, width, clear(2)
+      real(wp) :: t, ends(2), g(2), g_end(2), last, last_g, slope, step, width, clear(2)
+      logical :: jumps
       integer :: n
 
       if (min(a%known, b%known) < 2) return
       ends = [a%t, b%t]
       g = [a%f(order), b%f(order)] - level
       if (.not. differ_in_sign(g(1), g(2))) return
+      g_end = g
+      jumps = .false.
       width = 0.0_wp
       clear = merge([a%t, g(1)], [b%t, g(2)], abs(g(1)) > abs(g(2)))
       last = b%t
@@ -130,8 +137,18 @@ contains
       t = guess(c, order, level, ends, g)
       do n = 1, max_iterations
          if (.not. (t - ends(1))*(ends(2) - t) > 0.0_wp) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
-         if (abs(ends(2) - ends(1)) <= closed*spacing(maxval(abs(ends)))) exit
+         if (abs(ends(2) - ends(1)) <= closed*spacing(maxval(abs(ends)))) then
+            jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > large_part*c%noise(0)/noise_part
+            exit
+         end if
          call look_at_column(s, c, t, at)
+         if (at%meets .and. order <= max(0, at%known + 1)) then
+            ! A length whose points coincide turns there, and a direction jumps.
+            zero = at
+            zero%known = 2
+            zero%t_error = closed*spacing(t)
+            return
+         end if
          if (at%known < 2) then
             width = abs(ends(2) - ends(1))
             t = last
@@ -139,6 +156,7 @@ contains
          end if
          associate (f => at%f(order) - level)
             ends(merge(2, 1, differ_in_sign(f, g(1)))) = t
+            g_end(merge(2, 1, differ_in_sign(f, g(1)))) = f
             if (order == 2) then
                slope = on_curve(c, 3, t)
             else
@@ -155,7 +173,8 @@ contains
                if (is_inside(c, order - 1, zero%f(order - 1), 0.0_wp)) return
             end if
             ! What is left is rounding: further steps only follow it.
-            if (abs(f) <= rounding_part*c%noise(order) .or. abs(step) <= closed*spacing(t)) exit
+            if (abs(f) <= rounding_part*c%noise(order)) exit
+            if (abs(slope) > 0.0_wp .and. abs(step) <= closed*spacing(t)) exit
             if (abs(f) <= c%noise(order) .and. abs(f) > 0.5_wp*abs(last_g)) exit
             if (abs(f) > above_noise*c%noise(order)) clear = [t, f]
             last = t
@@ -164,6 +183,13 @@ contains
             last_g = f
          end associate
       end do
+      if (jumps) then
+         ! A direction, where two points pass one another.
+         call look_at_column(s, c, t, zero)
+         zero%t_error = abs(ends(2) - ends(1)) + epsilon(1.0_wp)*maxval(abs(ends))
+         zero%error = 0.0_wp
+         return
+      end if
       ! The slope from the zero to the last value that is more than noise, unless that beside the zero is less.
       if (.not. (abs(clear(2)) > above_noise*c%noise(order) .and. abs(clear(1) - t) > 0.0_wp)) slope = 0.0_wp
       if (abs(slope) > 0.0_wp) slope = min(abs(slope), abs(clear(2)/(clear(1) - t)))

@@ -5,7 +5,7 @@ module block_assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
@@ -162,7 +162,7 @@ contains
          real(wp), intent(in) :: x(:), y(:)
 
          apart = maxval(merge(abs(without_turns(x - y)), abs(x - y), &
-            b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
+            own_unknowns(b, i) <= b%orientations))
       end function apart
    end subroutine find_positions
 end module block_assemblies

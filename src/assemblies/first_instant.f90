@@ -10,7 +10,7 @@ module first_instant
    use planar, only: without_turns
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent
    use motion, only: motion_t, new_motion
-   use blocks, only: largest_known, blocks_below
+   use blocks, only: largest_known, blocks_below, own_unknowns
    use block_state, only: set_values, values_of, add_turns
    use block_solver, only: solve_block
    use link_motion, only: move_links
@@ -171,7 +171,7 @@ contains
       if (is_complete) limit = limit + alike*max(1.0_wp, limit)
       last = 0
       do i = 1, size(found)
-         associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         associate (own => own_unknowns(e%blocks, i))
             latest(i) = largest_known(e%blocks, i, last)
             last(own) = merge(latest(i), i, e%blocks%list(i)%direct)
             call set_values(e%blocks, i, e%estimated(own), e%state)
@@ -199,7 +199,7 @@ contains
             if (i == 0) exit
             found(i + 1:)%chosen = 0
          else
-            associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+            associate (own => own_unknowns(e%blocks, i))
                open(own) = 0
                if (largest_known(e%blocks, i, open) == 0) then
                   if (found(i)%chosen == 0) call look_for_positions()
@@ -239,7 +239,7 @@ contains
       if (.not. is_found) found%chosen = 1
       do i = 1, size(found)
          if (solves >= max_solves .and. size(found(i)%distance) > 1) found(i)%are_all = .false.
-         call set_values(e%blocks, i, values(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)), e%state)
+         call set_values(e%blocks, i, values(own_unknowns(e%blocks, i)), e%state)
       end do
       if (present(distance)) distance = merge(limit, unbounded, is_found .and. all(found%chosen > 0))
 
@@ -291,7 +291,7 @@ contains
       integer :: k
 
       allocate (found%x(size(start), 0), found%distance(0))
-      start = e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+      start = e%estimated(own_unknowns(e%blocks, i))
       call set_values(e%blocks, i, start, e%state)
       call solve_block(e%blocks, i, e%tolerance, e%work, e%state, found%ending)
       if (is_solved(found%ending)) call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
@@ -332,7 +332,7 @@ contains
          real(wp) :: y(size(x)), square(2, size(places, 2)), distance
          integer :: k, first
 
-         associate (is_angle => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last) <= e%blocks%orientations)
+         associate (is_angle => own_unknowns(e%blocks, i) <= e%blocks%orientations)
             do k = 1, size(found%distance)
                y = found%x(:, k)
                if (all(merge(abs(without_turns(x - y)), abs(x - y)/max(1.0_wp, abs(x)), is_angle) &

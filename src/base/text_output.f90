@@ -8,7 +8,8 @@ module text_output
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
-   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: output_t, open_output, open_held, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: move_text
    public :: held_length, write_held, release_output, turn_lost, replaced
 
    integer, parameter :: block_length = 65536
@@ -53,6 +54,24 @@ contains
       call fail(failure, status_system, 'FILE '//path//' CANNOT BE OPENED FOR WRITING (' &
          //capitals(reason_of(o%error))//')')
    end subroutine open_output
+
+   !> Makes an output ready that is no file: all of its text is held.
+   subroutine open_held(o)
+      type(output_t), intent(out) :: o
+
+      o%held = .true.
+      allocate (character(block_length) :: o%buffer)
+   end subroutine open_held
+
+   !> Moves the text that an output holds to another one.
+   subroutine move_text(from, o)
+      type(output_t), intent(inout) :: from  !< holds nothing then
+      type(output_t), intent(inout) :: o
+
+      call add(o, from%buffer(from%written + 1:from%used))
+      from%written = 0
+      from%used = 0
+   end subroutine move_text
 
    !> Rejects a file that would be both read and written, or written twice, under whatever names. `list`: the outputs,
    !> of which those that are open count. `deck`: the file of the deck, '' for standard input. Errors: status_rejected.

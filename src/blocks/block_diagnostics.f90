@@ -7,7 +7,7 @@ module block_diagnostics
       diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
    use planar, only: without_turns
    use scales, only: is_length
-   use blocks, only: blocks_below, largest_known
+   use blocks, only: blocks_below, largest_known, own_unknowns
    use block_rank, only: redundant_rows, moving_unknowns
    use block_state, only: largest_drive_rate
    use block_engine, only: block_engine_t, mark_singular_links
@@ -105,7 +105,7 @@ contains
       logical :: chosen(size(e%orientation_of))
       integer :: k
 
-      associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+      associate (unknowns => own_unknowns(e%blocks, i))
          chosen = links_with(e, unknowns)
          if (any(chosen)) return
          do k = 1, size(e%chain%links)
@@ -190,7 +190,7 @@ contains
          left = 0.0_wp
          if (e%followed(i)%pivot > near_pivot*e%blocks%numbers%blocks(i)%lipschitz) return
          associate (past => e%history%past, step => t - e%history%t(0), &
-                    u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+                    u => own_unknowns(e%blocks, i))
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return

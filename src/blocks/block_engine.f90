@@ -2,19 +2,20 @@
 !> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: drive_t, mechanism_t, wanted_links, pair_revolute
+   use mechanism, only: drive_t, mechanism_t, wanted_links, has_guide
    use scales, only: is_length
-   use motion, only: motion_t
+   use motion, only: motion_t, new_motion
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
    use drives, only: drive_motion
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known
+   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known, &
+      own_unknowns
    use block_numbers, only: put_numbers
    use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
-   use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
+   use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations, solve_rates
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
@@ -23,7 +24,7 @@ module block_engine
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_each, &
-      separation_of, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, &
+      separation_of, set_drive_values, accept, get_motion, get_ratios, mark_singular_links, get_driven_links, &
       followed_state, slide_unit
 
    !> What the factors of a block's Jacobian say.
@@ -67,6 +68,7 @@ module block_engine
       type(drive_t), allocatable :: timed(:)            !< (drives) the deck's, while others are followed; then
       real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
+      integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for
       integer, allocatable :: orientation_of(:)         !< (links)
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
@@ -97,6 +99,9 @@ contains
       end if
       e%length = e%blocks%numbers%equations%length
       e%tolerance = m%tolerance
+      e%ratios = [integer ::]
+      if (any(m%requests%drive > 0)) e%ratios = pack([(i, i=1, size(m%drives))], &
+         [(any(m%requests%drive == i), i=1, size(m%drives))])
       if (.not. e%blocks%solvable) return
 
       e%chain = new_chain(m, e%blocks, wanted_links(m))
@@ -114,9 +119,9 @@ contains
       do i = 1, size(m%links)
          if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(e%orientation_of(i)))%direct
       end do
-      allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
-      e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
-      e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
+      allocate (e%joint(2, count(.not. has_guide(m%pairs%kind))))
+      e%joint(1, :) = m%points(pack(m%pairs%point_i, .not. has_guide(m%pairs%kind)))%link
+      e%joint(2, :) = m%points(pack(m%pairs%point_j, .not. has_guide(m%pairs%kind)))%link
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)
@@ -335,6 +340,44 @@ contains
       call move_links(e%chain, e%state, e%length, found, finite)
    end subroutine get_motion
 
+   !> Finds the motions found%by in which one of the drives by which ratios are asked for has the rate 1 and the others
+   !> rest, at the position found last: as the motion itself, with other values of drives.
+   subroutine get_ratios(e, is_lost, found)
+      type(block_engine_t), intent(inout) :: e
+      logical, intent(in) :: is_lost(:)      !< (blocks) without a position, or without unique rates
+      type(motion_t), intent(inout) :: found
+      type(motion_t) :: unit
+      type(state_t) :: s
+      integer :: missing(0:e%blocks%unknowns), j, k
+      logical :: has_rates, finite
+
+      ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
+      if (.not. allocated(found%by)) allocate (found%by(size(e%laws)))
+      unit = new_motion(size(found%position, 2))
+      do j = 1, size(e%ratios)
+         s = e%state
+         s%drive_value(1:, :) = 0.0_wp
+         s%drive_value(1, e%ratios(j)) = e%unit_of(e%ratios(j))
+         missing = missing_nothing
+         do k = 1, size(e%needed)
+            associate (i => e%needed(k))
+               has_rates = .not. is_lost(i)
+               if (has_rates) has_rates = largest_known(e%blocks, i, missing) == missing_nothing
+               if (has_rates) call solve_rates(e%blocks, i, e%work, s, has_rates)
+               if (.not. has_rates) call note_block(e, i, missing_rates, missing)
+            end associate
+         end do
+         call move_links(e%chain, s, e%length, unit, finite)
+         call mark_links(e%chain, missing, unit)
+         associate (by => found%by(e%ratios(j)))
+            by%velocity = unit%velocity
+            by%acceleration = unit%acceleration
+            by%is_known = unit%link_known == 2 .and. all(abs(unit%velocity) <= huge(1.0_wp) .and. &
+               abs(unit%acceleration) <= huge(1.0_wp), dim=1)
+         end associate
+      end do
+   end subroutine get_ratios
+
    !> Tells which links have velocities in the motion `found` last, where not all have. `all_at_once`: with one Jacobian
    !> for all equations, which has no inverse; then those alone that drives move.
    subroutine mark_singular_links(e, found, all_at_once)
@@ -379,6 +422,7 @@ contains
       end do
       call mark_links(e%chain, missing, found)
       call move_links(e%chain, s, e%length, found, finite)
+      if (size(e%ratios) > 0) call get_ratios(e, .not. e%blocks%list%direct, found)
    end subroutine get_driven_links
 
    !> Finds the state `s` of the motion that is followed; at the first instant that of the deck's estimate, but for what
@@ -408,7 +452,7 @@ contains
          if (e%blocks%list(i)%direct) then
             call solve_direct(e%blocks, i, s)
          else if (e%history%filled == 0) then
-            call set_values(e%blocks, i, e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)), s)
+            call set_values(e%blocks, i, e%estimated(own_unknowns(e%blocks, i)), s)
          end if
       end do
    end subroutine followed_state
@@ -420,7 +464,7 @@ contains
       integer, intent(in) :: i, own
       integer, intent(inout) :: missing(0:)
 
-      missing(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) &
+      missing(own_unknowns(e%blocks, i)) &
          = max(own, largest_known(e%blocks, i, missing))
    end subroutine note_block
 

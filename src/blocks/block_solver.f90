@@ -22,7 +22,7 @@ module block_solver
    use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations, second_order_bounds
+   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations, solve_rates, second_order_bounds
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -216,6 +216,44 @@ contains
             .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
       end associate
    end subroutine solve_equations
+
+   !> Solves block `i` for the rates and accelerations of its unknowns alone, at the position of `s`, with the rates of
+   !> drives and of known unknowns in `s`.
+   subroutine solve_rates(b, i, w, s, has_rates)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      logical, intent(out) :: has_rates      !< they are unique, and redundant equations do not contradict them
+      real(wp) :: rates(2)
+      integer :: info, k
+
+      has_rates = .true.
+      if (b%list(i)%direct) then
+         call solve_direct(b, i, s)
+         return
+      end if
+      associate (block => b%list(i), shape => b%list(i)%shape, rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
+         w%near%distance = 0.0_wp
+         call find_known_parts(b, i, s)
+         call assemble_with_velocities(b, i, s, w%a, w%r, w%r(rows + 1))
+         call solve_first(shape, w%a, w%pivots, w%work, w%r(rows + 1), info, b%patterns)
+         has_rates = info == 0
+         if (.not. has_rates) return
+         do k = 1, n
+            s%u(b%unknown(block%first + k - 1))%rate = w%r(rows + k)
+         end do
+         call right_hand_side(b, i, 2, s, w%r)
+         call solve_next_side(shape, w, w%r)
+         do k = 1, n
+            s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
+         end do
+         if (rows == n) return
+         rates = largest_rates(b, i, s)
+         has_rates = .not. (contradict(w%r(rows + n + 1:2*rows), rates(1), b%numbers%blocks(i)%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), b%numbers%blocks(i)%coarse))
+      end associate
+   end subroutine solve_rates
 
    !> Solves for another right-hand side `v` (rows), from the factors.
    subroutine solve_next_side(shape, w, v)

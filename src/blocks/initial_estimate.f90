@@ -10,8 +10,9 @@
 module initial_estimate
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use planar, only: direction, quarter_turn, point_of, pi, without_turns
-   use mechanism, only: mechanism_t, pair_revolute
+   use planar, only: direction, pi, without_turns
+   use pair_geometry, only: way_of, opening_of, slide_of
+   use mechanism, only: mechanism_t, has_guide
    use links_tree, only: tree_t, axes_t
    use blocks, only: blocks_t
    implicit none
@@ -52,36 +53,36 @@ contains
             value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
          end do
          do i = 1, size(m%pairs)
-            if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = dot_product(closure_error_of(m, i, phi), &
-               direction(phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha))/length
+            associate (pair => m%pairs(i))
+               if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = slide_of(m, pair, &
+                  turned(m, m%points(pair%point_i)%link, phi), turned(m, m%points(pair%point_j)%link, phi))/length
+            end associate
          end do
       end associate
       value = value/b%numbers%unit
    end function estimated_values
 
-   !> (2) From the first point of pair `k` to the other, the links at the deck's places and the angles `phi` (links).
-   pure function closure_error_of(m, k, phi) result(closure_error)
+   !> Finds where link number `i` is at the deck's place with its angle of `phi` (links).
+   pure function turned(m, i, phi) result(position)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: phi(:)         !< rad
+      real(wp) :: position(3)
+
+      position = [m%links(i)%position(:2), phi(i)]
+   end function turned
+
+   !> Finds the distance by which pair `k` is open there.
+   pure real(wp) function distance_open(m, k, phi) result(open)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
-      real(wp), intent(in) :: phi(:)
-      real(wp) :: closure_error(2)
+      real(wp), intent(in) :: phi(:)         !< rad, of the links
 
-      associate (i => m%points(m%pairs(k)%point_i), j => m%points(m%pairs(k)%point_j))
-         closure_error = point_of([m%links(j%link)%position(:2), phi(j%link)], j%offset) &
-            - point_of([m%links(i%link)%position(:2), phi(i%link)], i%offset)
+      associate (pair => m%pairs(k))
+         open = abs(opening_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
+            turned(m, m%points(pair%point_j)%link, phi)))
       end associate
-   end function closure_error_of
-
-   !> The distance by which pair `k` is open there.
-   pure real(wp) function opening_of(m, k, phi) result(opening)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
-      real(wp), intent(in) :: phi(:)
-
-      if (m%pairs(k)%kind == pair_revolute) opening = norm2(closure_error_of(m, k, phi))
-      if (m%pairs(k)%kind /= pair_revolute) opening = abs(m%pairs(k)%offset + dot_product(closure_error_of(m, k, phi), &
-         quarter_turn(direction(phi(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))))
-   end function opening_of
+   end function distance_open
 
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
    function estimated_directions(m, t, a, span) result(phi)
@@ -144,7 +145,7 @@ contains
                      pair = t%near%member(k)
                      points = [m%pairs(pair)%point_i, m%pairs(pair)%point_j]
                      if (all(placed(points) .or. t%orientation(m%points(points)%link) == class)) &
-                        sum_of = sum_of + opening_of(m, pair, v)**2
+                        sum_of = sum_of + distance_open(m, pair, v)**2
                   end do
                end do
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
@@ -176,9 +177,10 @@ contains
                           j => m%pairs(t%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
                   arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
-                  if (m%pairs(pair)%kind /= pair_revolute) arm = arm + norm2(closure_error_of(m, pair, v))
+                  if (has_guide(m%pairs(pair)%kind)) arm = arm + norm2(way_of(m, m%pairs(pair), &
+                     turned(m, m%points(i)%link, v), turned(m, m%points(j)%link, v)))
                   size_of = max(size_of, arm)
-                  open = max(open, opening_of(m, pair, v))
+                  open = max(open, distance_open(m, pair, v))
                end associate
             end do
             is = is .or. open > open_part*size_of
@@ -193,7 +195,8 @@ contains
 
          largest = 0.0_wp
          do k = 1, size(m%pairs)
-            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(m, k, v))
+            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) &
+               largest = max(largest, distance_open(m, k, v))
          end do
       end function largest_opening
    end function estimated_directions

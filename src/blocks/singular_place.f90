@@ -14,7 +14,7 @@
 module singular_place
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
-   use blocks, only: blocks_t, blocks_below
+   use blocks, only: blocks_t, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    use block_rank, only: values_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step, &
@@ -168,7 +168,7 @@ contains
       end do
       unit = max(speed, norm2(p))
       do j = -1, 1
-         s%u(b%unknown(b%list(i)%first:b%list(i)%last))%rate = p + j*unit*v%right(v%n, :)
+         s%u(own_unknowns(b, i))%rate = p + j*unit*v%right(v%n, :)
          call right_hand_side(b, i, 2, s, r)
          q(j) = dot_product(v%left(:, v%n), r)/unit**2
       end do

@@ -13,7 +13,7 @@ module analysis
    use convergence, only: convergence_t, nothing_gathered, is_solved, ended_inconsistent, ended_unsought, &
       ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
-      get_driven_links, set_drive_values, solve_each
+      get_ratios, get_driven_links, set_drive_values, solve_each
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
@@ -101,6 +101,7 @@ contains
       call come_back(a)
       iterations = a%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
+      if (allocated(found%by)) deallocate (found%by)
       found%t = t
       if (limit_before(a%limits, t) > 0) then
          call pass_over(a, t, found)
@@ -384,6 +385,7 @@ contains
       else
          call get_blocks_motion(a%engine, found, finite)
       end if
+      if (size(a%engine%ratios) > 0) call get_ratios(a%engine, a%engine%is_singular, found)
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows

@@ -14,10 +14,11 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, begin_mechanism, build_bodies, has_drawing, look_up, match_word
+   public :: card_set_t, begin_set, begin_mechanism, build_bodies, define_name, has_drawing, look_up, &
+      look_up_kinds, match_word
    public :: add_card_error, add_card_remark, real_text
 
-   !> The links, the points or the pairs of a set.
+   !> The links, the points, the pairs or the measures of a set.
    type :: named_t
       integer, allocatable :: card(:)               !< the numbers of the cards that define them
       type(name_table_t) :: table                   !< from their names to their places in `card`
@@ -28,14 +29,14 @@ module card_sets
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      type(named_t) :: named(request_link:request_pair)
+      type(named_t) :: named(request_link:request_measure)
       type(mechanism_t) :: mechanism
       type(input_errors_t) :: errors                !< all errors of the deck so far
    end type card_set_t
 
    !> Characters of the longest text of a real, on a `*` card.
    integer, parameter :: real_length = wide_fields(1)%last - wide_fields(1)%first + 1
-   !> A form of the cards that define links, points or pairs, and the label that has their name.
+   !> A form of the cards that define links, points, pairs or measures, and the label that has their name.
    type :: definer_t
       integer :: kind = 0, form = 0, label = label_a
    end type definer_t
@@ -44,9 +45,15 @@ module card_sets
       definer_t(request_link, form_ground), definer_t(request_link, form_link), definer_t(request_point, form_point), &
       definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
       definer_t(request_pair, form_revolute, label_c), definer_t(request_pair, form_prism, label_c), &
-      definer_t(request_pair, form_cylinder, label_c), definer_t(request_pair, form_joint)]
-   !> The errors of names that no link, no point, no pair has.
-   type(error_code_t), parameter :: unknown(request_link:request_pair) = [link_unknown, point_unknown, pair_unknown]
+      definer_t(request_pair, form_cylinder, label_c), definer_t(request_pair, form_joint), &
+      definer_t(request_measure, form_distance, label_c), definer_t(request_measure, form_line, label_c), &
+      definer_t(request_measure, form_angle, label_c), definer_t(request_measure, form_xi, label_c), &
+      definer_t(request_measure, form_eta, label_c), definer_t(request_measure, form_sum, label_c)]
+   !> The errors of names that no link, no point, no pair, no measure has.
+   type(error_code_t), parameter :: unknown(request_link:request_measure) = &
+      [link_unknown, point_unknown, pair_unknown, measure_unknown]
+   character(*), parameter :: words_of_kinds(request_link:request_measure) = &
+      [character(7) :: 'LINK', 'POINT', 'PAIR', 'MEASURE']
 
 contains
 
@@ -69,7 +76,7 @@ contains
       integer :: kind
 
       if (set%count > 0) set%cards(:set%count)%subject = 0
-      do kind = request_link, request_pair
+      do kind = request_link, request_measure
          set%named(kind) = named_t()
       end do
       set%mechanism = mechanism_t(set_number=number)
@@ -90,7 +97,7 @@ contains
       integer :: kind, n, k, i
 
       unit = angle_in_radians(set%mechanism)
-      do kind = request_link, request_pair
+      do kind = request_link, request_measure
          ! In the order of the deck; twice those of a form that is there twice.
          set%named(kind)%card = [((k, i=1, count(definers%kind == kind .and. definers%form == set%cards(k)%form)), &
             k=1, set%count)]
@@ -103,7 +110,7 @@ contains
             set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
                position=card%real*[1.0_wp, 1.0_wp, unit])
          end associate
-         call define_name(request_link)
+         call define_name(set, request_link, n)
       end do
       do n = 1, size(set%mechanism%points)
          call build_point()
@@ -123,7 +130,7 @@ contains
 
          k = set%named(request_point)%card(n)
          if (set%cards(k)%form /= form_joint) then
-            call define_name(request_point)
+            call define_name(set, request_point, n)
             call look_up(set, request_link, k, label_b, link)
             set%mechanism%points(n) = point_t(set%cards(k)%label(label_a), link, set%cards(k)%real(1:2))
             return
@@ -139,7 +146,7 @@ contains
             is_ground = .false.
             if (link > 0) is_ground = m%links(link)%ground
          end associate
-         if (is_first .neqv. is_ground) call define_name(request_point)
+         if (is_first .neqv. is_ground) call define_name(set, request_point, n)
       end subroutine build_point
 
       !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
@@ -167,7 +174,7 @@ contains
          end associate
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
             call add_card_error(set, cylinder_drawing, k, card_name)
-         call define_name(request_pair)
+         call define_name(set, request_pair, n)
          if (i == 0 .or. j == 0) return
          i = set%mechanism%points(i)%link
          j = set%mechanism%points(j)%link
@@ -181,25 +188,33 @@ contains
                call add_card_error(set, cylinder_points, k, label_b)
          end if
       end subroutine build_pair
-
-      !> Enters the name on the card of link, point or pair (`kind`) number `n`. A name that is there already is an
-      !> error. Of two JOINT cards the error of their points stands for both.
-      subroutine define_name(kind)
-         integer, intent(in) :: kind
-         integer :: k, i, earlier
-
-         k = set%named(kind)%card(n)
-         i = name_field(set%cards(k)%form)
-         if (set%cards(k)%form /= form_joint) set%cards(k)%subject = n
-         if (set%cards(k)%label(i) == '') return
-         call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
-         if (earlier == 0) return
-         associate (first => set%cards(set%named(kind)%card(earlier)))
-            if (kind == request_pair .and. set%cards(k)%form == form_joint .and. first%form == form_joint) return
-            call add_card_error(set, name_repeated, k, i, whole(first%card%number))
-         end associate
-      end subroutine define_name
    end subroutine build_bodies
+
+   !> Enters the name on the card of a link, point, pair or measure. A name that is there already is an error, and so is
+   !> the name of a pair for a measure. Of two JOINT cards the error of their points stands for both.
+   subroutine define_name(set, kind, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: kind            !< request_link, ..., request_measure
+      integer, intent(in) :: n               !< its number
+      integer :: k, other, earlier
+
+      k = set%named(kind)%card(n)
+      associate (name => set%cards(k)%label(name_field(set%cards(k)%form)))
+         if (set%cards(k)%form /= form_joint) set%cards(k)%subject = n
+         if (name == '') return
+         call put_name(set%named(kind)%table, name, n, earlier)
+         if (earlier > 0) earlier = set%named(kind)%card(earlier)
+         if (kind == request_measure .and. earlier == 0) then
+            earlier = find_name(set%named(request_pair)%table, name)
+            if (earlier > 0) earlier = set%named(request_pair)%card(earlier)
+         end if
+      end associate
+      if (earlier == 0) return
+      if (kind == request_pair .and. all(set%cards([k, earlier])%form == form_joint)) return
+      other = min(k, earlier)
+      k = max(k, earlier)
+      call add_card_error(set, name_repeated, k, name_field(set%cards(k)%form), whole(set%cards(other)%card%number))
+   end subroutine define_name
 
    !> Whether `set` has the coordinates of a drawing, in which a blank number is as drawn.
    pure logical function has_drawing(set)
@@ -208,49 +223,71 @@ contains
       has_drawing = set%number_of(form_joint) > 0
    end function has_drawing
 
-   !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names. 0: the
-   !> label is blank, which is an error of its own, or unknown, an error unless a card that could define it was not
-   !> understood.
+   !> The number `n` of the link, point, pair or measure (`kind`) that label `i` (label_a to label_c) of card `k` names.
+   !> 0: the label is blank, which is an error of its own, or unknown, an error unless a card that could define it was
+   !> not understood.
    subroutine look_up(set, kind, k, i, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, i
       integer, intent(out) :: n
-      character(5), parameter :: kinds(request_link:request_pair) = ['LINK ', 'POINT', 'PAIR ']
+      integer :: found
+
+      call look_up_kinds(set, [kind], unknown(kind), k, i, found, n)
+   end subroutine look_up
+
+   !> Finds what a label of a card names, which may be of several kinds. A name that none of them has is an error,
+   !> unless a card that could define it was not understood; a blank label is an error of its own.
+   subroutine look_up_kinds(set, kinds, code, k, i, kind, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: kinds(:)        !< request_link, ..., request_measure: the first that has the name counts
+      type(error_code_t), intent(in) :: code !< the error of an unknown name
+      integer, intent(in) :: k               !< number of the card
+      integer, intent(in) :: i               !< of the label: label_a to label_c
+      integer, intent(out) :: kind           !< one of `kinds`
+      integer, intent(out) :: n              !< its number; 0: none is found
       character(:), allocatable :: hint, word
-      integer :: other, near, border, first
+      integer :: other, near, border, first, j
 
       n = 0
+      kind = kinds(1)
       if (set%cards(k)%label(i) == '') return
-      n = find_name(set%named(kind)%table, set%cards(k)%label(i))
-      if (n > 0 .or. .not. set%names_certain) return
+      do j = 1, size(kinds)
+         kind = kinds(j)
+         n = find_name(set%named(kind)%table, set%cards(k)%label(i))
+         if (n > 0) return
+      end do
+      if (.not. set%names_certain) return
       if (set%errors%count >= max_printed) then
-         call add_card_error(set, unknown(kind), k, i)
+         call add_card_error(set, code, k, i)
          return
       end if
 
       hint = ''
-      do other = request_pair, request_link, -1
-         if (find_name(set%named(other)%table, set%cards(k)%label(i)) > 0) hint = '(A '//trim(kinds(other))//' HAS IT)'
+      do other = request_measure, request_link, -1
+         if (find_name(set%named(other)%table, set%cards(k)%label(i)) > 0) &
+            hint = '(A '//trim(words_of_kinds(other))//' HAS IT)'
       end do
-      if (hint == '') then
+      do j = 1, size(kinds)
+         if (hint /= '') exit
          near = nearest_word(set%cards(k)%label(i), &
-            [(subject_name(set%mechanism, kind, other), other=1, size(set%named(kind)%card))])
-         if (near > 0) hint = near_name(subject_name(set%mechanism, kind, near))
-      end if
+            [(subject_name(set%mechanism, kinds(j), other), other=1, size(set%named(kinds(j))%card))])
+         if (near > 0) hint = near_name(subject_name(set%mechanism, kinds(j), near))
+      end do
       ! A name that goes on in the next field, or that began in the field before, if none of its parts is a name.
       do border = i, min(i + 1, label_c)
          call find_long_label(set%cards(k)%card, border, first, word)
          if (word == '') cycle
          if (is_name(border - 1) .or. is_name(border)) cycle
          ! A name is near to itself with the last letter of the long one before it.
-         if (hint /= '' .and. find_name(set%named(kind)%table, set%cards(k)%label(i)(2:)) == 0) cycle
+         if (hint /= '' .and. all([(find_name(set%named(kinds(j))%table, set%cards(k)%label(i)(2:)) == 0, &
+            j=1, size(kinds))])) cycle
          call add_error(set%errors, label_long, set%cards(k)%card, card_fields(border - 1), first, word)
          set%names_certain = .false.
          return
       end do
-      if (kind == request_link .and. set%number_of(form_ground) == 0) &
+      if (all(kinds == request_link) .and. set%number_of(form_ground) == 0) &
          hint = trim(hint//' (GIVE IT A GROUND OR LINK CARD; NO LINK IS GROUND)')
-      call add_card_error(set, unknown(kind), k, i, adjustl(hint))
+      call add_card_error(set, code, k, i, adjustl(hint))
 
    contains
 
@@ -262,10 +299,10 @@ contains
          if (any(definers%form == set%cards(k)%form .and. definers%label == label)) return
          associate (name => set%cards(k)%label(label))
             is_name = any(drive_words == name) .or. &
-               any([(find_name(set%named(other)%table, name) > 0, other=request_link, request_pair)])
+               any([(find_name(set%named(other)%table, name) > 0, other=request_link, request_measure)])
          end associate
       end function is_name
-   end subroutine look_up
+   end subroutine look_up_kinds
 
    !> The place in `words` of label A of card `k`; 0 if it is none of them, an error of a card without others.
    subroutine match_word(set, k, words, place)

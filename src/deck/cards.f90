@@ -51,8 +51,9 @@ module cards
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler
-      enumerator :: form_time, form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole
-      enumerator :: form_curve, form_branch, form_vary, form_assembly, form_prove, form_end
+      enumerator :: form_time, form_at, form_method, form_print, form_column, form_extremes, form_range, form_circuits
+      enumerator :: form_pole, form_curve, form_branch, form_vary, form_assembly, form_prove
+      enumerator :: form_distance, form_line, form_angle, form_xi, form_eta, form_sum, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -75,6 +76,7 @@ module cards
       form_t('---', 3, .false., 'AT                              T               T               T'), &
       form_t('L--', 1, .true.,  'METHOD  METHOD                  TOLERANCE'), &
       form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
+      form_t('LLl', 0, .false., 'COLUMN  KIND    NAME    QUANTITY'), &
       form_t('Ll-', 2, .false., 'EXTREMESKIND    NAME            DWELL LENGTH    DWELL ANGLE'), &
       form_t('---', 0, .true.,  'RANGE'), &
       form_t('---', 0, .true.,  'CIRCUITS'), &
@@ -84,6 +86,12 @@ module cards
       form_t('LLl', 3, .false., 'VARY    R1/2/3  N/LIST  TIE     FROM/VALUE      TO/VALUE        VALUE'), &
       form_t('---', 0, .true.,  'ASSEMBLY'), &
       form_t('---', 0, .true.,  'PROVE'), &
+      form_t('LLL', 0, .false., 'DISTANCEPOINT-P POINT-Q MEASURE'), &
+      form_t('LLL', 0, .false., 'LINE    POINT-P POINT-Q MEASURE'), &
+      form_t('LLL', 0, .false., 'ANGLE   FROM    TO      MEASURE'), &
+      form_t('LLL', 0, .false., 'XI      POINT   LINK    MEASURE'), &
+      form_t('LLL', 0, .false., 'ETA     POINT   LINK    MEASURE'), &
+      form_t('LlL', 3, .false., 'SUM     A       B       MEASURE C1              C2              C0'), &
       form_t('---', 0, .false., 'END')]
    !> The layout of the `*` card, by `wide_fields`.
    character(*), parameter :: star_layout = '*       R1 OF THE CARD ABOVE    R2                      R3'

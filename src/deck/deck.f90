@@ -6,6 +6,7 @@ module deck
    use card_sets, only: card_set_t, begin_set, build_bodies
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
    use cards
+   use deck_measures, only: build_measures, check_measures
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
@@ -154,6 +155,7 @@ contains
             call check_terms(set)
             call check_unused(set)
             call check_centres(set)
+            call check_measures(set)
             call check_angles(set)
             if (set%errors%count == progress%errors_before) call check_drives(set)
             if (set%errors%count == progress%errors_before) call check_drawing(set)
@@ -174,6 +176,7 @@ contains
 
       call build_options(set)
       call build_bodies(set)
+      call build_measures(set)
       call build_drives(set)
       call build_requests(set)
       call build_branches(set)
@@ -196,6 +199,7 @@ contains
       if (v%set%errors%count == 0) then
          call check_terms(v%set)
          call check_centres(v%set)
+         call check_measures(v%set)
       end if
       message = error_report(v%set%errors)
       ! The lines before it show the card.

@@ -5,6 +5,7 @@ module deck_drives
    use kinds, only: wp
    use planar, only: pi
    use mechanism
+   use scales, only: is_length
    use card_reader, only: parsed_card_t, refuse_field
    use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
    use splines, only: new_spline
@@ -44,7 +45,7 @@ contains
       do k = 1, set%count
          if (set%cards(k)%form /= form_drive .or. set%cards(k)%given(1)) cycle
          associate (drive => set%mechanism%drives(set%cards(k)%subject))
-            drive%drawn = .not. any(drive%terms%kind == term_table)
+            drive%drawn = .not. any(term_kinds(drive%terms%kind)%has_rows)
             if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
          end associate
       end do
@@ -126,7 +127,7 @@ contains
             if (drive%subject == 0) return
             label = merge(label_c, label_b, kind == drive_relangle)
             if (kind == drive_slide) then
-               if (m%pairs(drive%subject)%kind == pair_revolute) call add_card_error(set, drive_revolute, k, label)
+               if (.not. has_guide(m%pairs(drive%subject)%kind)) call add_card_error(set, drive_revolute, k, label)
             else if (drive%second == drive%subject) then
                call add_card_error(set, drive_one_link, k, label)
             else
@@ -141,7 +142,7 @@ contains
       pure real(wp) function unit_of(drive) result(unit)
          type(drive_t), intent(in) :: drive
 
-         unit = merge(angle_in_radians(set%mechanism), 1.0_wp, driven_kinds(drive%kind) == request_link)
+         unit = merge(angle_in_radians(set%mechanism), 1.0_wp, .not. is_length(drive))
       end function unit_of
 
       !> Builds the term of the ADD or RISE card `k`, or the row of its table.
@@ -152,12 +153,12 @@ contains
             drive => set%mechanism%drives(set%cards(k)%subject), &
             term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
             if (card%form == form_rise) then
-               call match_word(set, k, rise_words, kind)
+               call match_word(set, k, pack(term_kinds%word, term_kinds%is_rise), kind)
                term%kind = term_cycloid + max(kind, 1) - 1
                term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
                if (card%valid .and. card%real(2) <= 0.0_wp) &
                   call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
-               if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
+               if (term_kinds(term%kind)%jumps) call add_card_remark(set, remark_jumps, k, label_a)
                return
             end if
 
@@ -170,7 +171,7 @@ contains
                    card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
                if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
             else
-               call match_word(set, k, term_words, kind)
+               call match_word(set, k, pack(term_kinds%word, .not. term_kinds%is_rise), kind)
                if (kind == term_harmonic) &
                   term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
                if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
@@ -191,7 +192,7 @@ contains
    pure logical function is_row(card)
       type(parsed_card_t), intent(in) :: card
 
-      is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
+      is_row = card%form == form_add .and. card%label(label_a) == term_kinds(term_table)%word
    end function is_row
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
@@ -206,7 +207,7 @@ contains
       do k = 1, set%count
          if (set%cards(k)%row /= 1) cycle
          associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
-            if (term%kind == term_table) then
+            if (term_kinds(term%kind)%has_rows) then
                term%table = new_spline(term%table%x, term%table%y)
                ! As doubles: in real128 a double may lie outside by its rounding.
                if (real(first, dp) < real(term%table%x(1), dp)) call add_instant_error(table_range, first)

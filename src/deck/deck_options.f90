@@ -1,10 +1,12 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and CURVE.
+!> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and
+!> CURVE.
 module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
    use mechanism
-   use card_sets, only: card_set_t, look_up, match_word, add_card_error
+   use card_sets, only: card_set_t, has_drawing, look_up, look_up_kinds, match_word, add_card_error
+   use columns, only: columns_of_rows, form_of, quantity_of, row_forms => forms
    use cards
    use input_errors
    use name_table, only: name_table_t, put_name, find_name
@@ -22,8 +24,12 @@ module deck_options
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
-   !> The words of PRINT: 0 for everything, then the kinds request_link, request_point, request_pair.
-   character(6), parameter :: print_words(0:3) = ['ALL   ', 'LINKS ', 'POINTS', 'PAIRS ']
+   !> The words of PRINT: 0 for everything, then the kinds request_link to request_measure.
+   character(*), parameter :: print_words(0:request_measure) = &
+      [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
+   !> The word after these: ratios of pairs or measures.
+   character(*), parameter :: ratio_word = 'RATIOS'
+   integer, parameter :: word_ratio = request_measure + 1
 
 contains
 
@@ -98,38 +104,48 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the EXTREMES cards, and from the POLE
-   !> and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first one counts.
-   !> Without a PRINT card, all links that are not ground are printed; in the listing of a drawing its points as well,
-   !> and of links without axes of their own the angle alone. Unknown words and names and repeated cards are errors.
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards, and
+   !> from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first
+   !> one counts. Without a PRINT or COLUMN card, all links that are not ground and all measures are printed; in the
+   !> listing of a drawing its points as well, and of links without axes of their own the angle alone. Unknown words and
+   !> names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
+      type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
+      type(column_request_t), allocatable :: columns(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
+      integer, allocatable :: column_cards(:)       ! (columns) their cards
+      integer, allocatable :: part(:)               ! (links) their independent mechanisms, where ratios need them
       integer :: k, n, i, form
 
-      associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
+      associate (sizes => [(size(set%named(k)%card), k=request_link, request_measure)])
          allocate (requests(sum(sizes) + sum(set%number_of([form_pole, form_curve]))))
-         allocate (number(maxval(sizes), request_link:request_pair), source=0)
+         allocate (number(maxval(sizes), request_link:request_measure), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) then
+      allocate (columns(0), column_cards(0))
+      ! In a set of variants a COLUMN card alone prints nothing.
+      if (set%number_of(form_print) == 0 .and. (set%number_of(form_column) == 0 .or. set%number_of(form_vary) > 0)) then
          call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
          if (set%number_of(form_joint) > 0 .and. set%number_of(form_vary) == 0) then
             ! The places of a link whose axes are those of a drawing are those of the drawing's origin, carried along:
             ! the listing has the points instead.
             do i = 1, n
-               requests(i)%angle_alone = &
-                  .not. any(set%cards(set%named(request_link)%card(requests(i)%subject))%given)
+               requests(i)%angle_alone = .not. has_axes(requests(i)%subject)
             end do
             call request_all(request_t(request_point, every=0, listed=.true.))
          end if
+         call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
          call read_subjects(k, request_t(every=every(k)))
       end do
+      do k = 1, set%count
+         if (set%cards(k)%form == form_column .and. set%cards(k)%valid) call read_column(k)
+      end do
+      if (size(columns) > 0) set%mechanism%columns = columns
       seen = name_table_t()
       do k = 1, set%count
          if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
@@ -178,9 +194,10 @@ contains
          integer, intent(in) :: k
          type(request_t), intent(in) :: request
          type(request_t) :: one
-         integer :: earlier, place, link
+         integer, allocatable :: links(:), ratios(:)
+         integer :: earlier, place
 
-         call match_word(set, k, print_words, place)
+         call match_word(set, k, [character(8) :: print_words, ratio_word], place)
          if (place == 0) return
          one = request
          one%kind = place - 1
@@ -191,10 +208,16 @@ contains
             else if (one%kind == 0 .and. name /= '') then
                call add_card_error(set, field_unused, k, label_b)
             else if (one%kind == 0) then
-               do place = request_link, request_pair
+               if (one%extremes .and. size(columns) > 0) then
+                  call seek_columns(one)
+                  return
+               end if
+               do place = request_link, request_measure
                   one%kind = place
                   call request_all(one)
                end do
+            else if (one%kind == word_ratio) then
+               call read_ratios(k, one, ratios)
             else if (name == '') then
                if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
                   call add_card_error(set, word_unknown, k, label_a, 'THE ITEMS OF THIS SET')
@@ -202,11 +225,13 @@ contains
             else
                call look_up(set, one%kind, k, label_b, one%subject)
                if (one%subject == 0) return
-               link = 0
-               if (one%kind == request_link) link = one%subject
-               if (one%kind == request_point) link = set%mechanism%points(one%subject)%link
-               if (one%extremes .and. link > 0) then
-                  if (set%mechanism%links(link)%ground) call add_card_error(set, is_ground, k, label_b)
+               ! A pair moves. The links of a measure are sure in a deck without errors.
+               if (one%extremes .and. one%kind /= request_pair .and. &
+                   (one%kind /= request_measure .or. set%errors%count == 0)) then
+                  links = request_links(set%mechanism, one)
+                  links = pack(links, links > 0)
+                  if (size(links) > 0 .and. all(set%mechanism%links(links)%ground)) &
+                     call add_card_error(set, is_ground, k, label_b)
                end if
                call add_request(one)
             end if
@@ -228,11 +253,15 @@ contains
                if (find_name(set%named(one%kind)%table, set%mechanism%points(i)%name) /= i) cycle
             end if
             one%subject = i
+            one%sought = .true.
+            ! The places of axes that nobody has placed are no question.
+            if (one%kind == request_link .and. has_drawing(set)) one%sought(:2, :) = has_axes(i)
             call add_request(one)
          end do
       end subroutine request_all
 
-      !> Adds `request`; to that of its subject, if it has one already, the extremes.
+      !> Adds `request`; to that of its subject, if it has one already, the extremes of the numbers that it seeks and of
+      !> those that COLUMN cards name.
       subroutine add_request(request)
          type(request_t), intent(in) :: request
 
@@ -241,12 +270,212 @@ contains
                n = n + 1
                i = n
                requests(i) = request
-            else if (request%extremes .and. .not. requests(i)%extremes) then
-               requests(i)%extremes = .true.
-               requests(i)%dwell = request%dwell
+               requests(i)%extremes = .false.
             end if
+            if (.not. request%extremes) return
+            if (.not. requests(i)%extremes) then
+               requests(i)%dwell = request%dwell
+               requests(i)%sought = numbers_in_columns(i, 3)
+            end if
+            requests(i)%extremes = .true.
+            requests(i)%sought = requests(i)%sought .or. request%sought
          end associate
       end subroutine add_request
+
+      !> Tells whether the card of link `i` says where its axes are.
+      pure logical function has_axes(i)
+         integer, intent(in) :: i            !< the number of the link
+
+         has_axes = any(set%cards(set%named(request_link)%card(i))%given)
+      end function has_axes
+
+      !> Reads the COLUMN card `k`: one number of a row, or its coordinates if the card names no quantity. Of a link
+      !> whose axes are those of a drawing the only coordinate is its angle.
+      subroutine read_column(k)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t) :: request
+         character(:), allocatable :: words
+         integer :: place, i, j, first
+
+         call match_word(set, k, [character(8) :: print_words(request_link:), ratio_word], place)
+         if (place == 0) return
+         if (place == word_ratio) then
+            call read_ratio_columns(k)
+            return
+         end if
+         request = request_t(place, every=0)
+         call look_up(set, place, k, label_b, request%subject)
+         if (request%subject == 0) return
+         call add_request(request)
+         i = number(request%subject, place)
+         requests(i)%in_columns = .true.
+
+         first = size(columns)
+         words = ''
+         associate (form => row_forms(form_of(set%mechanism, request)), quantity => set%cards(k)%label(label_c))
+            do j = form%first, form%last
+               associate (column => columns_of_rows(j), word => quantity_of(form_of(set%mechanism, request), j))
+                  if (j > form%first) words = words//', '
+                  words = words//trim(word)
+                  if (quantity == word) call add_column(k, column_request_t(i, column%at))
+                  if (quantity /= '' .or. column%order > 0) cycle
+                  if (place == request_link .and. has_drawing(set) .and. column%at(1) < 3) then
+                     if (.not. has_axes(request%subject)) cycle
+                  end if
+                  call add_column(k, column_request_t(i, column%at))
+               end associate
+            end do
+         end associate
+         if (size(columns) == first .and. set%cards(k)%label(label_c) /= '') &
+            call add_card_error(set, word_unknown, k, label_c, words)
+      end subroutine read_column
+
+      !> Asks what `request` does about the ratios that card `k` names: of a pair or measure, or of all.
+      subroutine read_ratios(k, request, list)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer, allocatable, intent(out) :: list(:)   !< (any number) the numbers of the requests for these ratios
+         integer :: kind, subject
+
+         allocate (list(0))
+         if (set%cards(k)%label(label_b) /= '') then
+            call look_up_kinds(set, [request_pair, request_measure], summand_unknown, k, label_b, kind, subject)
+            if (subject > 0) call add_ratios(k, request, kind, subject, list)
+         else
+            do kind = request_pair, request_measure
+               do subject = 1, size(set%named(kind)%card)
+                  call add_ratios(k, request, kind, subject, list)
+               end do
+            end do
+         end if
+      end subroutine read_ratios
+
+      !> Asks what `request` does about the ratios of a pair or measure by each drive of its independent mechanism.
+      !> Which of these drives can move it, the structure says later.
+      subroutine add_ratios(k, request, kind, subject, list)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer, intent(in) :: kind, subject   !< request_pair or request_measure, and the number
+         integer, allocatable, intent(inout) :: list(:)   !< gets the numbers of the requests
+         type(request_t) :: one
+         integer :: i
+
+         ! What the quantity is about is sure in a deck without errors.
+         if (set%errors%count > 0) return
+         one = request
+         one%kind = kind
+         one%subject = subject
+         one%drive = 0
+         associate (drives => drives_of(one))
+            if (one%extremes .and. size(drives) > 1) then
+               call add_card_error(set, ratio_drives, k, merge(label_b, label_a, set%cards(k)%label(label_b) /= ''))
+               return
+            end if
+            do i = 1, size(drives)
+               one%drive = drives(i)
+               call add_ratio(one, list)
+            end do
+         end associate
+      end subroutine add_ratios
+
+      !> Finds the drives of the independent mechanism of the pair or measure of a request.
+      function drives_of(request) result(list)
+         type(request_t), intent(in) :: request
+         integer, allocatable :: list(:)     !< their numbers
+         integer :: own, i
+
+         if (.not. allocated(part)) part = part_of_links(set%mechanism)
+         associate (m => set%mechanism)
+            own = maxval(part(request_links(m, request)))
+            list = pack([(i, i=1, size(m%drives))], &
+               [(own > 0 .and. maxval(part(drive_links(m, m%drives(i)))) == own, i=1, size(m%drives))])
+         end associate
+      end function drives_of
+
+      !> Adds a request for a ratio, or what it asks to the one that has been there already.
+      subroutine add_ratio(request, list)
+         type(request_t), intent(in) :: request
+         integer, allocatable, intent(inout) :: list(:)   !< gets its number
+         integer :: i
+
+         i = findloc(requests(:n)%drive == request%drive .and. requests(:n)%kind == request%kind .and. &
+            requests(:n)%subject == request%subject, .true., dim=1)
+         if (i == 0) then
+            ! All other requests keep their room.
+            requests = [requests, request]
+            n = n + 1
+            i = n
+            requests(i) = request
+         else if (request%extremes) then
+            requests(i)%extremes = .true.
+            requests(i)%sought = .true.
+         end if
+         list = [list, i]
+      end subroutine add_ratio
+
+      !> Reads the COLUMN card `k`, of ratios: VALUE, or the derivative DERIV, by each drive.
+      subroutine read_ratio_columns(k)
+         integer, intent(in) :: k            !< the number of the card in the set
+         integer, allocatable :: list(:)
+         integer :: i, order
+
+         order = findloc(['VALUE', 'DERIV'], set%cards(k)%label(label_c), dim=1) - 1
+         if (set%cards(k)%label(label_c) == '') order = 0
+         if (order < 0) then
+            call add_card_error(set, word_unknown, k, label_c, 'VALUE, DERIV')
+            return
+         end if
+         call read_ratios(k, request_t(every=0), list)
+         do i = 1, size(list)
+            requests(list(i))%in_columns = .true.
+            call add_column(k, column_request_t(list(i), [1, order]))
+         end do
+      end subroutine read_ratio_columns
+
+      !> Adds a `column` of the COLUMN card `k`. One that is there already is an error.
+      subroutine add_column(k, column)
+         integer, intent(in) :: k            !< the number of the card in the set
+         type(column_request_t), intent(in) :: column
+         integer :: i
+
+         i = findloc(columns%request == column%request .and. columns%at(1) == column%at(1) .and. &
+            columns%at(2) == column%at(2), .true., dim=1)
+         if (i > 0) call add_card_error(set, repeated, k, label_b, whole(set%cards(column_cards(i))%card%number))
+         columns = [columns, column]
+         column_cards = [column_cards, k]
+      end subroutine add_column
+
+      !> Tells which numbers (coordinates, 0:2) of request `i` COLUMN cards name.
+      pure function numbers_in_columns(i, coordinates) result(named)
+         integer, intent(in) :: i            !< the number of the request
+         integer, intent(in) :: coordinates  !< the first ones of its row
+         logical :: named(coordinates, 0:2)
+         integer :: c, j
+
+         do j = 0, 2
+            do c = 1, coordinates
+               named(c, j) = any(columns%request == i .and. columns%at(1) == c .and. columns%at(2) == j)
+            end do
+         end do
+      end function numbers_in_columns
+
+      !> Asks for the extremes of the numbers that COLUMN cards name, as `request` does, unless a card that names their
+      !> subject has asked for those of all its numbers.
+      subroutine seek_columns(request)
+         type(request_t), intent(in) :: request   !< kind and subject do not count
+         integer :: i
+
+         do i = 1, n
+            if (.not. requests(i)%in_columns .or. requests(i)%extremes) cycle
+            ! The ratios of a mechanism with several drives are not searched.
+            if (requests(i)%drive > 0) then
+               if (size(drives_of(requests(i))) > 1) cycle
+            end if
+            requests(i)%extremes = .true.
+            requests(i)%dwell = request%dwell
+            requests(i)%sought = numbers_in_columns(i, 3)
+         end do
+      end subroutine seek_columns
    end subroutine build_requests
 
    !> Builds `set`%mechanism%branch_requests from the BRANCH cards, in their order; links and options are there. A card
@@ -283,7 +512,8 @@ contains
       type(card_set_t), intent(inout) :: set
       type(request_t) :: one
       integer, allocatable :: part(:)
-      integer :: k, links(3)
+      integer, allocatable :: links(:)
+      integer :: k
 
       if (sum(set%number_of([form_pole, form_curve])) == 0) return
       part = part_of_links(set%mechanism)

@@ -45,8 +45,8 @@ module deck_remarks
 
 contains
 
-   !> Remarks on each link without a pair or a drive, which rests then, and on each point without a pair, a drive or a
-   !> PRINT card. An error, if no link is left that moves.
+   !> Remarks on each link without a pair or a drive, which rests then, and on each point without a pair, a drive, a
+   !> measure or a PRINT card. An error, if no link is left that moves.
    subroutine check_unused(set)
       type(card_set_t), intent(inout) :: set
       logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
@@ -67,6 +67,11 @@ contains
          where (.not. link) m%links%ground = .true.
          point(pack(m%requests%subject, &
             m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
+         do i = 1, measure_count(m)
+            associate (subjects => m%measures(i)%subjects)
+               point(pack(subjects%number, subjects%kind == request_point)) = .true.
+            end associate
+         end do
       end associate
       do i = 1, size(point)
          if (.not. point(i)) call add_card_remark(set, remark_point_unused, set%named(request_point)%card(i), label_a)
@@ -140,7 +145,7 @@ contains
          law = drive
          if (allocated(law%terms)) then
             do i = 1, size(law%terms)
-               if (law%terms(i)%kind /= term_table) cycle
+               if (.not. term_kinds(law%terms(i)%kind)%has_rows) cycle
                associate (y => law%terms(i)%table%y)
                   if (.not. maxval(y) > minval(y)) y = 0.0_wp
                end associate
@@ -189,7 +194,7 @@ contains
       type(card_set_t), intent(inout) :: set
       integer :: k, n
 
-      allocate (set%mechanism%echo(set%count + 4))
+      allocate (set%mechanism%echo(set%count + 5))
       n = 0
       do k = 1, set%count
          if (set%cards(k)%form /= form_title) call add_card(k)
@@ -197,12 +202,15 @@ contains
       associate (m => set%mechanism)
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
-         if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         if (m%variants == 0 .and. .not. allocated(m%columns)) &
+            call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
          ! Of the links printed by default, the angles alone may be: of all of them or of some.
          if (any(m%requests%angle_alone)) m%echo(n)(real_column:real_column + len(angles//of_some) - 1) = &
             merge(angles//repeat(' ', len(of_some)), angles//of_some, &
             all(m%requests%angle_alone .or. m%requests%kind /= request_link))
          if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
+         if (allocated(m%measures) .and. m%variants == 0 .and. .not. allocated(m%columns)) &
+            call add_default(form_print, [character(label_length) :: 'MEASURES', '', '1'])
          m%echo = m%echo(1:n)
       end associate
 
@@ -237,6 +245,7 @@ contains
                   text = real_text(card, i)
                else
                   text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
+                  if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
                column = real_column + (i - 1)*real_width
                set%mechanism%echo(n)(column:column + real_width - 1) = text
@@ -278,7 +287,7 @@ contains
          k = set%named(request_pair)%card(i)
          text = ''
          associate (m => set%mechanism, pair => set%mechanism%pairs(i))
-            if (pair%kind /= pair_prismatic) then
+            if (.not. has_guide(pair%kind)) then
                opening = norm2(drawn_way(m, pair))
             else
                opening = drawn_opening(m, pair)

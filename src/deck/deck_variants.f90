@@ -111,7 +111,7 @@ contains
          if (number_kinds(n) == number_drive .and. card%subject == 0) return
          number%kind = number_kinds(n)
          if (card%term == 0) return
-         if (set%mechanism%drives(card%subject)%terms(card%term)%kind /= term_table) return
+         if (.not. term_kinds(set%mechanism%drives(card%subject)%terms(card%term)%kind)%has_rows) return
          number%place = card%row
          if (i == 1) number%kind = number_knot
       end associate

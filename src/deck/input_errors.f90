@@ -80,12 +80,19 @@ module input_errors
       link_unknown = error_code_t(51, 'IS NOT THE NAME OF A LINK', own_layout), &
       point_unknown = error_code_t(52, 'IS NOT THE NAME OF A POINT', own_layout), &
       pair_unknown = error_code_t(53, 'IS NOT THE NAME OF A PAIR', own_layout), &
+      measure_unknown = error_code_t(47, 'IS NOT THE NAME OF A MEASURE', own_layout), &
+      summand_unknown = error_code_t(55, 'IS NOT THE NAME OF A PAIR OR MEASURE', own_layout), &
+      side_unknown = error_code_t(59, 'IS NOT THE NAME OF A LINE OR LINK', own_layout), &
+      side_twofold = error_code_t(67, 'IS A LINE AND A LINK: RENAME ONE'), &
+      point_twice = error_code_t(62, 'IS NAMED TWICE: NAME TWO POINTS'), &
+      sum_refused = error_code_t(61, 'CANNOT BE ADDED: A LENGTH AND AN ANGLE, OR A SUM THAT CONTAINS ITSELF'), &
       link_unused = error_code_t(54, 'IS A LINK WITHOUT PAIR OR DRIVE, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &
       vary_number = error_code_t(56, 'IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO', own_layout), &
       vary_equal = error_code_t(58, 'EQUALS THE FIRST VALUE: A RANGE NEEDS TWO DIFFERENT VALUES'), &
+      ratio_drives = error_code_t(66, 'HAS SEVERAL DRIVES: EXTREMES OF ITS RATIOS ARE NOT SEARCHED'), &
       vary_tie = error_code_t(63, 'TIES NUMBERS WITH DIFFERENT COUNTS OF VALUES; SEE CARD'), &
       vary_many = error_code_t(64, 'THE GRID HAS TOO MANY VARIANTS; ALLOWED:')
    ! Pairs and drives.

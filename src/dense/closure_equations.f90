@@ -26,7 +26,7 @@
 module closure_equations
    use kinds, only: wp
    use planar, only: pi, rotated, quarter_turn, cross
-   use mechanism, only: pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use drives, only: drive_motion
    use pose, only: system_t, pose_t, normal_angle, secants
    implicit none
@@ -46,7 +46,7 @@ contains
       do k = 1, size(s%pairs)
          associate (pair => s%pairs(k), d => r(2*k - 1:2*k))
             d = closure_error(s, p, k)
-            if (pair%kind == pair_revolute) cycle
+            if (.not. has_guide(pair%kind)) cycle
             d = [dot_product(d, normal(s, p, k)) - pair%offset, &
                p%q(3, s%link_of(pair%point_j)) - p%q(3, s%link_of(pair%point_i)) - pair%beta]
          end associate
@@ -79,7 +79,7 @@ contains
       a = 0.0_wp
       do k = 1, size(s%pairs)
          associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
-            if (s%pairs(k)%kind == pair_revolute) then
+            if (.not. has_guide(s%pairs(k)%kind)) then
                call place_both(s, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
                call place_both(s, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
             else
@@ -122,7 +122,7 @@ contains
 
       gamma = 0.0_wp
       do k = 1, size(s%pairs)
-         if (s%pairs(k)%kind == pair_revolute) then
+         if (.not. has_guide(s%pairs(k)%kind)) then
             gamma(2*k - 1:2*k) = turning_part(s, p, v, k)
          else
             gamma(2*k - 1) = projection_remainder(s, p, v, k, normal(s, p, k))

@@ -9,13 +9,12 @@ module lane_runs
    use predictor, only: is_even
    use drive_excursion, only: judge_step
    use analysis, only: come_back
-   use block_engine, only: get_motion
-   use digits_in_doubt, only: find_growth
-   use set_analysis, only: set_analysis_t, advance_set
+   use set_analysis, only: set_analysis_t, advance_set, take_state
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, take_instant
-   use variant_rows, only: variant_row_t, note_flag
+   use rows, only: finished_row_t
+   use counts, only: counts_t, note_flag
    use system_calls, only: signal_received
    use lane_sines, only: width
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
@@ -35,7 +34,7 @@ module lane_runs
    !> A variant, and how far it has come.
    type :: lane_run_t
       type(mechanism_t) :: m
-      type(variant_row_t) :: row
+      type(counts_t) :: counts
       type(answers_t) :: asked
       type(set_analysis_t) :: s
       integer :: at = -1                    !< the last instant solved
@@ -55,6 +54,7 @@ contains
       r%patience = first_patience
       r%is_over = .false.
       r%is_laned = .false.
+      r%counts = counts_t()
    end subroutine begin_run
 
    !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
@@ -129,9 +129,9 @@ contains
    subroutine look_at_step(r, l, i, j, t)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
       type(judgement_t), intent(in) :: j
-      real(wp), intent(inout) :: t
+      real(wp), intent(inout) :: t           !< time
       logical :: is_refused, counts
 
       is_refused = j%refused(i) > 0.5_wp
@@ -158,10 +158,10 @@ contains
    !> The next `n` instants of `r` are solved and regular.
    pure subroutine count_instants(r, n)
       type(lane_run_t), intent(inout) :: r
-      integer, intent(in) :: n
+      integer, intent(in) :: n               !< at least 0
 
       r%at = r%at + n
-      r%row%solved = r%row%solved + n
+      r%counts%solved = r%counts%solved + n
       r%is_over = r%at == instant_count(r%m) - 1
       r%is_laned = .not. r%is_over
    end subroutine count_instants
@@ -170,7 +170,7 @@ contains
    subroutine take_over(r, l, i)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
 
       do while (.not. (r%is_over .or. r%is_laned) .and. signal_received() == 0)
          call load_run(r, l, i, r%is_laned)
@@ -185,8 +185,8 @@ contains
    subroutine load_run(r, l, i, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
-      logical, intent(out) :: is_done
+      integer, intent(in) :: i               !< its number
+      logical, intent(out) :: is_done        !< the lane has them
       real(wp) :: step, away
 
       is_done = .false.
@@ -212,13 +212,14 @@ contains
    !> Solves the next instants of `r` by the engine, up to number `last` or the last that there is.
    subroutine by_engine(r, last)
       type(lane_run_t), intent(inout) :: r
-      integer, intent(in) :: last
+      integer, intent(in) :: last            !< the number of an instant
+      type(finished_row_t) :: no_rows(0)
       integer :: k
 
       do k = r%at + 1, min(last, instant_count(r%m) - 1)
          call advance_set(r%s, instant(r%m, k))
-         call note_flag(r%row, r%s)
-         call take_instant(r%asked, r%s, k, .true.)
+         call note_flag(r%counts, r%s)
+         call take_instant(r%asked, r%s, no_rows, k, .true.)
          r%at = k
          if (signal_received() > 0) return
       end do
@@ -230,15 +231,13 @@ contains
    subroutine watch_lane(r, l, i, t, is_done)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      logical, intent(out) :: is_done
-      logical :: finite, in_doubt
-      real(wp) :: growth
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(in) :: t              !< time
+      logical, intent(out) :: is_done        !< the motion is taken
       integer :: u, k
 
       call come_back(r%s%list(1))
-      associate (e => r%s%list(1)%engine, q => r%s%now%motions(1))
+      associate (e => r%s%list(1)%engine)
          do u = 1, e%blocks%unknowns
             associate (x => e%state%u(u))
                x%value = l%u(u)%value(i)
@@ -251,25 +250,21 @@ contains
          do k = 1, size(l%moving)
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
-         q%t = t
-         if (allocated(q%diagnostics)) deallocate (q%diagnostics)
-         call get_motion(e, q, finite)
-         call find_growth(r%s%estimators(1)%sizes, r%s%now%parts(1), e, q, growth, in_doubt)
       end associate
-      is_done = finite .and. .not. in_doubt
-      if (.not. is_done) return
-      call find_next(r%asked%extremes, r%s, 1, t, growth=growth)
+      call take_state(r%s, t, is_done)
+      if (is_done) call find_next(r%asked%extremes, r%s, 1, t, .false.)
    end subroutine watch_lane
 
    !> Gives the engine of `r` the motions of lane `i`, for the next instants or for times between.
    subroutine give_back(r, l, i)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< its number
 
       associate (a => r%s%list(1))
          call come_back(a)
          call unload_lane(l, i, a%engine)
+         r%s%is_in_lane = .false.
          a%t = a%engine%history%t(0)
       end associate
    end subroutine give_back

@@ -6,8 +6,8 @@ module card_numbers
    use kinds, only: wp, label_length
    use planar, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
-      number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_words, rise_words, &
-      term_parabola, driven_kinds, request_link
+      number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_kinds
+   use scales, only: is_length
    use splines, only: new_spline
    use drawn_values, only: take_drawn, drawn_drive
    use names, only: drive_name
@@ -32,12 +32,6 @@ module card_numbers
    !> What the cards call their numbers R1 to R3, by the kind of the number.
    character(12), parameter :: number_words(3, number_link:number_drive) = reshape([character(12) :: &
       'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
-   !> The same of the terms of a drive, but for the rows of a table; and the words of the terms.
-   character(9), parameter :: rise_numbers(3) = ['START    ', 'DURATION ', 'LIFT     ']
-   character(9), parameter :: term_numbers(3, term_harmonic:term_parabola) = reshape([character(9) :: 'AMPLITUDE', &
-      'FREQUENCY', 'PHASE', 'FACTOR', 'EXPONENT', '', '', '', '', rise_numbers, rise_numbers, rise_numbers, &
-      rise_numbers], [3, 7])
-   character(label_length), parameter :: all_words(term_harmonic:term_parabola) = [term_words, rise_words]
 
 contains
 
@@ -65,7 +59,10 @@ contains
          takes_tolerance = .true.
       case (number_drive)
          takes_tolerance = .true.
-         if (n%term > 0) takes_tolerance = m%drives(n%subject)%terms(n%term)%kind /= term_power .or. n%place == 1
+         if (n%term == 0) return
+         associate (kind => term_kinds(m%drives(n%subject)%terms(n%term)%kind))
+            takes_tolerance = kind%has_rows .or. n%place <= kind%inexact
+         end associate
       end select
    end function takes_tolerance
 
@@ -97,12 +94,12 @@ contains
          end if
       end associate
       ! The word and the number of the term, and what its card calls the number.
-      associate (kind => m%drives(n%subject)%terms(n%term)%kind)
-         name = name//' '//trim(all_words(kind))//' '//whole(n%term)//' '
-         if (kind == term_table) then
+      associate (kind => term_kinds(m%drives(n%subject)%terms(n%term)%kind))
+         name = name//' '//trim(kind%word)//' '//whole(n%term)//' '
+         if (kind%has_rows) then
             name = name//trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
          else
-            name = name//trim(term_numbers(n%place, kind))
+            name = name//trim(kind%numbers(n%place))
          end if
       end associate
    end function number_name
@@ -121,7 +118,7 @@ contains
       case (number_pair)
          unit = unit_of(n%place /= 2)
       case (number_drive)
-         unit = unit_of(driven_kinds(m%drives(n%subject)%kind) == request_link)
+         unit = unit_of(.not. is_length(m%drives(n%subject)))
          if (n%term == 0) then
             if (n%place > 1) call divide(real(n%place - 1, wp), merge('**2', '   ', n%place == 3))
             if (n%place == 2 .and. m%drives(n%subject)%turns) &
@@ -204,7 +201,7 @@ contains
          case default
             if (n%term == 0) then
                x => m%drives(k)%polynomial(i)
-            else if (m%drives(k)%terms(n%term)%kind == term_table) then
+            else if (term_kinds(m%drives(k)%terms(n%term)%kind)%has_rows) then
                x => m%drives(k)%terms(n%term)%table%y(i)
             else
                x => m%drives(k)%terms(n%term)%r(i)
@@ -263,7 +260,7 @@ contains
 
       if (term == 0) return
       associate (one => drive%terms(term))
-         if (one%kind == term_table) one%table = new_spline(one%table%x, one%table%y)
+         if (term_kinds(one%kind)%has_rows) one%table = new_spline(one%table%x, one%table%y)
       end associate
    end subroutine put_table
 

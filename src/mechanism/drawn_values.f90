@@ -2,7 +2,8 @@
 !> blank number means "as drawn".
 module drawn_values
    use kinds, only: wp
-   use planar, only: direction, quarter_turn, point_of, pi
+   use planar, only: point_of, pi
+   use pair_geometry, only: way_of, opening_of, slide_of
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
@@ -46,8 +47,8 @@ contains
       integer :: links(2)
 
       links = pair_links(m, pair)
-      opening = -dot_product(drawn_way(m, pair), quarter_turn(direction(m%links(links(1))%position(3) + pair%alpha)))
-      opening = without_rounding(opening - pair%offset, size_of_pair(m, pair) + abs(pair%offset))
+      opening = -opening_of(m, pair, m%links(links(1))%position, m%links(links(2))%position)
+      opening = without_rounding(opening, size_of_pair(m, pair) + abs(pair%offset))
    end function drawn_opening
 
    !> The value (length, rad) of the coordinate of `drive` in the drawing of `m`.
@@ -67,8 +68,8 @@ contains
             p = place(m, k)
             value = without_rounding(merge(p(1), p(2), drive%kind == drive_x), size_of_point(m, k))
          case default
-            associate (pair => m%pairs(k), i => m%points(m%pairs(k)%point_i)%link)
-               value = dot_product(drawn_way(m, pair), direction(m%links(i)%position(3) + pair%alpha))
+            associate (pair => m%pairs(k), links => pair_links(m, m%pairs(k)))
+               value = slide_of(m, pair, m%links(links(1))%position, m%links(links(2))%position)
                value = without_rounding(value, size_of_pair(m, pair))
             end associate
          end select
@@ -81,7 +82,9 @@ contains
       type(pair_t), intent(in) :: pair
       real(wp) :: d(2)
 
-      d = place(m, pair%point_j) - place(m, pair%point_i)
+      associate (links => pair_links(m, pair))
+         d = way_of(m, pair, m%links(links(1))%position, m%links(links(2))%position)
+      end associate
    end function drawn_way
 
    !> Whether P and Q of `pair` are at one place in the drawing of `m`.

@@ -19,10 +19,10 @@ module drives
    use planar, only: pi
    use splines, only: spline_t, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
-      term_parabola
+      term_parabola, term_kinds
    implicit none
    private
-   public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of
+   public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of, largest_frequency
    public :: joint_distance, growing_sizes, is_at_rest, halve, middle_of
 
    !> An interval for each derivative of a law.
@@ -49,45 +49,51 @@ contains
    !> Value, rate and acceleration (3) at the time `t`, in the drive's unit (length or rad) and the deck's unit of time.
    pure function drive_motion(law, t) result(f)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t
-      real(wp) :: f(3), u
-      integer :: i
+      real(wp), intent(in) :: t              !< time
+      real(wp) :: f(3)
 
       associate (c => law%polynomial)
          f(1) = c(1) + t*(c(2) + t*c(3)/2.0_wp)
          f(2) = c(2) + t*c(3)
          f(3) = c(3)
       end associate
-      if (.not. allocated(law%terms)) return
-      do i = 1, size(law%terms)
-         associate (term => law%terms(i), r => law%terms(i)%r)
+      if (allocated(law%terms)) call add_terms(law%terms, t, f)
+   end function drive_motion
+
+   !> Adds to a value, rate and acceleration those of terms at a time.
+   pure subroutine add_terms(terms, t, f)
+      type(term_t), intent(in) :: terms(:)
+      real(wp), intent(in) :: t              !< time
+      real(wp), intent(inout) :: f(3)        !< in the drive's unit (length or rad) and the deck's unit of time
+      integer :: i
+
+      do i = 1, size(terms)
+         associate (term => terms(i))
             select case (term%kind)
             case (term_harmonic)
-               u = r(2)*t + r(3)
-               f = f + r(1)*[sin(u), r(2)*cos(u), -r(2)**2*sin(u)]
+               f = f + harmonic_motion(term%r, t)
             case (term_power)
                ! The deck reader has rejected powers that do not exist.
-               f = f + power_motion(r, t)
+               f = f + power_motion(term%r, t)
             case (term_table)
                f = f + piece_value(term%table, piece_at(term%table, t), t)
-            case (term_cycloid:term_parabola)
-               u = (t - r(1))/r(2)
-               f = f + r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, r(2), r(2)**2]
+            case default
+               f = f + rise_motion(term, t)
             end select
          end associate
       end do
-   end function drive_motion
+   end subroutine add_terms
 
    !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
    !> last pieces; with a power that does not exist somewhere in the interval there are no bounds. `one_instant`: it is
    !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
    pure function bounds_of(law, t1, t2, one_instant) result(b)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2
-      logical, intent(in), optional :: one_instant
+      real(wp), intent(in) :: t1, t2         !< times
+      logical, intent(in), optional :: one_instant !< the interval is one instant
       type(bounds_t) :: b, of_term
-      real(wp) :: from, to, times(3), f(3)
-      integer :: i, k, first, last
+      real(wp) :: from, to, times(3)
+      integer :: i, k
 
       from = min(t1, t2)
       to = max(t1, t2)
@@ -109,34 +115,17 @@ contains
             case (term_harmonic)
                of_term = harmonic_bounds(term%r, from, to)
             case (term_power)
-               ! On either side of t = 0 each derivative is monotonic.
-               of_term = bounds_t()
-               times = [from, to, within(0.0_wp, from, to)]
-               do k = 1, 3
-                  if (exists(term%r(2), times(k))) then
-                     f = power_motion(term%r, times(k))
-                     call widen(of_term, f, abs(f))
-                  else
-                     b%low = -huge(1.0_wp)
-                     b%high = huge(1.0_wp)
-                     return
-                  end if
-               end do
+               of_term = power_bounds(term%r, from, to)
             case (term_table)
-               ! Each piece in the interval is a cubic.
-               of_term = bounds_t()
-               associate (s => term%table)
-                  first = piece_at(s, from)
-                  last = piece_at(s, to)
-                  do k = first, last
-                     call widen_by_piece(of_term, s, k, merge(from, s%x(k), k == first), &
-                        merge(to, s%x(k + 1), k == last))
-                  end do
-               end associate
+               of_term = table_bounds(term%table, from, to)
             case default
                of_term = rise_bounds(term, from, to, one_instant)
             end select
          end associate
+         if (all(of_term%low <= -huge(1.0_wp))) then
+            b = of_term
+            return
+         end if
          b%low = b%low + of_term%low
          b%high = b%high + of_term%high
       end do
@@ -146,7 +135,7 @@ contains
    !> `magnitudes` (0:2).
    pure subroutine widen(b, f, magnitudes)
       type(bounds_t), intent(inout) :: b
-      real(wp), intent(in) :: f(0:2), magnitudes(0:2)
+      real(wp), intent(in) :: f(0:2), magnitudes(0:2) !< in the units of the bounds
 
       b%low = min(b%low, f - margin*magnitudes)
       b%high = max(b%high, f + margin*magnitudes)
@@ -154,7 +143,7 @@ contains
 
    !> Finds the nearest to `t` of the times from `from` to `to`.
    elemental real(wp) function within(t, from, to)
-      real(wp), intent(in) :: t, from, to
+      real(wp), intent(in) :: t, from, to    !< times
 
       within = min(max(t, from), to)
    end function within
@@ -163,8 +152,7 @@ contains
    !> unit of time; `bounds_of` has true bounds.
    pure real(wp) function drive_rate(drive, t) result(rate)
       type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      real(wp) :: s(3)
+      real(wp), intent(in) :: t              !< time, at least 0
       integer :: i
 
       rate = abs(drive%polynomial(2)) + abs(drive%polynomial(3))*t
@@ -177,12 +165,9 @@ contains
             case (term_power)
                if (t > 0.0_wp) rate = rate + abs(r(1)*r(2))*t**(r(2) - 1.0_wp)
             case (term_table)
-               associate (x => term%table%x, y => term%table%y, n => size(term%table%x))
-                  rate = rate + maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
-               end associate
+               rate = rate + table_rate(term%table)
             case default
-               s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
-               rate = rate + abs(r(3)*s(2))/r(2)
+               rate = rate + rise_rate(term)
             end select
          end associate
       end do
@@ -197,22 +182,37 @@ contains
       allocate (times(0))
       if (.not. allocated(drive%terms)) return
       do i = 1, size(drive%terms)
-         associate (r => drive%terms(i)%r)
-            select case (drive%terms(i)%kind)
-            case (term_table)
-               times = [times, drive%terms(i)%table%x]
-            case (term_cycloid:term_parabola)
-               times = [times, r(1), r(1) + r(2)]
-               if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
-            end select
+         associate (r => drive%terms(i)%r, kind => term_kinds(drive%terms(i)%kind))
+            if (kind%has_rows) times = [times, drive%terms(i)%table%x]
+            if (kind%is_rise) times = [times, r(1) + kind%joints(:2)*r(2)]
+            if (kind%is_rise .and. kind%joints(3) < kind%joints(2)) times = [times, r(1) + kind%joints(3)*r(2)]
          end associate
       end do
    end function joints_of
 
+   !> Finds the largest frequency of the harmonics of a drive, in rad over the unit of time; 0 without any.
+   pure real(wp) function largest_frequency(drive) result(largest)
+      type(drive_t), intent(in) :: drive
+
+      largest = 0.0_wp
+      if (.not. allocated(drive%terms)) return
+      largest = maxval([largest, pack(abs(drive%terms%r(2)), drive%terms%kind == term_harmonic)])
+   end function largest_frequency
+
+   !> Computes r1 sin(r2 t + r3) and its first two derivatives (3) at the time `t`.
+   pure function harmonic_motion(r, t) result(f)
+      real(wp), intent(in) :: r(3)           !< amplitude, frequency (rad over the unit of time), phase (rad)
+      real(wp), intent(in) :: t              !< time
+      real(wp) :: f(3), u
+
+      u = r(2)*t + r(3)
+      f = r(1)*[sin(u), r(2)*cos(u), -r(2)**2*sin(u)]
+   end function harmonic_motion
+
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
    pure function harmonic_bounds(r, from, to) result(b)
-      real(wp), intent(in) :: r(3), from, to
+      real(wp), intent(in) :: r(3), from, to !< amplitude, frequency, phase; times in their order
       type(bounds_t) :: b
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
          sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
@@ -238,9 +238,18 @@ contains
       b%high = min(b%high, (1.0_wp + margin)*abs(amplitudes))
    end function harmonic_bounds
 
+   !> Finds the sizes (3) of a harmonic at the times -`t` and `t`, as `growing_sizes` takes them.
+   pure function harmonic_sizes(r, t) result(sizes)
+      real(wp), intent(in) :: r(3)           !< amplitude, frequency and phase without their signs
+      real(wp), intent(in) :: t              !< time
+      real(wp) :: sizes(3)
+
+      sizes = (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
+   end function harmonic_sizes
+
    !> c t**p; a whole number p is an integer exponent, so that t may be zero or negative.
    pure real(wp) function monomial(c, p, t)
-      real(wp), intent(in) :: c, p, t
+      real(wp), intent(in) :: c, p, t        !< factor, exponent, time
       real(wp), parameter :: largest_whole = 1.0e6_wp
 
       if (abs(c) <= 0.0_wp) then
@@ -254,28 +263,101 @@ contains
 
    !> r1 t**r2 and its first two derivatives (3) at the time `t`.
    pure function power_motion(r, t) result(f)
-      real(wp), intent(in) :: r(3), t
+      real(wp), intent(in) :: r(3), t        !< factor, exponent; time
       real(wp) :: f(3)
 
       f = [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
          monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
    end function power_motion
 
+   !> Finds the bounds of r1 t**r2: on either side of t = 0 each derivative is monotonic. None where it does not exist.
+   pure function power_bounds(r, from, to) result(b)
+      real(wp), intent(in) :: r(3)           !< factor, exponent
+      real(wp), intent(in) :: from, to       !< times, in their order
+      type(bounds_t) :: b
+      real(wp) :: times(3), f(3)
+      integer :: k
+
+      times = [from, to, within(0.0_wp, from, to)]
+      do k = 1, 3
+         if (.not. exists(r(2), times(k))) then
+            b = bounds_t(-huge(1.0_wp), huge(1.0_wp))
+            return
+         end if
+         f = power_motion(r, times(k))
+         call widen(b, f, abs(f))
+      end do
+   end function power_bounds
+
+   !> Finds the sizes (3) of a power at the times -`t` and `t`; where it grows more slowly than the time, at `last`.
+   pure function power_sizes(r, t, last) result(sizes)
+      real(wp), intent(in) :: r(3)           !< factor, exponent
+      real(wp), intent(in) :: t, last        !< times
+      real(wp) :: sizes(3), c, power, time
+      integer :: k
+
+      sizes = 0.0_wp
+      c = abs(r(1))
+      do k = 1, 3
+         power = r(2) - (k - 1)
+         time = merge(t, last, power >= 1.0_wp)
+         if (time > 0.0_wp) sizes(k) = (1.0_wp + abs(r(2)))*monomial(c, power, time)
+         c = c*abs(power)
+      end do
+   end function power_sizes
+
    !> Whether t**p and its first two derivatives exist at the time `t`.
    pure logical function exists(p, t)
-      real(wp), intent(in) :: p, t
+      real(wp), intent(in) :: p, t           !< exponent; time
 
       exists = t > 0.0_wp .or. abs(p - anint(p)) <= 0.0_wp
       if (abs(t) <= 0.0_wp) exists = p >= 2.0_wp .or. abs(p*(p - 1.0_wp)) <= 0.0_wp
    end function exists
+
+   !> Finds the bounds of a table between two times: each piece there is a cubic.
+   pure function table_bounds(s, from, to) result(b)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: from, to       !< times, in their order
+      type(bounds_t) :: b
+      integer :: k, first, last
+
+      first = piece_at(s, from)
+      last = piece_at(s, to)
+      do k = first, last
+         call widen_by_piece(b, s, k, merge(from, s%x(k), k == first), merge(to, s%x(k + 1), k == last))
+      end do
+   end function table_bounds
+
+   !> Finds the largest mean rate between two rows of a table.
+   pure real(wp) function table_rate(s) result(rate)
+      type(spline_t), intent(in) :: s
+
+      associate (n => size(s%x))
+         rate = maxval(abs((s%y(2:) - s%y(:n - 1))/(s%x(2:) - s%x(:n - 1))))
+      end associate
+   end function table_rate
+
+   !> Finds the sizes (3) of a table at the times -`t` and `t`, from the differences of its rows.
+   pure function table_sizes(s, t) result(sizes)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: t              !< time
+      real(wp) :: sizes(3), bend, slope, h(size(s%x) - 1)
+
+      associate (n => size(s%x))
+         h = s%x(2:) - s%x(:n - 1)
+         bend = maxval(abs(s%m))
+         slope = maxval(abs(s%y(2:) - s%y(:n - 1))/h) + bend*maxval(h)
+         sizes = [maxval(abs(s%y)) + t*slope, slope + t*bend, bend + t*maxval(abs(s%m(2:) - s%m(:n - 1))/h)]
+      end associate
+   end function table_sizes
 
    !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
    !> zero.
    pure subroutine widen_by_piece(b, s, i, t1, t2)
       type(bounds_t), intent(inout) :: b
       type(spline_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t1, t2
+      integer, intent(in) :: i               !< number of the piece
+      real(wp), intent(in) :: t1, t2         !< times in their order
       real(wp) :: f(3), u(5), h, reach, slope, q, root, magnitude, curve, away
       integer :: k
 
@@ -310,7 +392,7 @@ contains
       type(term_t), intent(in) :: term
 
       width = 0.0_wp
-      if (term%kind >= term_cosine) width = joint_distance(term)
+      if (term_kinds(term%kind)%jumps) width = joint_distance(term)
    end function joint_width
 
    !> How far from a joint of `term` an instant may be that is meant to be at it, as a part of the rise's duration.
@@ -323,8 +405,8 @@ contains
    !> s(u) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before u = 0, and 1 from u = 1 on.
    !> The second derivative is that of the piece in which `at` lies, continued to u.
    pure function rise_shape(kind, u, at) result(s)
-      integer, intent(in) :: kind
-      real(wp), intent(in) :: u, at
+      integer, intent(in) :: kind            !< term_cycloid, ..., term_parabola
+      real(wp), intent(in) :: u, at          !< parts of the duration
       real(wp) :: s(3), v, w
 
       v = min(max(u, 0.0_wp), 1.0_wp)
@@ -344,12 +426,41 @@ contains
       if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
    end function rise_shape
 
+   !> Computes the value, rate and acceleration (3) of the rise `term` at the time `t`.
+   pure function rise_motion(term, t) result(f)
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: t              !< time
+      real(wp) :: f(3), u
+
+      associate (r => term%r)
+         u = (t - r(1))/r(2)
+         f = r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, r(2), r(2)**2]
+      end associate
+   end function rise_motion
+
+   !> Finds the largest rate of the rise `term`: that of its middle.
+   pure real(wp) function rise_rate(term) result(rate)
+      type(term_t), intent(in) :: term
+      real(wp) :: s(3)
+
+      s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
+      rate = abs(term%r(3)*s(2))/term%r(2)
+   end function rise_rate
+
+   !> Finds the sizes (3) of a rise. Beyond its end the time changes nothing.
+   pure function rise_sizes(r) result(sizes)
+      real(wp), intent(in) :: r(3)           !< start, duration and lift without their signs
+      real(wp) :: sizes(3)
+
+      sizes = r(3)*(rise_most(:2) + (2.0_wp*r(1)/r(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, r(2), r(2)**2]
+   end function rise_sizes
+
    !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
    !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
    pure function rise_bounds(term, from, to, one_instant) result(b)
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: from, to
-      logical, intent(in), optional :: one_instant
+      real(wp), intent(in) :: from, to       !< times in their order
+      logical, intent(in), optional :: one_instant !< the interval is one instant
       type(bounds_t) :: b
       !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
@@ -376,7 +487,7 @@ contains
    pure subroutine widen_by_rise(b, term, u, at)
       type(bounds_t), intent(inout) :: b
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: u, at
+      real(wp), intent(in) :: u, at          !< parts of the duration
       real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
 
       s = rise_shape(term%kind, u, at)
@@ -392,7 +503,7 @@ contains
    !> itself is as large.
    pure function growing_sizes(law, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: last
+      real(wp), intent(in) :: last           !< time, at least 0
       real(wp) :: sizes(3, 0:1)
 
       sizes(:, 0) = sizes_at(law, 0.0_wp, last)
@@ -402,41 +513,25 @@ contains
    !> The sizes (3) at the times -`t` and `t`. Between t = 0 and `last` none of them is above its chord.
    pure function sizes_at(law, t, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t, last
-      real(wp) :: sizes(3), c, power, time, bend, slope
-      real(wp), allocatable :: h(:)
-      integer :: i, k
+      real(wp), intent(in) :: t, last        !< times
+      real(wp) :: sizes(3)
+      integer :: i
 
       associate (c => abs(law%polynomial))
          sizes = [c(1) + t*(c(2) + t*c(3)), c(2) + t*c(3), c(3)]
       end associate
       if (.not. allocated(law%terms)) return
       do i = 1, size(law%terms)
-         associate (term => law%terms(i), r => abs(law%terms(i)%r))
+         associate (term => law%terms(i))
             select case (term%kind)
             case (term_harmonic)
-               sizes = sizes + (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
+               sizes = sizes + harmonic_sizes(abs(term%r), t)
             case (term_power)
-               ! Where it grows more slowly than the time, that at the time `last`.
-               c = r(1)
-               do k = 1, 3
-                  power = term%r(2) - (k - 1)
-                  time = merge(t, last, power >= 1.0_wp)
-                  if (time > 0.0_wp) sizes(k) = sizes(k) + (1.0_wp + r(2))*monomial(c, power, time)
-                  c = c*abs(power)
-               end do
+               sizes = sizes + power_sizes(term%r, t, last)
             case (term_table)
-               ! From the differences of its rows.
-               associate (s => term%table, n => size(term%table%x))
-                  h = s%x(2:) - s%x(:n - 1)
-                  bend = maxval(abs(s%m))
-                  slope = maxval(abs(s%y(2:) - s%y(:n - 1))/h) + bend*maxval(h)
-                  sizes = sizes + [maxval(abs(s%y)) + t*slope, slope + t*bend, &
-                     bend + t*maxval(abs(s%m(2:) - s%m(:n - 1))/h)]
-               end associate
+               sizes = sizes + table_sizes(term%table, t)
             case default
-               ! Beyond its end the time changes nothing.
-               sizes = sizes + r(3)*(rise_most(:2) + (2.0_wp*r(1)/r(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, r(2), r(2)**2]
+               sizes = sizes + rise_sizes(abs(term%r))
             end select
          end associate
       end do
@@ -446,7 +541,7 @@ contains
    !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
    elemental logical function is_at_rest(law, t1, t2)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2
+      real(wp), intent(in) :: t1, t2         !< times
       type(bounds_t) :: b
       real(wp) :: width, from
 
@@ -461,8 +556,8 @@ contains
    !> Halves the interval from `low`, until which a condition holds, to `high`, from which it does not; `holds`: at the
    !> middle of the two. In digits(1.0_wp) calls the interval becomes that of two neighbours.
    pure subroutine halve(holds, low, high)
-      logical, intent(in) :: holds
-      real(wp), intent(inout) :: low, high
+      logical, intent(in) :: holds           !< at the middle
+      real(wp), intent(inout) :: low, high   !< times
       real(wp) :: middle
 
       middle = middle_of(low, high)
@@ -472,7 +567,7 @@ contains
 
    !> The time halfway between `low` and `high`.
    pure real(wp) function middle_of(low, high) result(middle)
-      real(wp), intent(in) :: low, high
+      real(wp), intent(in) :: low, high      !< times
 
       middle = low + 0.5_wp*(high - low)
    end function middle_of

@@ -4,8 +4,9 @@
 module independent
    use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
-   use mechanism, only: settings_t, mechanism_t, request_t, pair_links, drive_links, request_links, drive_relangle, &
-      driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, number_link, number_knot
+   use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
+      subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
+      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -22,11 +23,11 @@ module independent
    type :: numbering_t
       integer, allocatable :: of(:)
    end type numbering_t
-   !> Kinds are links, points, pairs and drives.
-   integer, parameter :: of_drives = 4
+   !> Kinds are links, points, pairs, measures and drives.
+   integer, parameter :: of_drives = 5
    !> The kinds of the subjects of requests, and of numbers on cards.
    integer, parameter :: of_requests(request_link:request_curve) = &
-      [request_link, request_point, request_pair, request_link, request_point]
+      [request_link, request_point, request_pair, request_measure, request_link, request_point]
    integer, parameter :: of_numbers(number_link:number_knot) = &
       [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
@@ -47,9 +48,11 @@ contains
    subroutine divide(m, s)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
-      type(sorted_t) :: links, points, pairs, drives, rows
+      type(sorted_t) :: links, points, pairs, measures, drives, rows
       type(numbering_t) :: place(of_drives), part(of_drives)
-      integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:)
+      integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:), &
+         measuring(:)
+      type(subject_t), allocatable :: measured(:)   ! all measures and their subjects, with the part `measuring` of each
       integer :: link_part(size(m%links)), point_part(size(m%points)), i, k
       real(wp) :: length, rate
 
@@ -76,21 +79,31 @@ contains
       pairs = sorted(pair_part, s%count)
       drives = sorted(drive_part, s%count)
       rows = sorted(row_part, s%count)
+      call find_measured()
+      measures = sorted_numbers(pack(measured%number, measured%kind == request_measure), &
+         pack(measuring, measured%kind == request_measure), s%count)
       ! Each point, and each link, with the part that it belongs to or that uses it.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
-                                   m%requests%kind == request_point .or. m%requests%kind == request_curve))
-         used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, m%requests(of_points)%subject]
-         user = [link_part(m%points%link), pair_part, pair_part, row_part(of_points)]
+                                   m%requests%kind == request_point .or. m%requests%kind == request_curve), &
+                 is_point => measured%kind == request_point)
+         used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, pack(measured%number, is_point), &
+            m%requests(of_points)%subject]
+         user = [link_part(m%points%link), pair_part, pair_part, pack(measuring, is_point), row_part(of_points)]
       end associate
       points = sorted_numbers(used, user, s%count)
-      used = [(i, i=1, size(m%links)), m%points(used)%link, (drive_links(m, m%drives(i)), i=1, size(m%drives)), &
-         (request_links(m, m%requests(i)), i=1, size(m%requests))]
-      user = [link_part, user, (spread(drive_part(i), 1, 3), i=1, size(m%drives)), &
-         (spread(row_part(i), 1, 3), i=1, size(m%requests))]
+      associate (is_link => measured%kind == request_link, &
+                 others => pack([(i, i=1, size(m%requests))], m%requests%kind /= request_measure))
+         used = [(i, i=1, size(m%links)), m%points(used)%link, (drive_links(m, m%drives(i)), i=1, size(m%drives)), &
+            pack(measured%number, is_link), (subject_links(m, m%requests(others(i))%kind, &
+            m%requests(others(i))%subject, m%requests(others(i))%second), i=1, size(others))]
+         user = [link_part, user, (spread(drive_part(i), 1, 3), i=1, size(m%drives)), pack(measuring, is_link), &
+            (spread(row_part(others(i)), 1, 3), i=1, size(others))]
+      end associate
       links = sorted_numbers(used, user, s%count)
 
       allocate (s%parts(s%count), s%cards(s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
-      associate (n => [size(m%links), size(m%points), size(m%pairs), size(m%drives)])
+      associate (n => [size(m%links), size(m%points), size(m%pairs), maxval([0, pack(measured%number, &
+                       measured%kind == request_measure)]), size(m%drives)])
          do k = 1, of_drives
             allocate (place(k)%of(0:n(k)), source=0)
          end do
@@ -99,6 +112,7 @@ contains
          part(request_link)%of = once(members(links, k))
          part(request_point)%of = once(members(points, k))
          part(request_pair)%of = members(pairs, k)
+         part(request_measure)%of = once(members(measures, k))
          part(of_drives)%of = members(drives, k)
          own_rows = members(rows, k)
          branches = [integer ::]
@@ -119,6 +133,29 @@ contains
 
          part_of = maxval([1, link_part(links)])
       end function part_of
+
+      !> Finds each measure, with those of which it is made, and all their subjects. They belong to the part of its
+      !> links, those of the ground to several parts.
+      subroutine find_measured()
+         integer, allocatable :: list(:)
+         integer :: last, n, j, pass
+
+         do pass = 1, 2
+            last = 0
+            do n = 1, measure_count(m)
+               list = measures_within(m, n)
+               do j = 1, size(list)
+                  associate (subjects => m%measures(list(j))%subjects, first => last + 1)
+                     last = last + 1 + size(subjects)
+                     if (pass == 1) cycle
+                     measured(first:last) = [subject_t(request_measure, list(j)), subjects]
+                     measuring(first:last) = part_of(measure_links(m, m%measures(n)))
+                  end associate
+               end do
+            end do
+            if (pass == 1) allocate (measured(last), measuring(last))
+         end do
+      end subroutine find_measured
    end subroutine divide
 
    !> (links) The number of the part of each link, in the order of the deck; 0 of a ground link.
@@ -142,7 +179,7 @@ contains
       integer, intent(in) :: rows(:), branches(:)
       type(numbering_t), intent(inout) :: place(:)
       type(mechanism_t), intent(out) :: own
-      integer :: i, kind
+      integer :: i, k, kind
 
       do kind = 1, size(part)
          place(kind)%of(part(kind)%of) = [(i, i=1, size(part(kind)%of))]
@@ -155,6 +192,17 @@ contains
       own%pairs%point_i = place(request_point)%of(own%pairs%point_i)
       own%pairs%point_j = place(request_point)%of(own%pairs%point_j)
 
+      if (allocated(m%measures)) then
+         own%measures = m%measures(part(request_measure)%of)
+         do i = 1, size(own%measures)
+            do k = 1, size(own%measures(i)%subjects)
+               associate (one => own%measures(i)%subjects(k))
+                  one%number = place(one%kind)%of(one%number)
+               end associate
+            end do
+         end do
+      end if
+
       own%drives = m%drives(part(of_drives)%of)
       own%drives%second = place(request_link)%of(own%drives%second)
       do i = 1, size(own%drives)
@@ -162,6 +210,7 @@ contains
       end do
       own%requests = m%requests(rows)
       own%requests%second = place(request_link)%of(own%requests%second)
+      own%requests%drive = place(of_drives)%of(own%requests%drive)
       do i = 1, size(own%requests)
          own%requests(i)%subject = place(of_requests(own%requests(i)%kind))%of(own%requests(i)%subject)
       end do
@@ -180,7 +229,8 @@ contains
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end if
-      if (any(own%requests%kind >= request_pole)) then
+      if (allocated(own%measures)) own%measures%length = characteristic_length(own)
+      if (any(is_centre(own%requests%kind))) then
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
       end if

@@ -7,7 +7,7 @@ module instant_centres
    implicit none
    private
    public :: centre_t, pole_of, curve_of, seen_from
-   public :: centre_finite, centre_infinite, centre_starting, centre_resting
+   public :: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
 
    !> What a centre is.
    enum, bind(c)
@@ -15,6 +15,7 @@ module instant_centres
       enumerator :: centre_infinite   !< farther than any length of the mechanism: only its direction exists
       enumerator :: centre_starting   !< of a curve: the point stands still, and its acceleration has a direction
       enumerator :: centre_resting    !< nothing moves
+      enumerator :: points_coincide   !< of a measure: two points are at one place
    end enum
 
    !> Half of the digits. A motion that is smaller by this part than the characteristic one is rest; a centre that is
@@ -32,7 +33,8 @@ module instant_centres
    !> (:, 0), the centre of curvature (:2, 1), the radius (1, 2); speed and acceleration in characteristic ones (3, 1:).
    type :: centre_t
       integer :: state = centre_finite       !< centre_finite, ...
-      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones.
+      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones; of a measure the least
+      !> distance of two points between which it measures, in characteristic lengths.
       real(wp) :: weight = 1.0_wp
       real(wp) :: value(3, 0:2) = 0.0_wp     !< lengths in the deck's unit, angles in radians
    end type centre_t

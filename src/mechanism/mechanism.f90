@@ -9,10 +9,26 @@ module mechanism
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
 
+   !> A kind of pairs, without numbers.
+   type :: pair_kind_t
+      logical :: has_guide = .false.         !< point Q slides on a guide through point P, and no link turns
+   end type pair_kind_t
+
+   type(pair_kind_t), parameter :: pair_kinds(pair_revolute:pair_prismatic) = [pair_kind_t(), pair_kind_t(.true.)]
+
    !> The kinds of what has a name and a row in the tables.
-   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3, request_measure = 4
    !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
-   integer, parameter :: request_pole = 4, request_curve = 5
+   integer, parameter :: request_pole = 5, request_curve = 6
+   !> The kind of the rows of ratios; their requests have the kind of the quantity, and a drive.
+   integer, parameter :: request_ratio = 7
+
+   integer, parameter :: measure_distance = 1   !< DISTANCE: the length from point 1 to point 2
+   integer, parameter :: measure_line = 2    !< LINE: the direction from point 1 to point 2
+   integer, parameter :: measure_angle = 3   !< ANGLE: from subject 1 to subject 2, each a LINE or a link
+   integer, parameter :: measure_xi = 4      !< XI: xi of point 1 in the axes of link 2
+   integer, parameter :: measure_eta = 5     !< ETA: eta of point 1 in the axes of link 2
+   integer, parameter :: measure_sum = 6     !< SUM: of measures and pairs times factors, and a constant
 
    integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
    integer, parameter :: drive_x = 2         !< X: x of point `subject`
@@ -27,15 +43,33 @@ module mechanism
    integer, parameter :: term_harmonic = 1   !< r(1) sin(r(2) t + r(3))
    integer, parameter :: term_power = 2      !< r(1) t**r(2)
    integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
-   character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
    !> A rise: 0 before the time r(1), then r(3) s(u), u = (t - r(1))/r(2) from 0 to 1, then r(3).
    integer, parameter :: term_cycloid = 4    !< cycloidal: s = u - sin(2 pi u)/(2 pi)
    integer, parameter :: term_345 = 5        !< the 3-4-5 polynomial: s = 10 u**3 - 15 u**4 + 6 u**5
    integer, parameter :: term_cosine = 6     !< simple harmonic: s = (1 - cos(pi u))/2
    integer, parameter :: term_parabola = 7   !< constant acceleration: s = 2 u**2, from u = 1/2 on 1 - 2 (1 - u)**2
-   !> The words of the laws on RISE cards.
-   character(label_length), parameter :: rise_words(term_cycloid:term_parabola) = &
-      [character(label_length) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+
+   !> A kind of terms, without numbers.
+   type :: term_kind_t
+      character(label_length) :: word = ''   !< on its ADD or RISE card
+      character(9) :: numbers(3) = ''        !< the names of r(1) to r(3); '': it has no such number
+      integer :: inexact = 3                 !< so many of them can have a tolerance and are rounded
+      logical :: has_rows = .false.          !< it has a table instead of r
+      logical :: is_rise = .false.           !< it is on a RISE card
+      logical :: jumps = .false.             !< its acceleration jumps at its joints
+      real(wp) :: joints(3) = 0.0_wp         !< of a rise, where a derivative jumps: parts of its duration, some twice
+   end type term_kind_t
+
+   character(9), parameter, private :: rise_numbers(3) = ['START    ', 'DURATION ', 'LIFT     ']
+   ! A rise has its joints at its ends; that of constant acceleration has one in its middle as well.
+   type(term_kind_t), parameter :: term_kinds(term_harmonic:term_parabola) = [ &
+      term_kind_t('HARMONIC', [character(9) :: 'AMPLITUDE', 'FREQUENCY', 'PHASE']), &
+      term_kind_t('POWER', [character(9) :: 'FACTOR', 'EXPONENT', ''], inexact=1), &
+      term_kind_t('TABLE', has_rows=.true.), &
+      term_kind_t('CYCLOID', rise_numbers, is_rise=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('3-4-5', rise_numbers, is_rise=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('HARMONIC', rise_numbers, is_rise=.true., jumps=.true., joints=[0.0_wp, 1.0_wp, 1.0_wp]), &
+      term_kind_t('PARABOLA', rise_numbers, is_rise=.true., jumps=.true., joints=[0.0_wp, 1.0_wp, 0.5_wp])]
 
    !> The kinds of numbers on cards.
    integer, parameter :: number_link = 1     !< x, y or phi of link `subject`
@@ -59,7 +93,7 @@ module mechanism
       enumerator :: remark_title_letters        !< a title has letters that are not ASCII
       enumerator :: remark_touching             !< two numbers touch
       enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
-      enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
+      enumerator :: remark_point_unused         !< no pair, drive, measure or PRINT card uses a point
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
@@ -101,6 +135,24 @@ module mechanism
       logical :: drawn(3) = .false.          !< alpha, h, beta: it is the one of the drawing, not of its card
    end type pair_t
 
+   !> What a measure is made of.
+   type :: subject_t
+      integer :: kind = 0                    !< request_link, request_point, request_pair or request_measure
+      integer :: number = 0                  !< of the link, point, pair or measure
+      real(wp) :: factor = 1.0_wp            !< by which a sum takes its value
+   end type subject_t
+
+   !> A scalar that its card measures in the motion.
+   type :: measure_t
+      integer :: kind = measure_distance     !< measure_distance, ..., measure_sum
+      character(label_length) :: name = ''
+      type(subject_t), allocatable :: subjects(:)   !< two; of a sum any number, none of which is a sum
+      real(wp) :: constant = 0.0_wp          !< of a sum, length or rad
+      logical :: is_angle = .false.          !< an angle, otherwise a length
+      logical :: continues = .false.         !< its value is the nearest to its value at the instant before
+      real(wp) :: length = 1.0_wp            !< characteristic length of its mechanism
+   end type measure_t
+
    !> One term of the law of a drive.
    type :: term_t
       integer :: kind = term_harmonic        !< term_harmonic, ..., term_parabola
@@ -118,11 +170,11 @@ module mechanism
       logical :: turns = .false.             !< its card gives the rate in turns a minute
    end type drive_t
 
-   !> What is asked about a link, point or pair: a row of the tables, its extremes, or both; or about the motion of a
-   !> link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
+   !> What is asked about a link, point, pair or measure: a row of the tables, its extremes, or both; or about the
+   !> motion of a link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
    type :: request_t
       integer :: kind = request_link         !< request_link, ..., request_curve
-      integer :: subject = 0                 !< the number of the link, point or pair
+      integer :: subject = 0                 !< the number of the link, point, pair or measure
       integer :: every = 1                   !< a row at every such instant, the first and the last; 0: no row
       logical :: extremes = .false.          !< its extremes over the run
       real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
@@ -130,7 +182,16 @@ module mechanism
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
       logical :: listed = .false.            !< a row in the listing at every instant, which no card asks for
       logical :: angle_alone = .false.       !< of a link: the rows of the listing have its angle alone
+      integer :: drive = 0                   !< of a ratio: the number of the drive of which the rate is 1; 0: no ratio
+      logical :: in_columns = .false.        !< a COLUMN card names it: a row in the CSV at every instant
+      logical :: sought(3, 0:2) = .true.     !< the numbers of its row whose extremes are asked for
    end type request_t
+
+   !> What a COLUMN card asks for: one number of a row at every instant.
+   type :: column_request_t
+      integer :: request = 0                 !< the number of the row among the requests of the set
+      integer :: at(2) = 0                   !< the place of the number in the row: coordinate, derivative
+   end type column_request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
    type :: branch_request_t
@@ -175,6 +236,7 @@ module mechanism
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
       real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
       real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
+      type(column_request_t), allocatable :: columns(:)   !< of the COLUMN cards; none: not allocated
    end type settings_t
 
    !> A set of computations, or one of its independent mechanisms: that has the settings of its set, and no title.
@@ -183,6 +245,7 @@ module mechanism
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)
+      type(measure_t), allocatable :: measures(:)   !< none: not allocated, or of size 0
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
@@ -253,26 +316,98 @@ contains
       type(drive_t), intent(in) :: drive
       integer :: links(3)
 
-      links = request_links(m, request_t(driven_kinds(drive%kind), drive%subject, second=drive%second))
+      links = subject_links(m, driven_kinds(drive%kind), drive%subject, drive%second)
    end function drive_links
 
-   !> The links whose motion `request` is about, and from which it is seen; of fewer than three some are there again.
+   !> Finds the links whose motion a request is about, and from which it is seen, some of them several times.
    pure function request_links(m, request) result(links)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
+      integer, allocatable :: links(:)       !< (1 or more) their numbers
+
+      if (request%kind == request_measure) then
+         links = measure_links(m, m%measures(request%subject))
+      else
+         links = subject_links(m, request%kind, request%subject, request%second)
+      end if
+   end function request_links
+
+   !> Finds the links of what is no measure; of fewer than three some are there again.
+   pure function subject_links(m, kind, subject, second) result(links)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: kind            !< request_link, ...
+      integer, intent(in) :: subject         !< the number of the link, point or pair
+      integer, intent(in) :: second          !< the link from which a motion is seen; 0: the fixed plane
       integer :: links(3)
 
-      select case (request%kind)
+      select case (kind)
       case (request_link, request_pole)
-         links = request%subject
+         links = subject
       case (request_point, request_curve)
-         links = m%points(request%subject)%link
+         links = m%points(subject)%link
       case default
-         links(:2) = pair_links(m, m%pairs(request%subject))
+         links(:2) = pair_links(m, m%pairs(subject))
          links(3) = links(2)
       end select
-      if (request%second > 0) links(3) = request%second
-   end function request_links
+      if (second > 0) links(3) = second
+   end function subject_links
+
+   !> Finds the links of the subjects of a measure, some of them several times.
+   pure recursive function measure_links(m, measure) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(measure_t), intent(in) :: measure
+      integer, allocatable :: links(:)       !< (any number) of a measure that is right, 1 or more
+      integer :: k
+
+      allocate (links(0))
+      do k = 1, size(measure%subjects)
+         associate (one => measure%subjects(k))
+            if (one%number == 0) cycle
+            if (one%kind == request_measure) then
+               links = [links, measure_links(m, m%measures(one%number))]
+            else
+               links = [links, subject_links(m, one%kind, one%number, 0)]
+            end if
+         end associate
+      end do
+   end function measure_links
+
+   !> Counts the measures of a mechanism.
+   pure integer function measure_count(m)
+      class(mechanism_t), intent(in) :: m
+
+      measure_count = 0
+      if (allocated(m%measures)) measure_count = size(m%measures)
+   end function measure_count
+
+   !> Finds a measure and those of which it is made.
+   pure recursive function measures_within(m, i) result(list)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i               !< its number
+      integer, allocatable :: list(:)        !< (1 or more) their numbers, some of them several times
+      integer :: k
+
+      list = [i]
+      do k = 1, size(m%measures(i)%subjects)
+         associate (one => m%measures(i)%subjects(k))
+            if (one%kind == request_measure) list = [list, measures_within(m, one%number)]
+         end associate
+      end do
+   end function measures_within
+
+   !> Tells whether pairs of a kind have a guide, on which a link slides; otherwise it turns about a joint.
+   elemental logical function has_guide(kind)
+      integer, intent(in) :: kind            !< pair_revolute, ...
+
+      has_guide = pair_kinds(kind)%has_guide
+   end function has_guide
+
+   !> Tells whether requests of a kind are for instant centres or centres of curvature, which have no derivatives.
+   elemental logical function is_centre(kind)
+      integer, intent(in) :: kind            !< request_link, ...
+
+      is_centre = any(kind == [request_pole, request_curve])
+   end function is_centre
 
    !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.
    elemental logical function is_listed_alone(request)

@@ -23,6 +23,7 @@ module motion
       enumerator :: diagnostic_beyond           !< the instant lies beyond the limit of motion at `t`, told before
       enumerator :: diagnostic_begins           !< a motion begins, and positions before do not say in which assembly
       enumerator :: diagnostic_surplus          !< a drive is too many, one of those with the numbers `links`
+      enumerator :: diagnostic_turned           !< up to `t` LINE number `measure` has turned by `value` in one step
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 
@@ -34,6 +35,7 @@ module motion
       integer :: kind = 0                      !< diagnostic_inconsistent, ...
       integer :: part = 1                      !< the independent mechanism, in whose numbers it is
       integer :: pair = 0, drive = 0           !< numbers of a pair and a drive
+      integer :: measure = 0                   !< the number of a measure
       integer :: links(max_links) = 0          !< the numbers of links
       integer :: more = 0                      !< links for which there is no room
       integer :: equations = 1                 !< diagnostic_redundant: number of equations
@@ -62,6 +64,19 @@ module motion
       enumerator :: singular_dead        !< a dead point: no finite velocities exist
    end enum
 
+   !> The value of a measure that continues, at the last instant at which it has one.
+   type :: turned_t
+      real(wp) :: angle = 0.0_wp                         !< rad
+      logical :: is_known = .false.                      !< there was such an instant
+      logical :: is_latest = .false.                     !< it was the last one
+   end type turned_t
+
+   !> The motion at the same position in which one drive alone has a rate, of 1, and none has an acceleration.
+   type :: unit_motion_t
+      real(wp), allocatable :: velocity(:, :), acceleration(:, :)   !< (3, links) as of `motion_t`
+      logical, allocatable :: is_known(:)                !< (links)
+   end type unit_motion_t
+
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
@@ -77,6 +92,10 @@ module motion
       !> (links) `known` and `mark` of each link, if they differ: those of the whole are then the worst. Not allocated:
       !> all links as the whole.
       integer, allocatable :: link_known(:), link_mark(:)
+      !> (measures) From these values those that continue go on; not allocated: none does, or no instant is taken yet.
+      type(turned_t), allocatable :: turned(:)
+      !> (drives) Those by which ratios are asked for are allocated. Not allocated: none is known.
+      type(unit_motion_t), allocatable :: by(:)
    end type motion_t
 
 contains

@@ -1,7 +1,8 @@
 !> Names of links, points, pairs and drives in messages, and lists of names.
 module names
    use kinds, only: label_length
-   use mechanism, only: mechanism_t, drive_t, drive_words, driven_kinds, drive_relangle, request_link, request_point
+   use mechanism, only: mechanism_t, drive_t, drive_words, driven_kinds, drive_relangle, request_link, request_point, &
+      request_measure
    use numerals, only: whole
    implicit none
    private
@@ -22,7 +23,7 @@ contains
       if (d%kind == drive_relangle) name = trim(name)//' '//m%links(d%second)%name
    end function drive_name
 
-   !> The name of the link, point or pair (`kind`, as of a request) with the number `subject`.
+   !> The name of the link, point, pair or measure (`kind`, as of a request) with the number `subject`.
    pure function subject_name(m, kind, subject) result(name)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: kind, subject
@@ -33,6 +34,8 @@ contains
          name = m%links(subject)%name
       case (request_point)
          name = m%points(subject)%name
+      case (request_measure)
+         name = m%measures(subject)%name
       case default
          name = m%pairs(subject)%name
       end select

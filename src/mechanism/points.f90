@@ -1,47 +1,68 @@
-!> The rows of the tables: the motion of links, of any point of any link, and of pairs; instant centres, and centres of
-!> curvature.
+!> The rows of the tables: the motion of links, of any point of any link, and of pairs; measures; instant centres, and
+!> centres of curvature.
 module points
    use kinds, only: wp, label_length
-   use mechanism, only: settings_t, mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, &
-      request_pair, request_pole, request_curve, instant_count, request_links
-   use names, only: subject_name
-   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
-   use planar, only: pi, direction, rotated, point_of, add_rotating
-   use motion, only: motion_t, known_of, mark_none
+   use mechanism, only: settings_t, mechanism_t, request_t, has_guide, request_link, request_point, &
+      request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, &
+      request_links, subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
+   use names, only: subject_name, drive_name
+   use drives, only: drive_motion
+   use scales, only: is_length
+   use columns, only: columns_of_rows, forms, form_of, of_length
+   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
+   use pair_geometry, only: pair_motion
+   use planar, only: pi, degree, direction, rotated, point_of, add_rotating, cross
+   use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular
    implicit none
    private
-   public :: row_t, find_row, has_number, difference, centre_numbers, &
-      coordinates_of, is_due, is_listed, is_fixed
+   public :: row_t, column_of_ratio, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, &
+      is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
    !> value first) and their derivatives; of a pole or curve as in `centre_t`.
    type, extends(centre_t) :: row_t
       integer :: kind = request_link        !< request_link, ..., request_curve
-      character(2*label_length + 1) :: name = ''   !< of the link, point or pair; of both links, or point and link
-      logical :: angular = .false.          !< a pair whose value is an angle
+      !> Of the link, point, pair or measure; of both links, or point and link; of a ratio the quantity BY the drive.
+      character(4*label_length + 6) :: name = ''
+      integer :: form = 0                   !< which columns it has
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
    end type row_t
 
+   !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
+   !> between them.
+   real(wp), parameter :: same_place = 4.0_wp*epsilon(1.0_wp)
+   !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
+   real(wp), parameter :: half_turn_margin = 1.0e-9_wp
+   real(wp), parameter :: full_turn = 2.0_wp*pi
+
+   !> The coordinate of the row of a ratio that searches along the time take.
+   integer, parameter :: column_of_ratio = 2
+
    !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
    type(row_t), protected :: new_row = row_t()
 
-   !> The numbers (coordinate, derivative or axes) of a pole or curve that are there wherever its centre is finite, in
-   !> the order of the tables: x, y in the fixed plane, in link I, in link J; point, tangent, radius, centre.
-   integer, parameter :: centre_numbers(2, 6, request_pole:request_curve) = reshape( &
-      [1, 0, 2, 0, 1, 1, 2, 1, 1, 2, 2, 2, 1, 0, 2, 0, 3, 0, 1, 2, 1, 1, 2, 1], [2, 6, 2])
-
 contains
 
-   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
+   !> Whether `request` has a row in the CSV at instant number `k` (0, 1, ...): where it is printed, and where a COLUMN
+   !> card names it.
    pure logical function is_due(m, request, k)
       class(settings_t), intent(in) :: m
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_due = request%every > 0
-      if (is_due) is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+      is_due = request%in_columns .or. is_printed(m, request, k)
    end function is_due
+
+   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
+   pure logical function is_printed(m, request, k)
+      class(settings_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: k
+
+      is_printed = request%every > 0
+      if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+   end function is_printed
 
    !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
    pure logical function is_listed(m, request, k)
@@ -49,7 +70,7 @@ contains
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_listed = request%listed .or. is_due(m, request, k)
+      is_listed = request%listed .or. is_printed(m, request, k)
    end function is_listed
 
    !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every
@@ -60,21 +81,23 @@ contains
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
       real(wp) :: p(2, 0:2)
-      integer :: links(3), k
 
+      if (request%drive > 0) then
+         call find_ratio(m, q, request, row)
+         return
+      end if
       row = new_row
       row%kind = request%kind
-      ! What is known of a row is what is known of its links.
-      links = request_links(m, request)
-      do k = 1, size(links)
-         if (m%links(links(k))%ground .or. known_of(q, links(k)) >= row%known) cycle
-         row%known = known_of(q, links(k))
-         row%mark = q%mark
-         if (allocated(q%link_mark)) row%mark = q%link_mark(links(k))
-      end do
+      row%form = form_of(m, request)
+      ! Without an allocation, but for measures.
+      if (request%kind == request_measure) then
+         call find_known(m, q, request_links(m, request), row%known, row%mark)
+      else
+         call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%mark)
+      end if
 
       associate (i => request%subject)
-         if (request%kind <= request_pair) row%name = subject_name(m, request%kind, i)
+         if (.not. is_centre(request%kind)) row%name = subject_name(m, request%kind, i)
          select case (request%kind)
          case (request_link)
             if (m%links(i)%ground) then
@@ -89,8 +112,10 @@ contains
             end if
             row%value(:2, :) = point_motion(m, q, i)
          case (request_pair)
-            row%angular = m%pairs(i)%kind /= pair_prismatic
-            row%value(1, :) = pair_motion(m, q, m%pairs(i))
+            row%value(1, :) = motion_of_pair(m, q, i)
+            return
+         case (request_measure)
+            if (row%known >= 0) call find_measure(m, q, i, row%value(1, :), row%state, row%weight)
             return
          case (request_pole)
             row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
@@ -111,6 +136,80 @@ contains
       end associate
    end subroutine find_row
 
+   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure in the motion in which the drive
+   !> alone moves, with the rate 1, in the deck's units. Its value (:, 0) and (:, 1) is the ratio and its derivative by
+   !> the drive. For searches along the time `column_of_ratio` has nothing, the ratio, the rate of the ratio.
+   pure subroutine find_ratio(m, q, request, row)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(inout) :: row
+      type(motion_t) :: unit
+      integer, allocatable :: links(:)
+      real(wp) :: s(0:2), f(3), in_angles, in_drive
+
+      row = new_row
+      row%kind = request_ratio
+      row%form = form_of(m, request)
+      row%name = trim(subject_name(m, request%kind, request%subject))//' BY '//drive_name(m, m%drives(request%drive))
+      links = request_links(m, request)
+      call find_known(m, q, links, row%known, row%mark)
+      if (row%known < 0) return
+      row%known = -1
+      row%mark = mark_singular
+      if (.not. allocated(q%by)) return
+      associate (by => q%by(request%drive))
+         if (.not. allocated(by%velocity)) return
+         if (.not. all(by%is_known(links) .or. m%links(links)%ground)) return
+         unit%position = q%position
+         unit%velocity = by%velocity
+         unit%acceleration = by%acceleration
+      end associate
+      row%known = 2
+      row%mark = mark_none
+      if (request%kind == request_pair) then
+         s = motion_of_pair(m, unit, request%subject)
+      else
+         call find_measure(m, unit, request%subject, s, row%state, row%weight)
+      end if
+
+      in_angles = 1.0_wp
+      if (m%degrees) in_angles = degree
+      f = drive_motion(m%drives(request%drive), q%t)
+      in_drive = merge(1.0_wp, in_angles, is_length(m%drives(request%drive)))
+      if (columns_of_rows(forms(form_of(m, request_t(request%kind, request%subject)))%first)%dimension == of_length) &
+         in_angles = 1.0_wp
+      row%value(1, 0) = s(1)*(in_drive/in_angles)
+      row%value(1, 1) = s(2)*(in_drive/in_angles)*in_drive
+      row%value(column_of_ratio, 1:) = [row%value(1, 0), row%value(1, 1)*(f(2)/in_drive)]
+   end subroutine find_ratio
+
+   !> Finds how much is known of a row: that is what is known of its links.
+   pure subroutine find_known(m, q, links, known, mark)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: links(:)        !< their numbers
+      integer, intent(inout) :: known        !< as in `motion_t`: what is known without them
+      integer, intent(inout) :: mark         !< why the rest is not
+      integer :: k
+
+      do k = 1, size(links)
+         if (m%links(links(k))%ground .or. known_of(q, links(k)) >= known) cycle
+         known = known_of(q, links(k))
+         mark = q%mark
+         if (allocated(q%link_mark)) mark = q%link_mark(links(k))
+      end do
+   end subroutine find_known
+
+   !> Finds how much of a row exists, as in `motion_t`: where points coincide, only the value of a length does.
+   pure integer function known_at(row)
+      type(row_t), intent(in) :: row
+
+      known_at = row%known
+      if (row%state /= points_coincide) return
+      known_at = merge(0, -1, row%known >= 0 .and. columns_of_rows(forms(row%form)%first)%there(points_coincide))
+   end function known_at
+
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
    pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
@@ -121,24 +220,6 @@ contains
       x(:, 1) = q%velocity(:, i)
       x(:, 2) = q%acceleration(:, i)
    end function link_motion
-
-   !> Whether `row` has the number (c, k) of its values: x, y, phi (c) of the k-th derivative, as far as it is known; of
-   !> centres those that exist.
-   pure logical function has_number(row, c, k)
-      type(row_t), intent(in) :: row
-      integer, intent(in) :: c, k
-
-      select case (row%kind)
-      case (request_pole)
-         has_number = row%known >= 1 .and. row%state == merge(centre_infinite, centre_finite, c == 3)
-      case (request_curve)
-         has_number = row%known == 2 .and. row%state == centre_finite .and. any(3*k + c == [4, 5, 7])
-         if (k == 0) has_number = row%known >= 0
-         if (k == 0 .and. c == 3) has_number = row%known >= 1 .and. row%state /= centre_resting
-      case default
-         has_number = k <= row%known .and. c <= coordinates_of(row%kind)
-      end select
-   end function has_number
 
    !> By how much the numbers of `one` differ from those of `row`, to first order (3, 0:2): a place at p = n/w, with the
    !> weight w, changes by (n' - p w')/w where n and w become n' and w'. Directions of lines count without half turns.
@@ -155,15 +236,6 @@ contains
          d(3, 0) = abs(d(3, 0) - pi*anint(d(3, 0)/pi))
       end if
    end function difference
-
-   !> How many columns a derivative of a row of the given `kind` has; of centres, a third of all.
-   elemental integer function coordinates_of(kind)
-      integer, intent(in) :: kind
-
-      coordinates_of = 1
-      if (kind == request_link) coordinates_of = 3
-      if (any(kind == [request_point, request_pole, request_curve])) coordinates_of = 2
-   end function coordinates_of
 
    !> Whether the subject of `request` belongs to the ground.
    pure logical function is_fixed(m, request)
@@ -187,23 +259,155 @@ contains
       call add_rotating(u(1), u(2), x(3, 1), x(3, 2), p(:, 0), p(:, 1), p(:, 2))
    end function point_motion
 
-   !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
-   !> relative angle phi_j - phi_i of a revolute pair.
-   pure function pair_motion(m, q, pair) result(s)
+   !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
+   !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
+   !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
+   !> Between points of one link d is at rest in its axes, and what is constant has no rates, not even by rounding.
+   pure recursive subroutine find_measure(m, q, i, s, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      type(pair_t), intent(in) :: pair
-      real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), r(2, 0:2)
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(out) :: s(0:2)        !< length or rad; 0 where it does not exist
+      integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
+      real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
+      real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
+      logical :: is_rigid
+      integer :: k
 
-      x = link_motion(q, m%points(pair%point_i)%link)
-      if (pair%kind /= pair_prismatic) then
-         y = link_motion(q, m%points(pair%point_j)%link)
-         s = y(3, :) - x(3, :)
-         return
-      end if
-      ! Along the guide as seen from link i, in which P is at rest.
-      r = seen_from(x, point_motion(m, q, pair%point_j))
-      r(:, 0) = r(:, 0) - m%points(pair%point_i)%offset
-      s = matmul(direction(pair%alpha), r)
-   end function pair_motion
+      s = 0.0_wp
+      associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
+         select case (measure%kind)
+         case (measure_distance, measure_line)
+            is_rigid = m%points(subjects(1)%number)%link == m%points(subjects(2)%number)%link
+            if (is_rigid) then
+               d(:, 0) = m%points(subjects(2)%number)%offset - m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            end if
+            distance = norm2(d(:, 0))
+            closest = min(closest, distance/measure%length)
+            if (distance <= same_place*measure%length) then
+               state = points_coincide
+               return
+            end if
+            s(1) = cross(d(:, 0), d(:, 1))/distance
+            if (measure%kind == measure_distance) then
+               s = [distance, dot_product(d(:, 0), d(:, 1))/distance, &
+                  s(1)*(s(1)/distance) + dot_product(d(:, 0), d(:, 2))/distance]
+            else
+               s(0) = atan2(d(2, 0), d(1, 0))
+               s(1) = s(1)/distance
+               s(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, 1))/distance)*s(1))/distance
+               if (is_rigid) then
+                  x = link_motion(q, m%points(subjects(1)%number)%link)
+                  s = s + x(3, :)
+               end if
+            end if
+         case (measure_xi, measure_eta)
+            if (m%points(subjects(1)%number)%link == subjects(2)%number) then
+               d(:, 0) = m%points(subjects(1)%number)%offset
+               d(:, 1:) = 0.0_wp
+            else
+               d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
+            end if
+            s = d(merge(1, 2, measure%kind == measure_xi), :)
+         case default
+            do k = 1, size(subjects)
+               select case (subjects(k)%kind)
+               case (request_link)
+                  x = link_motion(q, subjects(k)%number)
+                  one = x(3, :)
+               case (request_pair)
+                  one = motion_of_pair(m, q, subjects(k)%number)
+               case default
+                  call find_measure(m, q, subjects(k)%number, one, state, closest)
+               end select
+               if (measure%kind == measure_sum) s = s + subjects(k)%factor*one
+               if (measure%kind == measure_angle) s = one - s
+            end do
+            s(0) = s(0) + measure%constant
+         end select
+         if (.not. measure%continues .or. state == points_coincide) return
+      end associate
+      s(0) = between_half_turns(s(0))
+      if (.not. allocated(q%turned)) return
+      if (.not. q%turned(i)%is_known) return
+      associate (turns => (q%turned(i)%angle - s(0))/full_turn)
+         if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) s(0) = s(0) + full_turn*anint(turns)
+      end associate
+   end subroutine find_measure
+
+   !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
+   !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
+   !> times as much for the direction. Where points coincide there is nothing that could grow.
+   pure recursive real(wp) function growth_in_measure(m, q, i, rate) result(growth)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q        !< all of it is known
+      integer, intent(in) :: i               !< its number
+      real(wp), intent(in) :: rate           !< characteristic rate
+      real(wp) :: d(2, 0:2), distance, v
+      integer :: k
+
+      growth = 0.0_wp
+      associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
+         if (any(measure%kind == [measure_distance, measure_line])) then
+            d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
+            distance = norm2(d(:, 0))
+            if (distance <= same_place*measure%length) return
+            v = norm2(d(:, 1))/(distance*rate)
+            growth = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
+            if (measure%kind == measure_line) growth = growth*measure%length/distance
+         else
+            do k = 1, size(subjects)
+               if (subjects(k)%kind == request_measure) growth = max(growth, &
+                  abs(subjects(k)%factor)*growth_in_measure(m, q, subjects(k)%number, rate))
+            end do
+         end if
+      end associate
+   end function growth_in_measure
+
+   !> Gives a direction above -pi and up to pi. One that is -pi but for rounding is pi.
+   pure real(wp) function between_half_turns(angle) result(x)
+      real(wp), intent(in) :: angle          !< rad
+
+      x = angle - full_turn*anint(angle/full_turn)
+      if (x <= half_turn_margin - pi) x = x + full_turn
+   end function between_half_turns
+
+   !> Takes the values of the measures that continue as those from which the next instant goes on.
+   pure subroutine keep_turns(m, q)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
+      type(row_t) :: row
+      integer :: i
+
+      if (.not. allocated(m%measures)) return
+      if (.not. any(m%measures%continues)) return
+      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
+      do i = 1, size(m%measures)
+         if (.not. m%measures(i)%continues) cycle
+         call find_row(m, q, request_t(request_measure, i), row)
+         associate (turned => q%turned(i))
+            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
+            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
+         end associate
+      end do
+   end subroutine keep_turns
+
+   !> Value and derivatives (0:2) of pair number `i`.
+   pure function motion_of_pair(m, q, i) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i
+      real(wp) :: s(0:2), point(2, 0:2)
+
+      associate (pair => m%pairs(i))
+         ! Only a slide needs the point, and its sine and cosine.
+         point = 0.0_wp
+         if (has_guide(pair%kind)) point = point_motion(m, q, pair%point_j)
+         s = pair_motion(m, pair, link_motion(q, m%points(pair%point_i)%link), &
+            link_motion(q, m%points(pair%point_j)%link), point)
+      end associate
+   end function motion_of_pair
 end module points

@@ -4,7 +4,7 @@ module scales
    use kinds, only: wp
    use planar, only: point_of
    use drives, only: drive_rate
-   use mechanism, only: settings_t, mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin, &
+   use mechanism, only: settings_t, mechanism_t, drive_t, has_guide, drive_x, drive_y, drive_slide, plane_origin, &
       used_points
    implicit none
    private
@@ -67,7 +67,7 @@ contains
       end do
       length = max(0.0_wp, maxval(high - low, mask=high >= low))
       do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) length = max(length, abs(m%pairs(i)%offset))
+         if (has_guide(m%pairs(i)%kind)) length = max(length, abs(m%pairs(i)%offset))
       end do
       do i = 1, size(m%drives)
          if (.not. is_length(m%drives(i))) cycle

@@ -3,15 +3,15 @@
 module changed_rows
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, new_motion, forget_links
+   use motion, only: motion_t, turned_t, new_motion, forget_links
    use points, only: row_t, find_row
-   use blocks, only: largest_known
+   use blocks, only: largest_known, own_unknowns
    use block_state, only: unknown_t
    use block_solver, only: solve_block
    use block_matrix, only: solve_first, solve_again
    use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t
-   use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
+   use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, get_ratios, &
       slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
@@ -37,6 +37,7 @@ module changed_rows
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
+      type(turned_t), allocatable :: turned(:)   !< (measures) angles of measures go on from there
       !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -66,6 +67,7 @@ contains
 
       place%only_driven = q%known < 0
       place%is_singular = q%known == 0
+      if (allocated(q%turned)) place%turned = q%turned
       if (.not. allocated(place%start)) allocate (place%start(0:e%blocks%unknowns))
       place%start(:) = e%state%u
       do k = 1, ubound(place%start, 1)
@@ -129,6 +131,7 @@ contains
             p%q%link_known = spread(-1, 1, size(p%m%links))
          end if
       end if
+      if (allocated(place%turned)) p%q%turned = place%turned
       do i = 1, size(rows)
          call find_row(p%m, p%q, p%m%requests(i), rows(i))
       end do
@@ -187,6 +190,8 @@ contains
          place%change = max(place%change, abs(e%state%u(k)%value - place%start(k)%value/slide_unit(e, k)))
       end do
       call get_motion(e, q, finite)
+      if (size(e%ratios) > 0) call get_ratios(e, [(missing(e%blocks%unknown(max(1, e%blocks%list(k)%first))) &
+         > missing_nothing, k=1, size(e%blocks%list))], q)
       call forget_links(q)
       if (worst > missing_nothing) call mark_links(e%chain, missing, q)
    end subroutine solve_needed
@@ -201,7 +206,7 @@ contains
       integer :: order, info
 
       associate (shape => e%blocks%list(i)%shape, w => e%work, &
-         own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         own => own_unknowns(e%blocks, i))
          call assemble_dense(e%blocks, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)

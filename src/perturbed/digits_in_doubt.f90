@@ -3,11 +3,11 @@
 module digits_in_doubt
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_pole
+   use mechanism, only: mechanism_t, method_newton, request_pole, request_measure, is_centre
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
-   use points, only: row_t, find_row
+   use points, only: row_t, find_row, growth_in_measure
    use instant_centres, only: centre_finite
    use block_engine, only: block_engine_t
    implicit none
@@ -86,7 +86,7 @@ contains
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(1.0_wp, position(1)/s%length, maxval(abs(q%origin))/s%length, &
          max(velocity(1)/s%length, velocity(2))/s%rate, max(acceleration(1)/s%length, acceleration(2))/s%rate**2, &
-         growth_in_centres(m, q))
+         growth_in_centres(m, q), growth_in_measures(m, q, s%rate))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
       ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
@@ -136,7 +136,7 @@ contains
 
       growth = 0.0_wp
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind < request_pole) cycle
+         if (.not. is_centre(m%requests(i)%kind)) cycle
          call find_row(m, q, m%requests(i), row)
          if (row%state /= centre_finite) growth = huge(1.0_wp)
          if (row%state /= centre_finite) return
@@ -149,4 +149,19 @@ contains
          end associate
       end do
    end function growth_in_centres
+
+   !> Finds by how much roundings of a motion grow in the measures of its mechanism, in characteristic ones.
+   pure real(wp) function growth_in_measures(m, q, rate) result(growth)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q        !< all of it is known
+      real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
+      integer :: i
+
+      growth = 0.0_wp
+      if (.not. allocated(m%measures)) return
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind == request_measure) &
+            growth = max(growth, growth_in_measure(m, q, m%requests(i)%subject, rate))
+      end do
+   end function growth_in_measures
 end module digits_in_doubt

@@ -2,10 +2,10 @@
 !> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_point, request_pole
+   use mechanism, only: mechanism_t, request_point, request_measure, request_pole, is_centre
    use motion, only: motion_t
-   use points, only: row_t, find_row, difference, is_fixed
-   use instant_centres, only: centre_finite, centre_starting
+   use points, only: row_t, find_row, known_at, difference, is_fixed
+   use instant_centres, only: centre_finite, centre_starting, points_coincide
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
@@ -189,6 +189,7 @@ contains
             other = q
             ! By one they could be hidden by the roundings of the rows.
             call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, other)
+            if (allocated(q%by)) call put_ratios_off(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
                ! No sum moves a centre from infinity.
@@ -204,6 +205,27 @@ contains
          end do
          found%changes = min(hypot(found%changes, of_sums), nothing_known)
       end subroutine add_sums
+
+      !> Puts the motions by which ratios are taken off by roundings of the sums that they are, as the motion `other`.
+      subroutine put_ratios_off(k, other)
+         integer, intent(in) :: k            !< the direction
+         type(motion_t), intent(inout) :: other
+         type(motion_t) :: unit
+         integer :: d
+
+         do d = 1, size(other%by)
+            if (.not. allocated(q%by(d)%velocity)) cycle
+            unit%position = q%position
+            unit%velocity = q%by(d)%velocity
+            unit%acceleration = q%by(d)%acceleration
+            unit%known = 2
+            unit%link_known = merge(2, -1, q%by(d)%is_known)
+            unit%origin = q%origin
+            call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, unit)
+            other%by(d)%velocity = unit%velocity
+            other%by(d)%acceleration = unit%acceleration
+         end do
+      end subroutine put_ratios_off
    end subroutine estimate_errors
 
    !> The change (3, 0:2) by a rounding, from the rows `middle` and `one`, of which a `part` is that of one rounding.
@@ -213,8 +235,8 @@ contains
       real(wp) :: x(3, 0:2)
 
       x = part*difference(one, middle)
-      if (one%kind < request_pole) then
-         x(:, one%known + 1:) = nothing_known
+      if (.not. is_centre(one%kind)) then
+         x(:, last_common(one, middle) + 1:) = nothing_known
       else
          x = merge(nothing_known, x, lost_numbers(one, middle))
       end if
@@ -231,7 +253,7 @@ contains
 
       error = 0.0_wp
       associate (request => m%requests(i))
-         if (is_fixed(m, request)) then
+         if (is_fixed(m, request) .and. request%kind /= request_measure) then
             ! A sum of numbers of cards.
             error(:, 0) = abs(row%value(:, 0))
             if (request%kind == request_point) error(:, 0) = max(error(:, 0), norm2(m%points(request%subject)%offset), &
@@ -242,7 +264,8 @@ contains
          if (s%asked) error = nothing_known
          if (.not. s%taken) return
          error = merge(nothing_known, caution*s%changes(:, :, i), s%changes(:, :, i) >= nothing_known)
-         if (request%kind < request_pole) error(:, min(row%known, s%solved(i)%known) + 1:) = nothing_known
+         if (.not. is_centre(request%kind)) &
+            error(:, min(row%known, last_common(s%solved(i), row)) + 1:) = nothing_known
       end associate
    end function estimate_of
 
@@ -258,10 +281,21 @@ contains
 
       call find_row(m, q, m%requests(i), row)
       error = estimate_of(row, m, s, i)
-      if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
+      if (.not. s%taken) return
+      if (is_fixed(m, m%requests(i)) .and. row%kind /= request_measure) return
       where (error < nothing_known) error = s%own(:, :, i) + difference(row, s%solved(i))
-      if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
+      if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
+
+   !> Finds how much of a row a sample tells of, as in `row_t`: where points of the sample coincide and those of the row
+   !> do not, only what exists there.
+   pure integer function last_common(one, row)
+      type(row_t), intent(in) :: one         !< the sample
+      type(row_t), intent(in) :: row
+
+      last_common = one%known
+      if (row%state /= points_coincide) last_common = known_at(one)
+   end function last_common
 
    !> The numbers (3, 0:2) of the pole or curve `row` of which a sample with the row `one` leaves nothing: all, where it
    !> has no such motion; places, where one of the two has its centre at infinity, or rests, and the other not, or they

@@ -20,7 +20,7 @@ module rounded_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use planar, only: pi
-   use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
+   use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, has_guide, term_kinds, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number, put_table
    use motion, only: motion_t, known_of
@@ -75,7 +75,7 @@ contains
       end do
       largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
       do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind /= pair_prismatic) cycle
+         if (.not. has_guide(m%pairs(i)%kind)) cycle
          call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
          ! Guides that are parallel or at right angles by the cards of links that turn as one stay so: their directions
          ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
@@ -123,7 +123,7 @@ contains
          real(wp) :: slope
          integer :: i
 
-         if (term%kind == term_table) then
+         if (term_kinds(term%kind)%has_rows) then
             associate (x => term%table%x, y => term%table%y)
                do i = 1, size(y)
                   slope = 0.0_wp
@@ -134,7 +134,7 @@ contains
             end associate
             call put_table(off%drives(drive), j)
          else
-            do i = 1, merge(1, 3, term%kind == term_power)
+            do i = 1, term_kinds(term%kind)%inexact
                call put(card_number_t(number_drive, drive, j, i), abs(term%r(i)))
             end do
          end if

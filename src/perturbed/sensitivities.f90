@@ -3,13 +3,13 @@
 !> A sensitivity is the difference of two rows of the mechanism with one number a little above and below.
 module sensitivities
    use kinds, only: wp
-   use mechanism, only: mechanism_t, tolerance_t, request_t, request_pair, number_drive, term_cycloid, term_cosine, &
-      term_parabola
+   use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, number_drive, term_kinds
    use drives, only: joint_distance
    use card_numbers, only: number_value, set_number
    use known_digits, only: nothing_known
    use motion, only: motion_t
    use points, only: row_t, find_row
+   use instant_centres, only: points_coincide
    use block_engine, only: block_engine_t
    use digits_in_doubt, only: sizes_t
    use rounded_numbers, only: caution
@@ -78,7 +78,8 @@ contains
       call find_rows(middle)
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
-         found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)))
+         found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &
+            .and. row%state /= points_coincide)
       end do
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
@@ -173,7 +174,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
 
-      has_tolerances = allocated(m%tolerances) .and. request%kind <= request_pair
+      has_tolerances = allocated(m%tolerances) .and. .not. is_centre(request%kind) .and. request%drive == 0
    end function has_tolerances
 
    !> Finds what the next joint of the rise that has the number of tolerance `one` says of derivatives at the time `t`.
@@ -192,10 +193,10 @@ contains
       order = 2
       if (one%kind /= number_drive .or. one%term == 0) return
       associate (term => m%drives(one%subject)%terms(one%term))
-         if (term%kind < term_cycloid .or. one%place == 3) return
-         joints = [0.0_wp, 1.0_wp, merge(0.5_wp, 1.0_wp, term%kind == term_parabola)] - (t - term%r(1))/term%r(2)
+         if (.not. term_kinds(term%kind)%is_rise .or. one%place == 3) return
+         joints = term_kinds(term%kind)%joints - (t - term%r(1))/term%r(2)
          ahead = joints(minloc(abs(joints), dim=1))
-         if (abs(ahead) <= joint_distance(term)) order = merge(1, 0, term%kind < term_cosine)
+         if (abs(ahead) <= joint_distance(term)) order = merge(0, 1, term_kinds(term%kind)%jumps)
          if (abs(ahead) > 2.0_wp*step/term%r(2)*max(1.0_wp, abs(t - term%r(1))/term%r(2))) return
          ! At the joint itself the derivative is that from the right.
          side = merge(1, -1, ahead > joint_distance(term))

@@ -5,11 +5,12 @@ module assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, plane_origin
+   use separations, only: separation
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use first_instant, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
-   use blocks, only: largest_known
+   use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
    use ball_equations, only: ball_numbers_t
@@ -93,7 +94,7 @@ contains
       type(block_engine_t) :: e
       type(convergence_t) :: c
       type(motion_t) :: q
-      real(wp) :: off(3, size(m%links)), nearest
+      real(wp) :: apart, nearest
       logical :: unused
       integer :: i
 
@@ -106,11 +107,9 @@ contains
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
          do i = 1, size(a%list)
-            off = a%list(i)%position - q%position
-            off(:2, :) = off(:2, :)/e%blocks%numbers%span
-            off(3, :) = without_turns(off(3, :))
-            if (maxval(abs(off)) > nearest) cycle
-            nearest = maxval(abs(off))
+            apart = maxval(separation(a%list(i)%position, q%position, e%blocks%numbers%span))
+            if (apart > nearest) cycle
+            nearest = apart
             a%chosen = i
          end do
       end if
@@ -186,7 +185,7 @@ contains
          end if
          call set_values(e%blocks, i, found(i)%x(:, chosen(i)), e%state)
          choice = choice + 1
-         changed(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) = choice
+         changed(own_unknowns(e%blocks, i)) = choice
          i = i + 1
       end do
       do k = 1, size(a%blocks)

@@ -8,7 +8,7 @@
 module ball_numbers
    use kinds, only: wp
    use planar, only: length_of, real_vector_t => vector_t
-   use mechanism, only: mechanism_t, pair_prismatic, plane_origin
+   use mechanism, only: mechanism_t, has_guide, plane_origin
    use blocks, only: blocks_t, loop_angles
    use balls, only: ball_t, rounding, room
    use ball_equations, only: vector_t, ball_numbers_t
@@ -77,7 +77,7 @@ contains
    pure real(wp) function angle_error(m) result(angle)
       type(mechanism_t), intent(in) :: m
 
-      associate (guides => m%pairs%kind == pair_prismatic)
+      associate (guides => has_guide(m%pairs%kind))
          angle = (of_number + (1 + count(guides))*rounding)*(sum(abs(m%pairs%beta) + abs(m%pairs%alpha), guides) &
             + maxval([0.0_wp, abs(m%links%position(3))], [.true., m%links%ground]))
       end associate

@@ -19,7 +19,7 @@
 module position_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, own_unknowns
    use block_matrix, only: shape_t, entries_of, solve_first, solve_again, work_length
    use block_state, only: state_t
    use block_engine, only: block_engine_t
@@ -123,7 +123,7 @@ contains
       real(wp) :: radius, largest
       integer :: k
 
-      associate (block => b%list(i), own => b%unknown(b%list(i)%first:b%list(i)%last))
+      associate (block => b%list(i), own => own_unknowns(b, i))
          do k = 1, size(own)
             call set_ball(b, own(k), ball_t(s%u(own(k))%value, 0.0_wp), q%ball_state_t)
             q%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)

@@ -12,38 +12,30 @@
 module csv
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: request_t, request_link, request_point, request_pair, request_pole, &
-      request_curve, pair_prismatic
+   use mechanism, only: request_t, request_link, request_point
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, &
+      cell_words, cell_number, of_angle
    use scales, only: is_length
    use drives, only: drive_motion
-   use motion, only: motion_t, new_motion
-   use points, only: row_t, find_row, has_number, is_due, coordinates_of
-   use assemblies, only: assemblies_t
+   use points, only: row_t
    use independent, only: set_t, request_of
-   use instant_centres, only: centre_finite, centre_resting
    use name_table, only: name_table_t, put_name, find_name
    use names, only: drive_name, subject_name
    use known_digits, only: nothing_known
-   use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use set_motion, only: set_motion_t, find_row_in_set, known_numbers, error_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t
+   use rows, only: finished_row_t
+   use table, only: add_name, add_number
    use text_output, only: output_t, put, add, replaced
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
-   public :: csv_head, csv_instant, add_name, marks
-   public :: table_t, new_table, table_head, table_instant, drive_columns, dotted
+   public :: csv_head, csv_instant, marks
+   public :: table_t, table_column_t, new_table, table_head, table_instant, drive_columns, dotted
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
-   character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
-   !> The three rows of a pole: in the fixed plane, and in the axes of both links; of a curve.
-   character(6), parameter :: kinds_of_centre(0:2, request_pole:request_curve) = reshape([character(6) :: &
-      'POLE', 'POLE-I', 'POLE-J', 'CURVE', 'CENTRE', 'RADIUS'], [3, 2])
    !> The mark where nothing is missing but known digits.
    character(*), parameter :: mark_unknown = 'UNKNOWN'
    logical, parameter :: all_known(3, 0:2) = .true.
-   !> Why a centre has no place, by its state.
-   character(8), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(8) :: &
-      '', 'INFINITE', 'AT-REST', 'AT-REST']
    !> Of a row whose errors are not known.
    real(wp), parameter :: no_errors(3, 0:2) = nothing_known
 
@@ -53,12 +45,9 @@ module csv
    character(*), parameter :: missing = 'NaN'
 
    !> A column after those of time and drives.
-   type :: table_column_t
+   type, extends(row_column_t) :: table_column_t
       integer :: request = 0                        !< its number among those of the set
-      integer :: order = 0                          !< of the derivative: 0, 1 or 2
-      integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
-      logical :: angular = .false.                  !< an angle or a derivative of one
-      character(2*label_length + 6) :: name = ''    !< ROCKER.phi, TIP.vx, SLOT.v
+      character(6*label_length) :: name = ''        !< ROCKER.phi, TIP.vx, SLOT.v, MU.by.ANGLE.CRANK
    end type table_column_t
 
    !> The columns of a set.
@@ -67,20 +56,13 @@ module csv
       type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
    end type table_t
 
-   !> What the columns of a derivative add to the name of a link or point, a prismatic pair, a revolute pair. Those of
-   !> pairs are not those of links, whose names pairs may have.
-   character(5), parameter :: link_words(3, 0:2) = reshape([character(5) :: &
-      'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
-   character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
-   character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
-
 contains
 
-   !> The names of the columns; with `errors`, those of the error estimates after them; where a set of the deck
-   !> `varies`, the number of the variant behind that of the set.
+   !> Writes the names of the columns.
    subroutine csv_head(o, errors, varies)
       type(output_t), intent(inout) :: o
-      logical, intent(in) :: errors, varies
+      logical, intent(in) :: errors          !< rows have estimates of errors after their values
+      logical, intent(in) :: varies          !< some set of the deck has variants: rows have the number of theirs
 
       call add(o, 'set,')
       if (varies) call add(o, 'variant,')
@@ -89,117 +71,94 @@ contains
       call put(o, '')
    end subroutine csv_head
 
-   !> The rows of instant number `step` (0, 1, ...) of the motions `s` that the deck asks for there, with their
-   !> errors where these are asked for. `varies`: as in the head. `assemblies` (parts), where they are asked for: those
-   !> of the first instant.
-   subroutine csv_instant(o, s, step, varies, assemblies)
+   !> Writes the rows of an instant that are due, with their errors where these are asked for.
+   subroutine csv_instant(o, s, rows, step, varies)
       type(output_t), intent(inout) :: o
       type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: step
-      logical, intent(in) :: varies
-      type(assemblies_t), intent(in), optional :: assemblies(:)
+      type(finished_row_t), intent(in) :: rows(:)
+      integer, intent(in) :: step            !< the number of the instant, from 0
+      logical, intent(in) :: varies          !< as in the head
       character(:), allocatable :: start
-      type(row_t) :: row, other
-      type(request_t) :: request
-      type(spread_t) :: spread
-      type(motion_t) :: q
-      real(wp) :: error(3, 0:2)
-      logical :: known(3, 0:2), there(3, 0:2), asked
-      character(12) :: mark
       integer :: i, k
 
       start = whole(s%set_number)//','
       if (varies) start = start//whole(s%variant)//','
       start = start//whole(step)//','//full(s%motions(1)%t)//','
-      asked = s%errors(1)%asked
-      error = 0.0_wp
-      do i = 1, size(s%rows)
-         request = request_of(s, i)
-         if (.not. is_due(s, request, step)) cycle
-         call find_row_in_set(s, i, row)
-         known = known_numbers(row, s, i)
-         if (asked) error = error_in_set(s, i)
-         if (row%kind >= request_pole) then
-            ! Three rows: each has one third of the numbers under x, y, phi.
-            there = numbers_of(row)
-            other = row
-            do k = 0, 2
-               other%value(:, 0) = row%value(:, k)
-               mark = marks(row%mark)
-               if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
-               call add_row(kinds_of_centre(k, row%kind), other, reshape(there(:, k), [3, 3], [.false.]), &
-                  reshape(known(:, k), [3, 3], [.false.]), reshape(error(:, k), [3, 3], [0.0_wp]), mark)
-            end do
-            cycle
-         end if
-         call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
-
-         associate (c => s%rows(i)%part)
-            ! What tolerances do to the row.
-            if (has_tolerances(s%parts(c), request)) then
-               other = row
-               spread = spread_in_set(s, i)
-               other%known = spread%known
-               other%value = worst_case(spread%tolerances, spread%of)
-               call add_other('WORST')
-               other%value = root_of_squares(spread%tolerances, spread%of)
-               call add_other('RSS')
-               do k = 1, size(spread%tolerances)
-                  other%value = spread%of(:, :, k)
-                  call add_other('PER '//trim(spread%tolerances(k)%name))
-               end do
-            end if
-            ! The row in each assembly at the first instant.
-            if (.not. present(assemblies) .or. step > 0) cycle
-            q = new_motion(size(s%parts(c)%links))
-            q%known = 0
-            q%origin = s%motions(c)%origin
-            do k = 1, size(assemblies(c)%list)
-               q%position = assemblies(c)%list(k)%position
-               call find_row(s%parts(c), q, request, other)
-               call add_other('ASSEMBLY '//whole(k))
+      do i = 1, size(rows)
+         associate (row => rows(i))
+            if (.not. row%due) cycle
+            call add_rows('', row, row%has_digit, row%error)
+            if (.not. allocated(row%others)) cycle
+            do k = 1, size(row%others)
+               call add_rows(' '//trim(row%others(k)%word), row%others(k)%row, all_known, no_errors)
             end do
          end associate
       end do
 
    contains
 
-      !> A row: its `kind` and name, the values (3, 0:2) that are `there` and `known`, its `mark`; where asked, the
-      !> errors of those that are there.
-      subroutine add_row(kind, row, there, known, error, mark)
-         character(*), intent(in) :: kind, mark
-         type(row_t), intent(in) :: row
-         logical, intent(in) :: there(3, 0:2), known(3, 0:2)
-         real(wp), intent(in) :: error(3, 0:2)
-         logical :: has_error(3, 0:2)
-         integer :: k
+      !> Writes a row, or three for its three axes: kind, name, the values that exist and have a digit, mark; then the
+      !> errors of the values that exist, where these are asked for.
+      subroutine add_rows(what, row, has_digit, error)
+         character(*), intent(in) :: what    !< it follows the kind: ' WORST', ...; '': nothing
+         class(row_t), intent(in) :: row
+         logical, intent(in) :: has_digit(3, 0:2)   !< at least one digit of the number is known
+         real(wp), intent(in) :: error(3, 0:2)   !< the estimated errors of its value
+         integer :: place(3, 0:2)            ! the columns of the nine cells; 0: none
+         character(12) :: mark
+         integer :: n, j, k, at_k, cell
+         logical :: is_unknown, has_error(3, 0:2)
 
-         call add(o, start)
-         call add_name(o, kind(:len_trim(kind)))
-         call add(o, ',')
-         call add_name(o, row%name(:len_trim(row%name)))
-         call add_values(row%value, row%angular, there .and. known)
-         call add(o, ',')
-         if (mark == '' .and. any(there .and. .not. known)) then
-            call add(o, mark_unknown)
-         else
-            call add(o, mark(:len_trim(mark)))
-         end if
-         if (asked) then
-            ! A derivative has no error where no digit of the one before is known.
-            has_error = there
-            do k = 0, 2
-               if (any(has_error(:, k) .and. error(:, k) >= nothing_known)) has_error(:, k:) = .false.
+         associate (kind => kinds_of_rows(row%kind))
+            do n = 0, kind%rows - 1
+               place = 0
+               mark = marks(row%mark)
+               is_unknown = .false.
+               do j = forms(row%form)%first, forms(row%form)%last
+                  associate (at => columns_of_rows(j)%at)
+                     if (kind%rows > 1 .and. at(2) /= n) cycle
+                     cell = cell_of(columns_of_rows(j), row%known, row%state)
+                     if (cell /= cell_number) then
+                        if (mark == '') mark = cell_words(cell)%mark
+                        cycle
+                     end if
+                     place(at(1), merge(at(2), 0, kind%rows == 1)) = j
+                     is_unknown = is_unknown .or. .not. has_digit(at(1), at(2))
+                  end associate
+               end do
+
+               call add(o, start)
+               if (what == '') then
+                  call add(o, kind%csv(n)(:len_trim(kind%csv(n))))
+               else
+                  call add_name(o, trim(kind%csv(n))//what)
+               end if
+               call add(o, ',')
+               call add_name(o, row%name(:len_trim(row%name)))
+               call add_values(place, row%value, has_digit)
+               call add(o, ',')
+               if (mark == '' .and. is_unknown) mark = mark_unknown
+               call add(o, mark(:len_trim(mark)))
+
+               if (s%errors(1)%asked) then
+                  has_error = error < nothing_known
+                  ! A derivative has no error where no digit of the one before is known.
+                  do k = 0, 2
+                     at_k = merge(k, n, kind%rows == 1)
+                     if (any(place(:, k) > 0 .and. .not. has_error(:, at_k))) has_error(:, at_k:) = .false.
+                  end do
+                  call add_values(place, error, has_error)
+               end if
+               call put(o, '')
             end do
-            call add_values(error, row%angular, has_error)
-         end if
-         call put(o, '')
-      end subroutine add_row
+         end associate
+      end subroutine add_rows
 
-      !> Nine values (3, 0:2), a comma before each; empty where they are not `there`. `angular`: all of them are angles.
-      subroutine add_values(value, angular, there)
-         real(wp), intent(in) :: value(3, 0:2)
-         logical, intent(in) :: angular, there(3, 0:2)
+      !> Appends nine cells, a comma before each.
+      subroutine add_values(place, value, has_digit)
+         integer, intent(in) :: place(3, 0:2)   !< of each cell the column whose number it has; 0: empty
+         real(wp), intent(in) :: value(3, 0:2)   !< in the deck's units and rad
+         logical, intent(in) :: has_digit(3, 0:2)   !< without a known digit its cell is empty
          character(9*(full_length + 1)) :: cells
          real(wp) :: x
          integer :: k, c, used, length
@@ -209,101 +168,109 @@ contains
             do c = 1, 3
                used = used + 1
                cells(used:used) = ','
-               if (there(c, k)) then
-                  x = value(c, k)
-                  if (s%degrees .and. (c == 3 .or. angular)) x = in_degrees(x)
-                  call put_full(x, cells(used + 1:used + full_length), length)
-                  used = used + length
-               end if
+               if (place(c, k) == 0) cycle
+               associate (column => columns_of_rows(place(c, k)), at => columns_of_rows(place(c, k))%at)
+                  if (.not. has_digit(at(1), at(2))) cycle
+                  x = value(at(1), at(2))
+                  if (s%degrees .and. column%dimension == of_angle) x = in_degrees(x)
+               end associate
+               call put_full(x, cells(used + 1:used + full_length), length)
+               used = used + length
             end do
          end do
          call add(o, cells(:used))
       end subroutine add_values
-
-      !> The row `other`, which is what `word` says of the row; it has no errors.
-      subroutine add_other(word)
-         character(*), intent(in) :: word
-
-         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), all_known, no_errors, &
-            marks(other%mark))
-      end subroutine add_other
    end subroutine csv_instant
 
-   !> Which of its numbers (3, 0:2) `row` has.
-   pure function numbers_of(row) result(there)
-      type(row_t), intent(in) :: row
-      logical :: there(3, 0:2)
-      integer :: c, k
-
-      do k = 0, 2
-         do c = 1, 3
-            there(c, k) = has_number(row, c, k)
-         end do
-      end do
-   end function numbers_of
-
-   !> A name as a cell: in quotes where it holds a comma or a quote.
-   subroutine add_name(o, name)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: name
-
-      if (scan(name, ',"') == 0) then
-         call add(o, name)
-      else
-         call add(o, '"'//replaced(name, '"', ['""'])//'"')
-      end if
-   end subroutine add_name
-
-   !> The table of the set `s`; `chosen`: of these rows alone, whether they are printed or not.
+   !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
+   !> the rows of PRINT.
    function new_table(s, chosen) result(t)
       class(set_t), intent(in) :: s
-      integer, intent(in), optional :: chosen(:)
+      integer, intent(in), optional :: chosen(:)   !< instead, these rows, with the numbers whose extremes are asked for
       type(table_t) :: t
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
-      integer, allocatable :: rows(:)
-      character(:), allocatable :: name
-      integer :: i, k, n, c
-      logical :: turns
-      character(5) :: word
+      integer, allocatable :: rows(:), form(:)
+      integer :: i, j, k, n
 
       t%drives = drive_columns(s)
+
+      ! The rows, and which names links have among them.
       requests = [(request_of(s, i), i=1, size(s%rows))]
+      rows = [(i, i=1, size(s%rows))]
+      form = [(form_of(s%parts(s%rows(i)%part), requests(i)), i=1, size(s%rows))]
       if (present(chosen)) then
          rows = chosen
+      else if (allocated(s%columns)) then
+         rows = s%columns%request
       else
-         rows = pack([(i, i=1, size(s%rows))], requests%every > 0 .and. requests%kind < request_pole)
+         rows = pack(rows, requests%every > 0)
       end if
-      allocate (t%columns(3*sum(coordinates_of(requests(rows)%kind))))
       do i = 1, size(rows)
          if (requests(rows(i))%kind /= request_link) cycle
          associate (own => s%parts(s%rows(rows(i))%part))
             call put_name(links, own%links(requests(rows(i))%subject)%name, i, k)
          end associate
       end do
+
       n = 0
-      do k = 0, 2
-         do i = 1, size(rows)
-            associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
-               name = trim(subject_name(own, request%kind, request%subject))
-               ! A point that has the name of a link in the table has that of its own link before it.
-               if (request%kind == request_point .and. find_name(links, name) > 0) &
-                  name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
-               turns = .false.
-               if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
-               do c = 1, coordinates_of(request%kind)
-                  word = link_words(c, k)
-                  if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
-                  n = n + 1
-                  t%columns(n) = table_column_t(rows(i), k, c, c == 3 .or. turns, name//'.'//word)
-               end do
+      do i = 1, size(rows)
+         n = n + forms(form(rows(i)))%last - forms(form(rows(i)))%first + 1
+      end do
+      allocate (t%columns(n))
+
+      n = 0
+      if (allocated(s%columns) .and. .not. present(chosen)) then
+         do i = 1, size(s%columns)
+            associate (one => s%columns(i))
+               call add_column(one%request, column_at(form(one%request), one%at(1), one%at(2)))
             end associate
          end do
-      end do
+      else
+         ! Positions first, then velocities, then accelerations.
+         do k = 0, 2
+            do i = 1, size(rows)
+               do j = forms(form(rows(i)))%first, forms(form(rows(i)))%last
+                  associate (column => columns_of_rows(j))
+                     if (column%word == '' .or. column%order /= k) cycle
+                     if (present(chosen) .and. .not. requests(rows(i))%sought(column%at(1), column%at(2))) cycle
+                  end associate
+                  call add_column(rows(i), j)
+               end do
+            end do
+         end do
+      end if
+      t%columns = t%columns(:n)
+
+   contains
+
+      !> Adds a column.
+      subroutine add_column(i, j)
+         integer, intent(in) :: i            !< the number of its row among the requests of the set
+         integer, intent(in) :: j            !< the column, in `columns_of_rows`
+         character(:), allocatable :: name
+
+         associate (request => requests(i), own => s%parts(s%rows(i)%part))
+            name = trim(subject_name(own, request%kind, request%subject))
+            ! A point that has the name of a link in the table has that of its own link before it.
+            if (request%kind == request_point .and. find_name(links, name) > 0) &
+               name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
+            ! Of a ratio the first word comes before the name of the drive.
+            if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
+               //trim(t%drives(findloc(s%drives%part == s%rows(i)%part .and. s%drives%number == request%drive, .true., &
+               dim=1)))
+         end associate
+         n = n + 1
+         t%columns(n)%row_column_t = columns_of_rows(j)
+         t%columns(n)%request = i
+         t%columns(n)%name = name
+         if (.not. (is_ratio(form(i)) .and. j == forms(form(i))%first)) &
+            t%columns(n)%name = name//'.'//columns_of_rows(j)%word
+      end subroutine add_column
    end function new_table
 
-   !> The names of the columns of all drives of `s`. Of drives of one thing, the second has .2 after it, and so on:
-   !> ANGLE.CRANK, ANGLE.CRANK.2.
+   !> Names the columns of all drives. If several drive the same coordinate, the second has .2 after its name, and so
+   !> on: ANGLE.CRANK, ANGLE.CRANK.2.
    function drive_columns(s) result(columns)
       class(set_t), intent(in) :: s
       character(drive_length), allocatable :: columns(:)
@@ -322,15 +289,15 @@ contains
       end do
    end function drive_columns
 
-   !> `name` with a dot for each blank inside.
+   !> Puts a dot for each blank inside a name.
    pure function dotted(name) result(text)
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name       !< as in the listing
       character(len(name)) :: text
 
       text = replaced(trim(name), ' ', ['.'])
    end function dotted
 
-   !> The heading: the names of all columns.
+   !> Writes the heading of the table: the names of all columns.
    subroutine table_head(o, t)
       type(output_t), intent(inout) :: o
       type(table_t), intent(in) :: t
@@ -348,54 +315,33 @@ contains
       call put(o, '')
    end subroutine table_head
 
-   !> The row of the motions `s`.
-   subroutine table_instant(o, t, s)
+   !> Writes the row of the table for an instant.
+   subroutine table_instant(o, t, s, rows)
       type(output_t), intent(inout) :: o
       type(table_t), intent(in) :: t
       type(set_motion_t), intent(in) :: s
-      type(row_t) :: rows(size(s%rows))
-      logical :: known(3, 0:2, size(s%rows))
+      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
       real(wp) :: f(3)
       integer :: i
 
-      call add_cell('', s%motions(1)%t, .false.)
+      call add_number(o, s%motions(1)%t, .false.)
       do i = 1, size(s%drives)
          associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
             f = drive_motion(drive, s%motions(1)%t)
-            call add_cell(',', f(1), .not. is_length(drive))
+            call add(o, ',')
+            call add_number(o, f(1), s%degrees .and. .not. is_length(drive))
          end associate
       end do
-      do i = 1, size(s%rows)
-         call find_row_in_set(s, i, rows(i))
-         known(:, :, i) = known_numbers(rows(i), s, i)
-      end do
       do i = 1, size(t%columns)
-         associate (c => t%columns(i), row => rows(t%columns(i)%request))
-            if (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order)) then
-               call add_cell(',', row%value(c%coordinate, c%order), c%angular)
+         associate (c => t%columns(i), at => t%columns(i)%at, row => rows(t%columns(i)%request))
+            if (row%has_digit(at(1), at(2)) .and. cell_of(c%row_column_t, row%known, row%state) == cell_number) then
+               call add(o, ',')
+               call add_number(o, row%value(at(1), at(2)), s%degrees .and. c%dimension == of_angle)
             else
                call add(o, ','//missing)
             end if
          end associate
       end do
       call put(o, '')
-
-   contains
-
-      !> A cell: `before`, then `value`; `angular`: an angle in radians, or a derivative of one.
-      subroutine add_cell(before, value, angular)
-         character(*), intent(in) :: before
-         real(wp), intent(in) :: value
-         logical, intent(in) :: angular
-         character(full_length) :: cell
-         real(wp) :: x
-         integer :: length
-
-         x = value
-         if (s%degrees .and. angular) x = in_degrees(x)
-         call put_full(x, cell, length)
-         call add(o, before)
-         call add(o, cell(:length))
-      end subroutine add_cell
    end subroutine table_instant
 end module csv

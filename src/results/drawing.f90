@@ -4,13 +4,14 @@
 module drawing
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, &
+   use mechanism, only: mechanism_t, request_point, request_pole, has_guide, instant_count, &
       plane_origin, is_listed_alone
    use planar, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
    use motion, only: known_of, mark_none, singular_unclear
-   use points, only: row_t, has_number, is_fixed
+   use columns, only: columns_of_rows, column_at, cell_of, cell_number
+   use points, only: row_t, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    implicit none
    private
@@ -139,8 +140,8 @@ contains
          if (size(d%curves) < max_curves) d%curves = [d%curves, m%requests(i)%subject]
       end do
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
-      allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
-      d%guides%pair = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
+      allocate (d%guides(count(has_guide(m%pairs%kind))))
+      d%guides%pair = pack([(i, i=1, size(m%pairs))], has_guide(m%pairs%kind))
       ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. Where link j
       ! is ground, or link i has no extent, the same pair is a guide of link j: P slides along the line through
       ! Q + h n.
@@ -260,7 +261,8 @@ contains
          end do
          do i = 1, size(d%poles)
             call find_row_in_set(s, d%poles(i), row)
-            now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
+            now%has_centre(i) = all(abs(row%value(:2, :)) < max_place) .and. cell_number &
+               == cell_of(columns_of_rows(column_at(row%form, 1, 0)), row%known, row%state)
             if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
          end do
       end subroutine find_snapshot

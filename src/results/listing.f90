@@ -6,19 +6,21 @@ module listing
    use kinds, only: wp
    use planar, only: degree
    use mechanism, only: settings_t, mechanism_t, remark_title_long, remark_rest, remark_turns, remark_more, &
-      request_t, request_link
+      request_link
    use names, only: drive_name, listed, more
    use motion
    use structure, only: findings_t
    use following, only: certificate_counts_t
-   use points, only: is_listed, row_t
-   use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use independent, only: set_t, request_of
-   use set_motion, only: set_motion_t, is_flagged, find_row_in_set, doubt_in_set, spread_t, spread_in_set
-   use listing_layout, only: layout_t, digits_t, new_layout, put_folded, angle_unit, choose_time_digits, unit_of
+   use independent, only: set_t
+   use set_motion, only: set_motion_t, is_flagged
+   use columns, only: table_of
+   use points, only: row_t
+   use rows, only: finished_row_t, word_worst, word_rss
+   use listing_layout, only: layout_t, new_layout, put_folded, angle_unit, choose_time_digits
+   use table, only: format_t, unit_of, number_text
    use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row
    use text_output, only: output_t, put, add
-   use numerals, only: whole, rounded, put_fixed, numeral_length
+   use numerals, only: whole, rounded
    use known_digits, only: unknown_digit
    use phrases
    implicit none
@@ -104,24 +106,21 @@ contains
       end associate
    end subroutine listing_head
 
-   !> The tables of instant number `step` (0, 1, ...) of the motions `s`, as far as the deck asks for them there;
-   !> digits that rounding leaves open are masked. Then what there is to say of the instant. `table`: as the instant
-   !> before has left it; after remarks the next instant has its heads again. Beyond a limit of motion that the instant
-   !> before has told a part has no words and no rows without values. Instants that have nothing else wait in `table`
-   !> for one line.
-   subroutine listing_instant(o, l, s, step, table)
+   !> Writes the tables of an instant, with the rows that are listed; digits that rounding leaves open are masked. Marks
+   !> and diagnostics of the instant follow. After these the next instant has its heads again. Beyond a limit of motion
+   !> that the instant before has told a part has no words and no rows without values. Instants that have nothing else
+   !> wait in `table` for one line.
+   subroutine listing_instant(o, l, s, rows, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: step
-      type(listing_state_t), intent(inout) :: table
-      type(row_t) :: row
-      type(request_t) :: request
-      type(spread_t) :: x
-      type(digits_t), allocatable :: d       ! filled for rows with tolerances only, because that takes long
+      type(finished_row_t), intent(in) :: rows(:)
+      integer, intent(in) :: step            !< the number of the instant, from 0
+      type(listing_state_t), intent(inout) :: table   !< as the instant before has left it
+      type(row_t) :: other
       real(wp) :: limits(s%count)
       logical :: begun, is_told(s%count), has_news
-      integer :: i, c
+      integer :: i, c, k
 
       limits = [(limit_before(s%motions(c)), c=1, s%count)]
       is_told = .false.
@@ -131,30 +130,23 @@ contains
       table%limits = limits
       begun = .false.
       table%masked = .false.
-      do i = 1, size(s%rows)
-         request = request_of(s, i)
-         if (.not. is_listed(s, request, step)) cycle
-         call find_row_in_set(s, i, row)
-         if (is_told(s%rows(i)%part) .and. row%known < 0) cycle
-         if (.not. begun) call begin_instant()
-         associate (part => s%rows(i)%part)
-            call put_heads(o, l, part, merge(l%links_table, row%kind, row%kind == request_link), table)
-            call put_row(o, l, l%own(part), s%polish, row, request%angle_alone, doubt_in_set(row, s, i), table)
-            if (.not. has_tolerances(s%parts(part), request)) cycle
-
-            ! What tolerances do to the row, with some more decimals: the worst case, and the root of the sum of
-            ! squares.
-            x = spread_in_set(s, i)
-            d = l%own(part)
-            d%decimals = d%decimals + l%more_decimals
-            row%known = x%known
-            row%name = ' '//phrase(say_worst, s%polish)
-            row%value = worst_case(x%tolerances, x%of)
-            call put_row(o, l, d, s%polish, row, request%angle_alone, worst_case(x%tolerances, x%error), table)
-            row%name = ' RSS'
-            row%value = root_of_squares(x%tolerances, x%of)
-            ! The difference of two roots is no larger than the root of the differences.
-            call put_row(o, l, d, s%polish, row, request%angle_alone, root_of_squares(x%tolerances, x%error), table)
+      do i = 1, size(rows)
+         associate (row => rows(i), d => l%own(rows(i)%part))
+            if (.not. row%listed) cycle
+            if (is_told(row%part) .and. row%known < 0) cycle
+            if (.not. begun) call begin_instant()
+            call put_heads(o, l, row%part, &
+               merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), table)
+            call put_row(o, l, d, row, row%shown, row%doubt, 0, table)
+            if (.not. allocated(row%others)) cycle
+            ! The effect of tolerances, with more decimals: the worst case, and the root of the sum of squares.
+            do k = 1, size(row%others)
+               if (all(row%others(k)%word /= [character(5) :: word_worst, word_rss])) cycle
+               other = row%others(k)%row
+               other%name = ' '//word_rss
+               if (row%others(k)%word == word_worst) other%name = ' '//phrase(say_worst, s%polish)
+               call put_row(o, l, d, other, row%shown, row%others(k)%doubt, l%more_decimals, table)
+            end do
          end associate
       end do
       if (.not. begun .and. any(is_told) .and. .not. has_news) then
@@ -389,6 +381,10 @@ contains
       case (diagnostic_surplus)
          text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(r%links(k))), &
             k=1, count(r%links > 0))], m%polish)//more(r%more, m%polish)
+      case (diagnostic_turned)
+         text = 'LINE '//trim(m%measures(r%measure)%name)//' '//phrase(say_turned_by, m%polish)//' ' &
+            //measure(m, r, error_digits)//' '//phrase(say_in_step, m%polish)//' '//time(m, r%t)//': ' &
+            //phrase(say_turned_far, m%polish)
       case (diagnostic_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select
@@ -470,11 +466,9 @@ contains
       class(settings_t), intent(in) :: m
       real(wp), intent(in) :: t
       character(:), allocatable :: text
-      character(numeral_length) :: field
-      integer :: decimals, power
+      type(format_t) :: f
 
-      call choose_time_digits(m, decimals, power)
-      call put_fixed(t, decimals, power, field)
-      text = trim(adjustl(field))//' '//unit_of(power, trim(m%time_unit))
+      call choose_time_digits(m, f)
+      text = number_text(f, t, 0.0_wp)//' '//unit_of(f%power, trim(m%time_unit))
    end function time
 end module listing

@@ -29,11 +29,7 @@ module phrases
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
       say_instant = phrase_t('INSTANT', 'CHWILA'), &
       say_link = phrase_t('LINK', 'OGNIWO'), &
-      say_point = phrase_t('POINT', 'PUNKT'), &
       say_pair = phrase_t('PAIR', 'PARA'), &
-      say_phi = phrase_t('PHI', 'FI'), &
-      say_slide = phrase_t('SLIDE', 'PRZESUW'), &
-      say_angle = phrase_t('ANGLE', 'KAT'), &
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
       say_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
@@ -73,10 +69,15 @@ module phrases
       say_returns_other = phrase_t('RETURNS ON THE OTHER BRANCH (CARD BRANCH)', &
          'RUCH WRACA DRUGA GALEZIA (KARTA BRANCH)'), &
       say_smoothly = phrase_t('PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO'), &
+      say_flag_above = phrase_t('INSTANT FLAGGED, SEE ABOVE', 'CHWILA ZAZNACZONA, PATRZ WYZEJ'), &
       say_unknown = phrase_t('DIGITS LOST TO ROUNDING', 'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE'), &
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
       say_too_long = phrase_t('REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', &
          'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE'), &
+      say_turned_by = phrase_t('TURNS BY', 'OBRACA SIE O'), &
+      say_in_step = phrase_t('IN THE STEP TO T =', 'W KROKU DO CHWILI T ='), &
+      say_turned_far = phrase_t('ITS WHOLE TURNS ARE UNCERTAIN, USE SMALLER TIME STEPS', &
+         'LICZBA OBROTOW NIEPEWNA, PODAJ CHWILE BLIZSZE SIEBIE'), &
       say_blocked = phrase_t('THE MOTION IS FOLLOWED TO T =', 'RUCH SLEDZONO DO CHWILI T ='), &
       say_close = phrase_t('LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
          'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)'), &
@@ -103,7 +104,6 @@ module phrases
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
       say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', 'NIE PRZESZUKANO (BRAK RUCHU): T ='), &
       say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
-      say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES (OTHER DRIVES HELD)', 'ZAKRESY NAPEDOW (INNE NAPEDY STALE)'), &
       say_range_of_branch = phrase_t('FIRST INSTANT OUT OF REACH, RANGE OF A BRANCH', &
          'PIERWSZA CHWILA POZA ZASIEGIEM, ZAKRES GALEZI'), &
@@ -116,6 +116,7 @@ module phrases
       say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
       say_mechanism = phrase_t('INDEPENDENT MECHANISM', 'NIEZALEZNY MECHANIZM'), &
       say_block = phrase_t('BLOCK', 'BLOK'), &
+      say_by = phrase_t('BY', 'WZGLEDEM'), &
       say_unknowns = phrase_t('UNKNOWNS', 'NIEWIADOME'), &
       say_paths = phrase_t('PATHS', 'SCIEZKI'), &
       say_finite = phrase_t('FINITE', 'SKONCZONE'), &
@@ -141,6 +142,7 @@ module phrases
       say_shares = phrase_t('TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
       say_no_shares = phrase_t('POLES AND CURVES HAVE NO TOLERANCES', 'BIEGUNY I TORY NIE MAJA TOLERANCJI'), &
+      say_no_ratio_shares = phrase_t('RATIOS HAVE NO TOLERANCES', 'PRZELOZENIA NIE MAJA TOLERANCJI'), &
       say_small_shares = phrase_t('CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:'), &
       say_jams = phrase_t('ITS TOLERANCE BREAKS A REDUNDANT EQUATION (THE MECHANISM JAMS)', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')
@@ -175,14 +177,6 @@ module phrases
       say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU'), &
       say_too_wide = phrase_t('BLOCK TOO LARGE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
    type(phrase_t), parameter, public :: &
-      say_pole = phrase_t('POLE', 'BIEGUN'), &
-      say_curve = phrase_t('CURVE', 'TOR'), &
-      say_xi = phrase_t('XI', 'KSI'), &
-      say_direction = phrase_t('DIRECTION', 'KIERUNEK'), &
-      say_tangent = phrase_t('TANGENT', 'STYCZNA'), &
-      say_radius = phrase_t('RADIUS', 'PROMIEN'), &
-      say_centre = phrase_t('CENTRE', 'SRODKA'), &
-      say_infinite = phrase_t('INFINITE', 'NIESKONCZ.'), &
       say_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
    type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
@@ -232,8 +226,8 @@ module phrases
          'NIE RUSZA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2'), &
       say_rest = phrase_t('DO NOT MOVE WITHIN TIME: THE RATE BELONGS IN REAL-2', &
          'NIE RUSZAJA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2'), &
-      say_fast = phrase_t('HAS A TURN OR MORE BETWEEN TWO INSTANTS (CHECK THE UNITS), TURNS:', &
-         'MA OBROT LUB WIECEJ MIEDZY CHWILAMI (SPRAWDZ JEDNOSTKI), OBROTY:'), &
+      say_fast = phrase_t('HAS A TURN OR MORE PER STEP (CHECK THE UNITS), TURNS:', &
+         'MA OBROT LUB WIECEJ NA KROK (SPRAWDZ JEDNOSTKI), OBROTY:'), &
       say_jumps = phrase_t('HAS JUMPS OF ACCELERATION: VALUES AFTER THE JUMP ARE PRINTED', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')

@@ -3,7 +3,7 @@
 !> shows: the one in which the mechanism is read best, and a few others.
 module picture
    use kinds, only: wp, label_length
-   use mechanism, only: pair_revolute, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
+   use mechanism, only: has_guide, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use planar, only: degree, direction, quarter_turn
    use drives, only: drive_motion
@@ -138,7 +138,7 @@ contains
          do i = 1, size(c%m%pairs)
             ends = [c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]
             k = findloc(c%m%points(ends)%link, link, dim=1)
-            if (c%m%pairs(i)%kind /= pair_revolute .or. k == 0) cycle
+            if (has_guide(c%m%pairs(i)%kind) .or. k == 0) cycle
             associate (other => c%m%points(ends(3 - k))%link)
                if (point == 0 .or. other == base .or. (base == 0 .and. c%m%links(other)%ground)) point = ends(k)
             end associate
@@ -234,7 +234,7 @@ contains
 
       open = .not. c%m%links(c%m%points%link)%ground
       do i = 1, size(c%m%pairs)
-         if (c%m%pairs(i)%kind == pair_revolute) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
+         if (.not. has_guide(c%m%pairs(i)%kind)) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
       end do
       open = open .and. c%s%known(c%m%points%link)
       printed = .false.

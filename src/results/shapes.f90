@@ -2,7 +2,7 @@
 !> the link with which it moves. Picture and animation draw this one list. The symbols' sizes are in pixels.
 module shapes
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_revolute
+   use mechanism, only: mechanism_t, has_guide
    use planar, only: direction, quarter_turn, rotated
    use scales, only: characteristic_length
    use drawing, only: drawing_t, guide_t, point_place
@@ -59,7 +59,7 @@ contains
       end do
       ! A support under each joint of the ground.
       do i = 1, size(d%m%pairs)
-         if (d%m%pairs(i)%kind /= pair_revolute) cycle
+         if (has_guide(d%m%pairs(i)%kind)) cycle
          ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
          k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
          if (k == 0) cycle
@@ -103,7 +103,7 @@ contains
       do i = 1, size(d%m%pairs)
          ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
          k = ends(maxloc(merge(0, d%m%points(ends)%link, d%m%links(d%m%points(ends)%link)%ground), dim=1))
-         if (d%m%pairs(i)%kind == pair_revolute) call add(d%m%points(k)%link, 'circle', &
+         if (.not. has_guide(d%m%pairs(i)%kind)) call add(d%m%points(k)%link, 'circle', &
             'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)), spread(d%m%points(k)%offset, 2, 1), &
             weight=box, radius=joint_radius)
       end do

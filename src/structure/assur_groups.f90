@@ -13,7 +13,7 @@
 module assur_groups
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use mechanism, only: mechanism_t, has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use matching, only: incidence_t, match, overdetermined, find_blocks
    implicit none
    private
@@ -57,7 +57,7 @@ contains
       k = 0
       do i = 1, size(m%pairs)
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
-            if (m%pairs(i)%kind == pair_revolute) then
+            if (.not. has_guide(m%pairs(i)%kind)) then
                do axis = 1, 2
                   call note_component(p, along(:, axis))
                   call note_component(q, along(:, axis))

@@ -19,7 +19,8 @@ module blocks
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
       loop_projection, loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
-   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to
+   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to, &
+      own_unknowns
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -109,6 +110,15 @@ module blocks
 
 contains
 
+   !> Lists the unknowns of block number `i`, in its order.
+   pure function own_unknowns(b, i) result(list)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      integer :: list(b%list(i)%last - b%list(i)%first + 1)
+
+      list = b%unknown(b%list(i)%first:b%list(i)%last)
+   end function own_unknowns
+
    !> Block `i` and those that it builds on, in solving order.
    function blocks_below(b, i) result(list)
       type(blocks_t), intent(in) :: b
@@ -132,7 +142,7 @@ contains
       integer :: i
 
       do i = size(taken), 1, -1
-         needed(i) = taken(i) .or. any(need(b%unknown(b%list(i)%first:b%list(i)%last)))
+         needed(i) = taken(i) .or. any(need(own_unknowns(b, i)))
          if (needed(i)) need(known_to(b, i)) = .true.
       end do
       list = pack([(i, i=1, size(taken))], needed)

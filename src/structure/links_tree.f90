@@ -8,7 +8,7 @@ module links_tree
    use kinds, only: wp
    use planar, only: direction, rotated, quarter_turn
    use grouping, only: sorted_t, sorted
-   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
+   use mechanism, only: mechanism_t, has_guide, pair_links, plane_origin
    implicit none
    private
    public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, guide
@@ -85,7 +85,7 @@ contains
                next = next + 1
                do i = t%near%first(link), t%near%first(link + 1) - 1
                   k = t%near%member(i)
-                  if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
+                  if (.not. has_guide(m%pairs(k)%kind) .or. used(k)) cycle
                   used(k) = .true.
                   far = other_link(m, k, link)
                   if (t%orientation(far) >= 0) then
@@ -118,10 +118,10 @@ contains
          link = 1
          do
             if (revolute_next <= last) then
-               call attach_neighbours(pair_revolute, t%order(revolute_next), attached)
+               call attach_neighbours(.false., t%order(revolute_next), attached)
                revolute_next = revolute_next + 1
             else if (prismatic_next <= last) then
-               call attach_neighbours(pair_prismatic, t%order(prismatic_next), attached)
+               call attach_neighbours(.true., t%order(prismatic_next), attached)
                if (.not. attached) prismatic_next = prismatic_next + 1
             else
                do while (link <= size(m%links))
@@ -136,20 +136,21 @@ contains
          end do
       end subroutine grow
 
-      !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
-      subroutine attach_neighbours(kind, link, attached)
-         integer, intent(in) :: kind, link
-         logical, intent(out) :: attached
+      !> Joins neighbours of a link to the tree: all that its revolute pairs reach, or one along a prismatic pair.
+      subroutine attach_neighbours(sliding, link, attached)
+         logical, intent(in) :: sliding      !< by a prismatic pair
+         integer, intent(in) :: link         !< its number
+         logical, intent(out) :: attached    !< some neighbour was not yet in the tree
          integer :: i, k
 
          attached = .false.
          do i = t%near%first(link), t%near%first(link + 1) - 1
             k = t%near%member(i)
-            if (m%pairs(k)%kind /= kind) cycle
+            if (has_guide(m%pairs(k)%kind) .neqv. sliding) cycle
             if (t%depth(other_link(m, k, link)) >= 0) cycle
             call attach(other_link(m, k, link), link, k)
             attached = .true.
-            if (kind == pair_revolute) cycle
+            if (.not. sliding) cycle
             t%slides = t%slides + 1
             t%slide(k) = t%slides
             return
@@ -212,7 +213,7 @@ contains
          p%reach = point_offset(m, a, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
          p%body_vector = point_offset(m, a, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
          if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - a%origin)
-         if (pair%kind /= pair_prismatic) return
+         if (.not. has_guide(pair%kind)) return
          p%slide = t%slide(t%parent_joint(link))
          p%slide_body_vector = sign_of*guide(m, a, t%parent_joint(link), across=.false.)
          p%reach = p%reach - sign_of*guide(m, a, t%parent_joint(link), across=.true.)*pair%offset

@@ -8,7 +8,7 @@ module loop_equations
    use kinds, only: wp
    use planar, only: without_turns
    use grouping, only: sorted_t, sorted
-   use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
+   use mechanism, only: mechanism_t, pair_links, has_guide, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
    use vector_loops, only: search_t, find_path, vector_loops_t, &
@@ -89,7 +89,7 @@ contains
          associate (p => m%pairs(k), n => e%vector_loops%count)
             call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
             call add_vector_loop(m, t, p%point_i, p%point_j, s, e%vector_loops)
-            if (p%kind == pair_revolute) then
+            if (.not. has_guide(p%kind)) then
                call add(equation_t(equation_x, vector_loop=n, pair=k))
                call add(equation_t(equation_y, vector_loop=n, pair=k))
                ! From now on paths lead through it.

@@ -10,7 +10,7 @@ module structure
    use numerals, only: whole
    use names, only: drive_name, listed, more
    use grouping, only: once
-   use mechanism, only: mechanism_t, pair_links, pair_revolute, pair_prismatic, method_newton
+   use mechanism, only: mechanism_t, pair_links, has_guide, method_newton
    use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
@@ -56,8 +56,8 @@ contains
 
       f%links = size(m%links)
       f%ground = count(m%links%ground)
-      f%revolute = count(m%pairs%kind == pair_revolute)
-      f%prismatic = count(m%pairs%kind == pair_prismatic)
+      f%revolute = count(.not. has_guide(m%pairs%kind))
+      f%prismatic = count(has_guide(m%pairs%kind))
       f%coordinates = 3*f%links
       f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
       f%degrees_of_freedom = f%coordinates - f%equations

@@ -13,7 +13,7 @@
 !> holds few links, so the blocks stay small and the work proportional to the links.
 module vector_loops
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_prismatic
+   use mechanism, only: mechanism_t, has_guide
    use links_tree, only: tree_t, axes_t, point_offset, guide, other_link
    implicit none
    private
@@ -77,7 +77,7 @@ contains
             exit_point = merge(k%point_i, k%point_j, sign_of > 0)
             entry_point = merge(k%point_j, k%point_i, sign_of > 0)
             call add_term([-exit_point, 0], t%orientation(m%points(exit_point)%link))
-            if (k%kind == pair_prismatic) then
+            if (has_guide(k%kind)) then
                ! P - Q = h n - s e, all in the orientation that the two links share.
                call add_slide(t%orientation(link), t%slide(s%pairs(i)), -sign_of*s%pairs(i))
                call add_term([0, sign_of*s%pairs(i)], t%orientation(link))

@@ -10,10 +10,12 @@ module study
    use independent, only: request_of
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
-   use points, only: row_t, has_number, is_due
+   use points, only: is_due
+   use columns, only: cell_of, cell_number, of_angle
+   use rows, only: finished_row_t, find_rows
    use scales, only: characteristic_length, characteristic_rate
    use known_digits, only: nothing_known
-   use set_motion, only: set_motion_t, new_set_motion, is_flagged, find_row_in_set, error_in_set
+   use set_motion, only: set_motion_t, new_set_motion, is_flagged
    use csv, only: table_t, new_table
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
@@ -264,31 +266,27 @@ contains
       !> Notes the largest values of the rows of this instant and their largest differences from the truth: of lengths
       !> and of angles.
       subroutine compare()
-         type(row_t) :: rows(size(a%now%rows))
-         real(wp) :: error(3, 0:2, size(a%now%rows))
+         type(finished_row_t), allocatable :: rows(:)
          real(qp) :: off
          integer :: i, kind
 
          if (.not. truth%due(1 + k)) return
          if (.not. truth%is_reference) call sample_set(a, .true.)
-         do i = 1, size(rows)
-            call find_row_in_set(a%now, i, rows(i))
-            if (.not. truth%is_reference .and. rows(i)%kind <= request_pair) error(:, :, i) = error_in_set(a%now, i)
-         end do
+         call find_rows(a%now, k, .true., rows)
          do i = 1, size(truth%table%columns)
             associate (c => truth%table%columns(i), row => rows(truth%table%columns(i)%request))
-               if (row%kind > request_pair .or. .not. has_number(row, c%coordinate, c%order)) cycle
+               if (cell_of(c%row_column_t, row%known, row%state) /= cell_number) cycle
                if (truth%is_reference) then
-                  off = abs(row%value(c%coordinate, c%order) &
-                     - truth%value(i, k)/merge(radian, 1.0_qp, c%angular .and. m%degrees))
+                  off = abs(row%value(c%at(1), c%at(2)) &
+                     - truth%value(i, k)/merge(radian, 1.0_qp, c%dimension == of_angle .and. m%degrees))
                   ! The reference has no number there.
                   if (.not. off <= huge(1.0_dp)) cycle
                else
-                  off = error(c%coordinate, c%order, c%request)
+                  off = row%error(c%at(1), c%at(2))
                end if
-               kind = merge(2, 1, c%angular)
+               kind = c%dimension
                difference(kind, c%order) = max(difference(kind, c%order), real(off, dp))
-               largest(kind, c%order) = max(largest(kind, c%order), real(abs(row%value(c%coordinate, c%order)), dp))
+               largest(kind, c%order) = max(largest(kind, c%order), real(abs(row%value(c%at(1), c%at(2))), dp))
             end associate
          end do
       end subroutine compare
@@ -310,7 +308,7 @@ contains
       call new_set_motion(m, s)
       requests = [(request_of(s, i), i=1, size(s%rows))]
       truth%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
-      truth%table = new_table(s, pack([(i, i=1, size(s%rows))], requests%every > 0))
+      truth%table = new_table(s)
       truth%compared = min(last + 1, max(1, max_compared/max(1, size(truth%table%columns))))
       call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
       if (unit == 0) return

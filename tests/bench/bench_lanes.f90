@@ -87,7 +87,7 @@ contains
       time = seconds()
       call run_lanes(runs, lanes)
       time = (seconds() - time)/(steps_of_turn*width)
-      if (.not. all(runs%is_over) .or. any(runs%row%flagged > 0)) error stop 'A VARIANT OF THE BENCH HAS NO MOTION'
+      if (.not. all(runs%is_over) .or. any(runs%counts%flagged > 0)) error stop 'A VARIANT OF THE BENCH HAS NO MOTION'
    end function time_of
 
    !> Compares the lanes' sines and cosines of `count` angles with those of real128. `failed`: 1 if one is off by more

@@ -21,11 +21,13 @@ contains
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
       character(8), parameter :: plain(*) = [character(8) :: 'RANGE', 'CIRCUITS', 'ASSEMBLY', 'PROVE']
-      character(8), parameter :: kinds(*) = [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS']
+      character(8), parameter :: kinds(*) = [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
+      character(8), parameter :: column_kinds(*) = [character(8) :: 'LINKS', 'POINTS', 'PAIRS', 'RATIOS', 'MEASURES']
+      character(8), parameter :: quantities(*) = [character(8) :: 'X', 'VY', 'PHI', 'APHI', 'VALUE', 'AVALUE', 'DERIV']
       character(80) :: card
 
       card = ''
-      select case (throw(r, 10))
+      select case (throw(r, 14))
       case (1:4)
          card = plain(throw(r, size(plain)))
          ! The circuits of many links can take minutes.
@@ -41,6 +43,17 @@ contains
          card = 'BRANCH'
          if (chance(r, 0.5_wp)) card(9:16) = any_name(d, r, ['LINK    '])
          write (card(33:48), '(es16.8e3)') between(r, 0.0_wp, 10.0_wp)
+      case (10)
+         card = 'COLUMN  '//column_kinds(throw(r, size(column_kinds)))
+         if (card(9:16) == 'LINKS') card(17:24) = any_name(d, r, ['LINK    '])
+         if (card(9:16) == 'POINTS') card(17:24) = any_name(d, r, ['POINT   ', 'JOINT   '])
+         if (any(card(9:16) == column_kinds(3:))) card(17:24) = any_pair(d, r)
+         if (chance(r, 0.5_wp)) card(25:32) = quantities(throw(r, size(quantities)))
+      case (11)
+         card = merge('PRINT   ', 'EXTREMES', chance(r, 0.7_wp))//'RATIOS'
+         if (chance(r, 0.5_wp)) card(17:24) = any_pair(d, r)
+      case (12:13)
+         card = a_measure(d, r)
       case default
          if (chance(r, 0.5_wp)) call vary(d, r)
          if (chance(r, 0.5_wp)) call tolerate(d, r)
@@ -49,6 +62,34 @@ contains
       call insert_line(d, last_line(d), card)
       call add_note(d, 'ASKED: '//card(:24))
    end subroutine ask
+
+   !> A card that measures something, with a name of its own.
+   function a_measure(d, r) result(card)
+      type(draft_t), intent(in) :: d
+      type(dice_t), intent(inout) :: r
+      character(80) :: card
+      character(8), parameter :: cards(*) = [character(8) :: 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM']
+      character(8), parameter :: links(2) = ['GROUND  ', 'LINK    '], points(2) = ['POINT   ', 'JOINT   ']
+      character(8) :: name
+
+      card = cards(throw(r, size(cards)))
+      write (name, '(a, i0)') 'M', size(find_cards(d, cards)) + 1
+      select case (card)
+      case ('DISTANCE', 'LINE')
+         card(9:24) = any_name(d, r, points)//any_name(d, r, points)
+      case ('XI', 'ETA')
+         card(9:24) = any_name(d, r, points)//any_name(d, r, links)
+      case ('ANGLE')
+         card(9:16) = any_name(d, r, links)
+         card(17:24) = any_name(d, r, links)
+         if (chance(r, 0.5_wp)) card(9:16) = any_name(d, r, ['LINE    '], 3)
+      case default
+         card(9:16) = any_name(d, r, cards(:5), 3)
+         if (chance(r, 0.5_wp)) card(17:24) = any_name(d, r, cards, 3)
+         if (chance(r, 0.5_wp)) write (card(33:48), '(es16.8e3)') between(r, -2.0_wp, 2.0_wp)
+      end select
+      card(25:32) = name
+   end function a_measure
 
    !> The line of the END card, or the one behind the last.
    integer function last_line(d)
@@ -60,18 +101,33 @@ contains
       last_line = size(d%line) + 1
    end function last_line
 
-   !> What one of the `cards` is about.
-   function any_name(d, r, cards) result(name)
+   !> What one of the `cards` is about, as its first label says, or label number `place`.
+   function any_name(d, r, cards, place) result(name)
       type(draft_t), intent(in) :: d
       type(dice_t), intent(inout) :: r
       character(8), intent(in) :: cards(:)
+      integer, intent(in), optional :: place
+      character(8) :: name
+      integer :: i, k
+
+      name = ''
+      k = 1
+      if (present(place)) k = place
+      i = pick(r, find_cards(d, cards))
+      if (i > 0) name = label(d%line(i), k)
+   end function any_name
+
+   !> The name of a pair.
+   function any_pair(d, r) result(name)
+      type(draft_t), intent(in) :: d
+      type(dice_t), intent(inout) :: r
       character(8) :: name
       integer :: i
 
       name = ''
-      i = pick(r, find_cards(d, cards))
-      if (i > 0) name = label(d%line(i), 1)
-   end function any_name
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'JOINT   ']))
+      if (i > 0) name = label(d%line(i), merge(1, 3, name_of(d%line(i)) == 'JOINT'))
+   end function any_pair
 
    !> A few values for a number of a card.
    subroutine vary(d, r)
@@ -140,11 +196,11 @@ contains
          is_name = k == 1
       case ('POINT', 'POLE', 'CURVE')
          is_name = k <= 2
-      case ('REVOLUTE', 'PRISM', 'JOINT')
+      case ('REVOLUTE', 'PRISM', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
          is_name = .true.
       case ('DRIVE')
          is_name = k >= 2 .and. label(line, k) /= 'RPM'
-      case ('PRINT', 'EXTREMES')
+      case ('PRINT', 'COLUMN', 'EXTREMES')
          is_name = k == 2
       case default
          is_name = .false.

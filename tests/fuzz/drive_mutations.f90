@@ -135,6 +135,7 @@ contains
          if (chance(r, 0.6_wp)) call put_real(d, r, i, 1, real_field(d, one, 3))
       case (2)
          one = pick(r, find_cards(d, ['POINT   ']))
+         if (one == 0) return
          call set_label(d%line(i), 1, merge('X', 'Y', chance(r, 0.5_wp)))
       case (3)
          one = pick(r, find_cards(d, ['LINK    ']))

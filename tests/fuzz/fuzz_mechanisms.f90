@@ -15,7 +15,7 @@ program fuzz_mechanisms
    use phrases, only: phrase, say_too_long
    use quad_jet, only: qp
    use schemes, only: scheme_t, write_scheme
-   use random_schemes, only: random_scheme, class_of, surplus_scheme
+   use random_schemes, only: random_scheme, class_of, surplus_scheme, add_measures
    use scheme_results, only: verdict_t, judge
    implicit none
 
@@ -42,6 +42,7 @@ contains
 
       s = [random_scheme(seed, 1)]
       if (modulo(seed, 10) == 7 .or. modulo(seed, 30) == 11 .or. modulo(seed, 60) == 40) s = [s, random_scheme(seed, 2)]
+      call add_measures(s(1), seed)
    end function schemes_of
 
    function surplus_of(seed, has_surplus) result(s)

@@ -10,18 +10,18 @@ module listing_check
    integer, parameter :: longest_word = 20
    character(14), parameter :: heads(*) = [character(14) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
       'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'VELOCITY', 'ACCELERATION', 'PREDKOSC', 'PRZYSPIESZENIE', &
-      'XI-I', 'KSI-I', &
+      'XI-I', 'KSI-I', 'LENGTH', 'DLUGOSC', &
       'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
-      'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA']
+      'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA', 'VALUE', 'WARTOSC', 'DERIVATIVE', 'POCHODNA']
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
-      'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.']
+      'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.', 'COINCIDE', 'POKRYCIE']
    !> What begins tables of other forms, behind those of the motion.
    character(14), parameter :: other_heads(*) = [character(14) :: 'CONTINUATION:', 'KONTYNUACJA:', 'TOLERANCES:', &
       'TOLERANCJE:', &
       'ASSEMBLIES', 'MONTAZE', 'RANGES OF', 'ZAKRESY', 'CIRCUITS AND', 'OBWODY I', 'PROOF:', 'DOWOD:']
-   !> Columns of the names of a row; of one with two names.
-   integer, parameter :: one_name = 9, two_names = 18
+   !> Columns of the names of a row; of one with two names; of a ratio, a quantity BY a drive.
+   integer, parameter :: one_name = 9, two_names = 18, ratio_names = 44
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
       'JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI', &
       'CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE', &
@@ -30,6 +30,7 @@ module listing_check
       'REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE']
    !> What a remark holds, after three stars or three dashes.
    character(60), parameter :: diagnostics(*) = [character(60) :: 'CLOSURE ERROR', 'BLAD ZAMKNIECIA', &
+      'IN THE STEP TO T =', 'W KROKU DO CHWILI T =', 'WHOLE TURNS ARE UNCERTAIN', 'LICZBA OBROTOW NIEPEWNA', &
       'AT THE LIMIT', 'NA KRESIE RUCHU', &
       'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
       'A DRIVE IS TOO MANY, REMOVE ONE OF: ', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z: ', &
@@ -44,6 +45,8 @@ module listing_check
       '?: DIGITS LOST TO ROUNDING', '?: CYFRY UTRACONE PRZEZ ZAOKRAGLENIE', &
       'LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS', 'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH', &
       'REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', 'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE', &
+      'INSTANT FLAGGED, SEE ABOVE', 'CHWILA ZAZNACZONA, PATRZ WYZEJ', &
+      'RATIOS HAVE NO TOLERANCES', 'PRZELOZENIA NIE MAJA TOLERANCJI', &
       'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY', &
       'LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
       'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)', &
@@ -95,6 +98,8 @@ contains
          if (any([(starts(line, ' '//trim(other_heads(i))), i=1, size(other_heads))])) tables = .false.
          if (any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR'])) then
             if (are_heads(line(two_names + 1:))) names = two_names
+         else if (any(line(:12) == [character(12) :: ' RATIO', ' PRZELOZENIE'])) then
+            if (are_heads(line(ratio_names + 1:))) names = ratio_names
          else if (line(:one_name) /= '' .and. line(one_name + 1:) /= '' .and. are_heads(line(one_name + 1:))) then
             names = one_name
          end if
@@ -120,10 +125,11 @@ contains
       character(*), intent(in) :: line
       logical, intent(in) :: tables
       integer, intent(in) :: names
-      integer :: i
+      integer :: i, star
 
       wrong = index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
-      if (wrong .or. line == '') return
+      ! Nothing that extremes are asked for moves.
+      if (wrong .or. any(line == [character(12) :: '', ' AT REST', ' W SPOCZYNKU'])) return
       if (.not. tables) then
          wrong = index(line, '****') > 0
       else if (starts(line, ' *** ')) then
@@ -142,6 +148,11 @@ contains
             verify(trim(line(index(line, ':') + 13:)), '0123456789') > 0
       else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ') .or. index(line, ' = ') > 0) then
          wrong = .not. are_values(line)
+      else if (verify(trim(adjustl(line(:12))), '0123456789.-') == 0 .and. any(line(13:13) == [' ', '*']) .and. &
+         line(12:12) /= '') then
+         ! A row of the table of columns begins with its time, and a star if the instant is flagged.
+         star = index(line, '* ')
+         wrong = .not. are_numbers(line(:max(0, star - 1))//line(star + 1:))
       else if (line(:10) == '') then
          wrong = index(line, '****') > 0
       else

@@ -2,16 +2,17 @@
 !> and links with several degrees of freedom, and one has a group of 12 to 18 links.
 module random_schemes
    use kinds, only: wp
+   use grouping, only: joined
    use quad_jet, only: qp
-   use dice, only: dice_t, new_dice, throw, chance, magnitude, disorder
-   use schemes, only: scheme_t, pair_t, drive_t, drive_angle, drive_relangle, drive_x, drive_y, angle_unit, link_at, &
-      double
+   use dice, only: dice_t, new_dice, throw, chance, between, magnitude, disorder
+   use schemes, only: scheme_t, pair_t, measure_t, measure_line, measure_angle, measure_xi, measure_sum, drive_t, &
+      drive_angle, drive_relangle, drive_x, drive_y, angle_unit, link_at, double
    use scheme_draft, only: draft_t, number, add_link, add_point, world, end_group
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram
    implicit none
    private
-   public :: random_scheme, class_of, surplus_scheme, class_dyads, class_triads, class_wide
+   public :: random_scheme, class_of, surplus_scheme, add_measures, class_dyads, class_triads, class_wide
 
    enum, bind(c)
       enumerator :: class_dyads = 1, class_triads, class_wide
@@ -56,6 +57,81 @@ contains
       call end_scheme(d)
       s = d%s
    end function random_scheme
+
+   !> Up to six measures of one independent mechanism of `s`, by dice of their own. Their rows are printed, so that a
+   !> scheme of which only some links are has none.
+   subroutine add_measures(s, seed)
+      type(scheme_t), intent(inout) :: s
+      integer, intent(in) :: seed
+      type(dice_t) :: dice
+      type(measure_t), allocatable :: list(:)
+      type(measure_t) :: one
+      integer, allocatable :: points(:), links(:), alike(:), parts(:)
+      integer :: part, k, i, n
+
+      if (allocated(s%printed)) return
+      dice = new_dice(seed + 700000000)
+      associate (relative => s%drives%kind == drive_relangle)
+         parts = joined(.not. s%links%ground, &
+            [s%points(s%pairs%point_i)%link, pack(s%drives%subject, relative)], &
+            [s%points(s%pairs%point_j)%link, pack(s%drives%second, relative)])
+      end associate
+      part = throw(dice, max(1, maxval(parts)))
+      points = pack([(i, i=1, size(s%points))], [(belongs(s%points(i)%link), i=1, size(s%points))])
+      links = pack([(i, i=1, size(s%links))], [(belongs(i) .and. any(s%points%link == i), i=1, size(s%links))])
+      if (min(size(points), size(links)) < 2) return
+      allocate (list(0))
+      n = throw(dice, 6)
+      do k = 1, n
+         one = measure_t(kind=throw(dice, measure_sum))
+         one%is_angle = any(one%kind == [measure_line, measure_angle])
+         select case (one%kind)
+         case (measure_angle)
+            do
+               do i = 1, 2
+                  alike = pack([(n, n=1, size(list))], list%kind == measure_line)
+                  one%of_line(i) = chance(dice, 0.6_wp) .and. size(alike) > 0
+                  one%subjects(i) = links(throw(dice, size(links)))
+                  if (one%of_line(i)) one%subjects(i) = alike(throw(dice, size(alike)))
+               end do
+               if (one%subjects(1) /= one%subjects(2) .or. (one%of_line(1) .neqv. one%of_line(2))) exit
+            end do
+         case (measure_sum)
+            if (size(list) == 0) cycle
+            one%subjects(1) = throw(dice, size(list))
+            one%is_angle = list(one%subjects(1))%is_angle
+            alike = pack([(i, i=1, size(list))], list%is_angle .eqv. one%is_angle)
+            one%subjects(2) = alike(throw(dice, size(alike)))
+            ! Whole turns stay whole turns.
+            one%factors = real([throw(dice, 3), throw(dice, 3)] - 2, qp)
+            if (.not. one%is_angle) one%factors = [number_between(-2.0_wp, 2.0_wp), number_between(-2.0_wp, 2.0_wp)]
+            one%constant = number_between(-1.0_wp, 1.0_wp)
+         case default
+            one%subjects(1) = points(throw(dice, size(points)))
+            do
+               one%subjects(2) = points(throw(dice, size(points)))
+               if (one%subjects(2) /= one%subjects(1)) exit
+            end do
+            if (one%kind >= measure_xi) one%subjects(2) = links(throw(dice, size(links)))
+         end select
+         list = [list, one]
+      end do
+      if (size(list) > 0) s%measures = list
+
+   contains
+
+      logical function belongs(link)
+         integer, intent(in) :: link
+
+         belongs = any(parts(link) == [0, part])
+      end function belongs
+
+      real(qp) function number_between(low, high)
+         real(wp), intent(in) :: low, high
+
+         number_between = double(real(between(dice, low, high), qp))
+      end function number_between
+   end subroutine add_measures
 
    !> A small scheme of seed number `seed`, by METHOD NEWTON. `has_surplus`: with equations that say again what others
    !> say, after those of the scheme without them. Some decks with surplus have 12 digits: then equations contradict

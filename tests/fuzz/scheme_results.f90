@@ -2,8 +2,9 @@
 !> error that the program tells of it, and every flag.
 module scheme_results
    use, intrinsic :: iso_fortran_env, only: real64
-   use quad_jet, only: qp, jet_t, operator(-), operator(+), operator(*), sin, cos
-   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place, is_redundant
+   use quad_jet, only: qp, jet_t, pi_q, operator(-), operator(+), operator(*), sin, cos, sqrt, atan2
+   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place, is_redundant, measure_t, &
+      measure_distance, measure_line, measure_angle, measure_xi, measure_sum
    use scheme_motion, only: motion_t, begin_motion, move_to, closes, is_followed, is_lost
    implicit none
    private
@@ -25,11 +26,13 @@ module scheme_results
    !> The one matrix of METHOD DENSE, or of redundant equations, may have no velocities for a group that is smaller than this
    !> part of another one; where they end, so does the motion that is followed.
    real(qp), parameter :: small_group = 0.01_qp
+   !> Points that are closer, in lengths of their mechanism, may coincide: their direction is not compared.
+   real(qp), parameter :: close = 1.0e-6_qp
    integer, parameter :: cells = 24, cell_length = 26
 
    type :: row_t
       integer :: set = 0, step = 0, number = 0
-      character(1) :: kind = ''                !< L, P or K
+      character(1) :: kind = ''                !< L, P, K or M
       real(qp) :: t = 0.0_qp
       real(qp) :: value(9) = 0.0_qp, error(9) = 0.0_qp
       logical :: known(9) = .false., is_told(9) = .false.
@@ -125,8 +128,9 @@ contains
       type(so_far_t), intent(inout) :: so_far
       type(verdict_t), intent(inout) :: v
       type(jet_t) :: truth(3)
-      real(qp) :: scale, unit(3)
-      integer :: group(2), status
+      real(qp) :: scale, unit(3), per_unit
+      integer, allocatable :: group(:)
+      integer :: status
 
       group = groups_of(s, row)
       if (any(group > 0)) status = maxval(m%status(pack(group, group > 0)))
@@ -147,8 +151,10 @@ contains
             return
          end if
       end if
-      if (row%mark /= '') call judge_flag(s, m, group, row, is_too_long, so_far, v)
-      if (any(group > 0)) then
+      ! Where two points are close, digits of their direction are lost, and there may be no direction.
+      if (row%mark /= '' .and. .not. (row%kind == 'M' .and. any(row%mark == [character(12) :: 'COINCIDE', 'UNKNOWN']))) &
+         call judge_flag(s, m, group, row, is_too_long, so_far, v)
+      if (any(group > 0) .and. row%kind /= 'M') then
          associate (k => maxval(group))
             if (row%mark == 'NO-RATES' .and. row%step == 0) so_far%begun(k) = .not. may_miss(s)
             so_far%told(k) = so_far%told(k) .and. .not. any(row%known .and. .not. row%is_told)
@@ -160,13 +166,25 @@ contains
          end associate
       end if
       truth = true_values(s, m, row)
+      if (row%kind == 'M') then
+         if (.not. truth(3)%v > 0.0_qp) then
+            v%unknown = v%unknown + 1
+            return
+         end if
+         ! The turns of a direction are another matter.
+         per_unit = 1.0_qp/angle_unit(s)
+         if (s%measures(row%number)%is_angle) truth(1)%v = truth(1)%v &
+            + 2.0_qp*pi_q*per_unit*anint((row%value(1) - truth(1)%v)/(2.0_qp*pi_q*per_unit))
+         truth(2:) = jet_t()
+      end if
       ! Of a point of the ground the sum of its own numbers is rounded, and no error is told.
       scale = 1.0_qp
       if (row%kind == 'P') scale = (norm2(s%links(link_at(s, row%number))%at(:2)) &
          + norm2(s%points(row%number)%offset))*bits/nothing
+      if (row%kind == 'M' .and. .not. any(group > 0)) scale = maxval(s%groups%scale)
       if (any(group > 0)) scale = maxval(s%groups(pack(group, group > 0))%scale)
       unit = [scale, scale, 1.0_qp/angle_unit(s)]
-      call compare(truth%v, row, 0, unit, any(group > 0), v)
+      call compare(truth%v, row, 0, unit, any(group > 0) .or. row%kind == 'M', v)
       if (.not. any(group > 0)) return
       call compare(truth%d, row, 1, unit/s%span, .true., v)
       call compare(truth%dd, row, 2, unit/s%span**2, .true., v)
@@ -204,7 +222,7 @@ contains
    subroutine judge_flag(s, m, group, row, is_too_long, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
-      integer, intent(in) :: group(2)
+      integer, intent(in) :: group(:)
       type(row_t), intent(in) :: row
       logical, intent(in) :: is_too_long
       type(so_far_t), intent(in) :: so_far
@@ -234,7 +252,7 @@ contains
    pure logical function is_regular(s, m, group, told) result(is)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
-      integer, intent(in) :: group(2)
+      integer, intent(in) :: group(:)
       logical, intent(in) :: told(:)
       integer :: k
 
@@ -251,17 +269,47 @@ contains
    function groups_of(s, row) result(group)
       type(scheme_t), intent(in) :: s
       type(row_t), intent(in) :: row
-      integer :: group(2)
+      integer, allocatable :: group(:)
 
       select case (row%kind)
       case ('L')
-         group = s%links(row%number)%group
+         group = [s%links(row%number)%group]
       case ('P')
-         group = s%links(s%points(row%number)%link)%group
+         group = [s%links(s%points(row%number)%link)%group]
+      case ('M')
+         group = s%links(links_of(row%number))%group
       case default
-         group(1) = s%links(link_at(s, s%pairs(row%number)%point_i))%group
-         group(2) = s%links(link_at(s, s%pairs(row%number)%point_j))%group
+         group = s%links(link_at_each(s%pairs(row%number)%point_i, s%pairs(row%number)%point_j))%group
       end select
+
+   contains
+
+      pure function link_at_each(i, j) result(links)
+         integer, intent(in) :: i, j
+         integer :: links(2)
+
+         links = [link_at(s, i), link_at(s, j)]
+      end function link_at_each
+
+      !> The links of measure number `k`.
+      pure recursive function links_of(k) result(links)
+         integer, intent(in) :: k
+         integer, allocatable :: links(:)
+         integer :: i
+
+         allocate (links(0))
+         associate (one => s%measures(k))
+            do i = 1, 2
+               if (one%kind == measure_sum .or. one%of_line(i)) then
+                  links = [links, links_of(one%subjects(i))]
+               else if (one%kind == measure_angle .or. (one%kind >= measure_xi .and. i == 2)) then
+                  links = [links, one%subjects(i)]
+               else
+                  links = [links, link_at(s, one%subjects(i))]
+               end if
+            end do
+         end associate
+      end function links_of
    end function groups_of
 
    !> What the three columns of each derivative should be, in the deck's units.
@@ -280,6 +328,10 @@ contains
          end associate
       case ('P')
          truth(:2) = place(m%b(link_at(s, row%number)), s%points(row%number)%offset)
+      case ('M')
+         truth(3)%v = huge(1.0_qp)
+         truth(1) = measured(row%number, truth(3)%v)
+         if (s%measures(row%number)%is_angle) truth(1) = per_unit*truth(1)
       case default
          associate (pair => s%pairs(row%number))
             associate (i => m%b(link_at(s, pair%point_i)), j => m%b(link_at(s, pair%point_j)))
@@ -291,6 +343,50 @@ contains
             end associate
          end associate
       end select
+
+   contains
+
+      !> Measure number `k`, angles in rad. `distance`: 0 if two of its points are close.
+      recursive function measured(k, distance) result(x)
+         integer, intent(in) :: k
+         real(qp), intent(inout) :: distance
+         type(jet_t) :: x, one(2), way(2)
+         integer :: i
+
+         x = jet_t()
+         associate (measure => s%measures(k), subjects => s%measures(k)%subjects)
+            select case (measure%kind)
+            case (measure_distance, measure_line)
+               way = place(m%b(link_at(s, subjects(2))), s%points(subjects(2))%offset) &
+                  - place(m%b(link_at(s, subjects(1))), s%points(subjects(1))%offset)
+               if (hypot(way(1)%v, way(2)%v) < close*maxval(s%groups%scale)) then
+                  distance = 0.0_qp
+               else if (measure%kind == measure_distance) then
+                  x = sqrt(way(1)*way(1) + way(2)*way(2))
+               else
+                  x = atan2(way(2), way(1))
+               end if
+            case (measure_angle, measure_sum)
+               do i = 1, 2
+                  if (measure%kind == measure_sum .or. measure%of_line(i)) then
+                     one(i) = measured(subjects(i), distance)
+                  else
+                     one(i) = m%b(subjects(i))%phi
+                  end if
+               end do
+               x = one(2) - one(1)
+               if (measure%kind == measure_sum) x = measure%factors(1)*one(1) + measure%factors(2)*one(2) &
+                  + measure%constant*merge(angle_unit(s), 1.0_qp, measure%is_angle)
+            case default
+               associate (b => m%b(subjects(2)))
+                  way = place(m%b(link_at(s, subjects(1))), s%points(subjects(1))%offset)
+                  way = [way(1) - b%x, way(2) - b%y]
+                  x = way(1)*b%c + way(2)*b%s
+                  if (measure%kind > measure_xi) x = way(2)*b%c - way(1)*b%s
+               end associate
+            end select
+         end associate
+      end function measured
    end function true_values
 
    !> The next row; `at_end`: there is none.

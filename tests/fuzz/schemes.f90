@@ -6,7 +6,8 @@ module schemes
    use drive_laws, only: law_t, term_harmonic, term_power, term_table, term_rise
    implicit none
    private
-   public :: scheme_t, link_t, point_t, pair_t, drive_t, group_t, body_t
+   public :: scheme_t, link_t, point_t, pair_t, measure_t, drive_t, group_t, body_t
+   public :: measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
    public :: drive_angle, drive_relangle, drive_x, drive_y, drive_slide
    public :: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram
    public :: angle_unit, point_on, link_at, place, set_trigonometry, drive_unit, write_scheme, double, is_redundant
@@ -39,6 +40,21 @@ module schemes
       real(qp) :: alpha = 0.0_qp, h = 0.0_qp, beta = 0.0_qp !< angles in the deck's unit
    end type pair_t
 
+   enum, bind(c)
+      enumerator :: measure_distance = 1, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
+   end enum
+   character(8), parameter :: measure_cards(measure_sum) = &
+      [character(8) :: 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM']
+
+   !> What a card measures: by the kind two points, two links or lines, a point and a link, or two measures.
+   type :: measure_t
+      integer :: kind = measure_distance
+      integer :: subjects(2) = 0
+      logical :: of_line(2) = .false.          !< of an angle: a line, otherwise a link
+      real(qp) :: factors(2) = 1.0_qp, constant = 0.0_qp   !< of a sum; the constant in the deck's unit
+      logical :: is_angle = .false.
+   end type measure_t
+
    type :: drive_t
       integer :: kind = 0, subject = 0, second = 0
       type(law_t) :: law
@@ -63,6 +79,7 @@ module schemes
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)
       type(drive_t), allocatable :: drives(:)
+      type(measure_t), allocatable :: measures(:) !< not allocated: none
       type(group_t), allocatable :: groups(:)
       integer :: steps = 0
       real(qp) :: t0 = 0.0_qp, t1 = 0.0_qp
@@ -186,6 +203,11 @@ contains
       do k = 1, size(s%drives)
          call write_drive(s%drives(k), s%digits, unit)
       end do
+      if (allocated(s%measures)) then
+         do k = 1, size(s%measures)
+            call write_measure(s, s%measures(k), k, unit)
+         end do
+      end if
       call write_rest(s, unit)
    end subroutine write_scheme
 
@@ -220,6 +242,32 @@ contains
       end select
    end subroutine write_drive
 
+   !> The card of measure number `k`, with lines that are named M and a number as all measures are.
+   subroutine write_measure(s, one, k, unit)
+      type(scheme_t), intent(in) :: s
+      type(measure_t), intent(in) :: one
+      integer, intent(in) :: k, unit
+      character(1) :: letters(2)
+
+      select case (one%kind)
+      case (measure_distance, measure_line)
+         letters = 'P'
+      case (measure_angle)
+         letters = merge('M', 'L', one%of_line)
+      case (measure_sum)
+         letters = 'M'
+      case default
+         letters = ['P', 'L']
+      end select
+      if (one%kind == measure_sum) then
+         call card(s%digits, unit, measure_cards(one%kind), &
+            [name(letters(1), one%subjects(1)), name(letters(2), one%subjects(2)), name('M', k)], [one%factors, one%constant])
+      else
+         call card(s%digits, unit, measure_cards(one%kind), &
+            [name(letters(1), one%subjects(1)), name(letters(2), one%subjects(2)), name('M', k)], [real(qp) ::])
+      end if
+   end subroutine write_measure
+
    !> BRANCH, TIME, AT, PRINT and END.
    subroutine write_rest(s, unit)
       type(scheme_t), intent(in) :: s
@@ -242,6 +290,7 @@ contains
          end do
       else
          write (unit, '(2a)') 'PRINT   ', trim(s%print)
+         if (allocated(s%measures) .and. s%print /= 'ALL') write (unit, '(a)') 'PRINT   MEASURES'
       end if
       write (unit, '(a)') 'END'
    end subroutine write_rest

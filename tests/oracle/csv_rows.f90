@@ -4,8 +4,9 @@ module csv_rows
    use kinds, only: wp
    use csv_cells, only: cells, cell_length, split, whole_text
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
-   use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, &
-      request_pole, pair_prismatic
+   use mechanism, only: mechanism_t, instant_count, is_centre, request_link, request_point, request_pair, &
+      request_measure, request_pole, pair_prismatic
+   use names, only: subject_name
    use jet_closure, only: body_jet_t
    implicit none
    private
@@ -41,6 +42,7 @@ contains
       type(rows_t), intent(out) :: rows
       character(:), allocatable, intent(inout) :: wrong
       integer :: i
+      logical :: is_measure, is_ratio
 
       rows%given = m%links%ground
       allocate (rows%body(size(m%links)), rows%value(2, size(m%requests)), rows%due(size(m%requests)))
@@ -54,13 +56,24 @@ contains
          ! Requests for extremes alone have no rows.
          rows%due(i) = m%requests(i)%every > 0
          if (rows%due(i)) rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
-         if (rows%due(i) .and. m%requests(i)%kind >= request_pole) then
+         rows%due(i) = rows%due(i) .or. m%requests(i)%in_columns
+         is_ratio = m%requests(i)%drive > 0
+         if (rows%due(i) .and. is_ratio) then
+            call pass_number(unit, 'RATIO', subject_name(m, m%requests(i)%kind, m%requests(i)%subject), wrong)
+            rows%due(i) = .false.
+         end if
+         if (rows%due(i) .and. is_centre(m%requests(i)%kind)) then
             call pass_centre(unit, m, i, wrong)
+            rows%due(i) = .false.
+         end if
+         is_measure = rows%due(i) .and. m%requests(i)%kind == request_measure
+         if (is_measure) then
+            call pass_number(unit, 'MEASURE', m%measures(m%requests(i)%subject)%name, wrong)
             rows%due(i) = .false.
          end if
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
-         if (rows%due(i) .and. (allocated(m%tolerances) .or. m%proves .or. (m%assemblies .and. k == 0))) &
+         if ((rows%due(i) .or. is_measure) .and. (allocated(m%tolerances) .or. m%proves .or. (m%assemblies .and. k == 0))) &
             call pass_others(unit)
       end do
    end subroutine read_instant
@@ -89,6 +102,33 @@ contains
          end do
       end do
    end subroutine pass_centre
+
+   !> The row of a measure, whose values `fuzz_mechanisms` compares with those of a known motion, or of a ratio. The name
+   !> of a ratio is that of the quantity BY a drive.
+   subroutine pass_number(unit, kind, name, wrong)
+      integer, intent(in) :: unit
+      character(*), intent(in) :: kind, name
+      character(:), allocatable, intent(inout) :: wrong
+      character(600) :: line
+      character(cell_length) :: cell(cells)
+      integer :: k, status
+
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0 .and. kind /= 'RATIO') call blame(wrong, 'CSV: A ROW IS MISSING')
+      if (status /= 0) return
+      call split(line, cell, status)
+      if (kind == 'RATIO' .and. (cell(4) /= kind .or. index(trim(cell(5))//' BY ', trim(name)//' BY ') /= 1)) then
+         ! A drive that does not move the quantity has no row.
+         backspace (unit)
+         return
+      end if
+      if (cell(4) /= kind .or. index(trim(cell(5))//' BY ', trim(name)//' BY ') /= 1) &
+         call blame(wrong, 'CSV: '//trim(cell(4))//' '//trim(cell(5))//' IS NOT '//kind//' '//trim(name))
+      do k = 6, 14
+         if (verify(trim(cell(k)), '0123456789+-.E') > 0) call blame(wrong, 'CSV: "'//trim(cell(k))//'" IS NO NUMBER')
+      end do
+      if (all(cell(6:14) == '') .and. cell(15) == '') call blame(wrong, 'CSV: A '//kind//' WITHOUT VALUE AND MARK')
+   end subroutine pass_number
 
    !> What tolerances make of the row above, its proved bounds, and the same of other assemblies: rows whose kind has
    !> several words.

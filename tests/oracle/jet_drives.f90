@@ -5,7 +5,7 @@ module jet_drives
    use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
    use rise_laws, only: rise_jet, fine_joint_part
    use mechanism, only: mechanism_t, drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, &
-      term_parabola, rise_words
+      term_parabola, term_kinds
    implicit none
    private
    public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
@@ -69,7 +69,7 @@ contains
       case (term_table)
          f = spline_jet(x, y, t)
       case (term_cycloid:term_parabola)
-         f = rise_jet(trim(rise_words(kind)), r(1), r(2), r(3), t, joint_part)
+         f = rise_jet(trim(term_kinds(kind)%word), r(1), r(2), r(3), t, joint_part)
       end select
    end function term_jet
 

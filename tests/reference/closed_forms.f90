@@ -10,7 +10,8 @@ module closed_forms
    use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
    use closed_forms_robots, only: three_rrr, three_rrr_cranks, excavator, xy_table, scissor
    use closed_forms_bars, only: chebyshev, kite, antiparallelogram, hart, two_loops
-   use closed_forms_slides, only: crank_inline, inverted_slider, oldham
+   use closed_forms_slides, only: crank_inline, inverted_slider, oldham, geneva, points_meet
+   use closed_forms_ratios, only: ratio_laws, by_drives
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
    use closed_forms_assemblies, only: platform_assemblies, platform, triple_rocker
    use closed_forms_branches, only: parallelogram_branch, antiparallelogram_branch, kite_branch, scott_russell_branch
@@ -35,6 +36,8 @@ module closed_forms
       count_t('crank_rockers', 4, 4, 0, 1), &
       count_t('tolerances', 4, 4, 0, 1), count_t('guide_tolerances', 4, 3, 1, 1), &
       count_t('poles', 4, 4, 0, 1), count_t('cardan', 4, 2, 2, 1), count_t('rise_dwell', 4, 4, 0, 1), &
+      count_t('transmission', 4, 4, 0, 1), count_t('geneva', 4, 3, 1, 1), count_t('points_meet', 3, 0, 2, 2), &
+      count_t('boom', 4, 3, 1, 1), count_t('leverage', 2, 1, 0, 1), count_t('jacobian', 3, 2, 0, 2), &
       count_t('drawing', 4, 4, 0, 1), count_t('drawn_slider', 4, 3, 1, 1), count_t('drawn_cylinder', 4, 3, 1, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
@@ -163,6 +166,14 @@ contains
          links = inverted_slider(t)
       case ('oldham')
          links = oldham(t)
+      case ('transmission')
+         links = drawing(1, t)
+      case ('geneva')
+         links = geneva(t)
+      case ('points_meet')
+         links = points_meet(t)
+      case ('boom', 'leverage', 'jacobian')
+         links = by_drives(name, ratio_laws(name, t))
       case default
          links = closed_form_3(name, set, t)
       end select

@@ -1,12 +1,13 @@
 !> Tests. Closed forms of further mechanisms with sliding pairs. The lengths are those of the decks in input/, written
 !> out again by hand so that a deck read wrongly shows up as a difference.
 module closed_forms_slides
+   use kinds, only: wp
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
       operator(+), operator(-), operator(*), sqrt, sin, cos, atan2
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, distance_squared, on_line
    implicit none
    private
-   public :: crank_inline, inverted_slider, oldham
+   public :: crank_inline, inverted_slider, oldham, geneva, points_meet
 
 contains
 
@@ -61,4 +62,36 @@ contains
                body('DISC-2', fixed_place(e, 0.0_qp), phi + 90.0_qp*degree_q), &
                body('CROSS', place_t(e*cos(phi)*cos(phi), e*cos(phi)*sin(phi)), phi)]
    end function oldham
+
+   !> Geneva wheel with four slots while the pin is in one: the axles of crank and wheel are 1 apart, the pin is at
+   !> r = sqrt(1/2), rounded as on the card, from that of the crank, and comes into the slot at -45 deg. The slot passes
+   !> through the wheel's axle.
+   pure function geneva(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      type(jet_t) :: phi, slot
+      type(place_t) :: crank, wheel, pin
+
+      phi = (-45.0_qp + 90.0_qp*time_jet(t))*degree_q
+      crank = fixed_place(0.0_qp, 0.0_qp)
+      wheel = fixed_place(1.0_qp, 0.0_qp)
+      pin = polar(crank, real(0.70710678118654757_wp, qp), phi)
+      ! The slot's axis is turned by half a turn against the way from the axle to the pin.
+      slot = direction(pin, wheel)
+      links = [body('BASE', crank, constant_jet(0.0_qp)), body('CRANK', crank, phi), body('WHEEL', wheel, slot), &
+               body('BLOCK', pin, slot)]
+   end function geneva
+
+   !> Two blocks on crossed guides through O, at x = t - 1 and y = -1 + t/2 + t**2/4: the first meets O at t = 1.
+   pure function points_meet(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(3)
+      type(jet_t) :: x, y, zero
+
+      zero = constant_jet(0.0_qp)
+      x = time_jet(t) - 1.0_qp
+      y = -1.0_qp + 0.5_qp*time_jet(t) + 0.25_qp*time_jet(t)*time_jet(t)
+      links = [body('BASE', place_t(zero, zero), zero), body('BLOCK', place_t(x, zero), zero), &
+               body('CROSS', place_t(zero, y), zero)]
+   end function points_meet
 end module closed_forms_slides

@@ -2,14 +2,15 @@
 !> of times, then by golden section around the grid's largest and least values. Only dead centres use a derivative, the
 !> velocity.
 module hand_extremes
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair
+   use mechanism, only: mechanism_t, request_link, request_point, request_ratio
    use quad_jet, only: qp, pi_q, jet_t, degree_q
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t, length_by_hand, rate_by_hand
    use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: hand_row_t, row_by_hand
+   use hand_rows, only: hand_row_t, column_word, drive_word
+   use hand_ratios, only: row_at
    use hand_links, only: move_links_to
-   use hand_tables, only: put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
+   use hand_tables, only: put_heads, put_ratio_heads, with_unit, drive_value, instant_text
    use text_output, only: output_t, put
    implicit none
    private
@@ -59,8 +60,14 @@ contains
       do q = 1, size(g%asked)
          if (.not. any_varies(g, q)) cycle
          associate (request => m%requests(g%asked(q)))
-            if (request%kind /= kind) call put_heads(o, m, scales, request%kind, merge(2, 1, m%polish))
-            kind = request%kind
+            if (request%drive > 0) then
+               if (kind /= request_ratio + g%row(q, 0)%dimension(1)) &
+                  call put_ratio_heads(o, m, scales, g%row(q, 0), merge(2, 1, m%polish))
+               kind = request_ratio + g%row(q, 0)%dimension(1)
+            else
+               if (request%kind /= kind) call put_heads(o, m, scales, request%kind, merge(2, 1, m%polish))
+               kind = request%kind
+            end if
             call put_subject(o, m, scales, g, q)
          end associate
       end do
@@ -178,7 +185,7 @@ contains
          call move_links_to(name, m, g%t(k), links, fault)
          g%phi(:, k) = links%phi%v
          do q = 1, size(g%asked)
-            g%row(q, k) = row_by_hand(m, links, m%requests(g%asked(q)))
+            g%row(q, k) = row_at(name, m, g%t(k), links, m%requests(g%asked(q)))
          end do
          if (k == 0) first = links
       end do
@@ -230,7 +237,7 @@ contains
 
       links%phi%v = g%phi(:, i)
       call move_links_to(g%name, m, t, links, fault)
-      row = row_by_hand(m, links, m%requests(g%asked(q)))
+      row = row_at(g%name, m, t, links, m%requests(g%asked(q)))
       value = row%value(c, k)
    end function value_at
 
@@ -330,6 +337,8 @@ contains
             call put_line(o, row, trim(merge('W T ', 'AT T', m%polish)), fields(:, :, 2))
             call put_line(o, row, trim(merge('NAPED   ', 'AT DRIVE', m%polish)), fields(:, :, 3))
          end do
+         ! Of ratios there are no strokes.
+         if (row%kind == request_ratio) return
          strokes = ''
          do c = 1, row%columns
             if (varies(g, q, c, 0)) strokes(c, 0) = number_of(m, scales, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
@@ -344,13 +353,14 @@ contains
             if (size(dead) <= 2) cycle
             do i = 1, size(dead)
                unit = drive_value(m, drive_of, scales, dead(i)%t)
-               call put(o, ' '//trim(merge('PUNKT ZWROTNY', 'DEAD CENTRE  ', m%polish))//'  '//column_word(m, g, q, c)//'  ' &
+               call put(o, ' '//trim(merge('PUNKT ZWROTNY', 'DEAD CENTRE  ', m%polish))//'  ' &
+                  //column_word(row, c, 0, m%polish)//'  ' &
                   //trim(adjustl(number_of(m, scales, row, c, 0, dead(i)%value)))//'   T = ' &
                   //instant_text(scales, dead(i)%t)//'   '//drive//' = '//unit(:index(unit, ' ') - 1))
             end do
          end do
          do c = 1, row%columns
-            what = dimension_of(row%column(c))
+            what = row%dimension(c)
             if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. varies(g, q, c, 0)) cycle
             if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
             do way = -1, 1, 2
@@ -378,7 +388,7 @@ contains
       language = merge(2, 1, m%polish)
       times(1) = abs(period)*modulo(later/period, 1.0_qp)
       times(2) = abs(period) - times(1)
-      line = '  '//column_word(m, g, q, c)
+      line = '  '//column_word(g%row(q, 0), c, 0, m%polish)
       do k = 1, 2
          line = line//'   '//trim(words(k, language))//' ' &
             //with_unit(times(k), scales%time_decimals, scales%time_power, m%time_unit)
@@ -386,21 +396,6 @@ contains
       call put(o, line//'   '//trim(words(3, language))//' ' &
          //trim(adjustl(number_by_hand(maxval(times)/minval(times), 0.0_qp, 6, 0))))
    end subroutine put_stroke_times
-
-   !> The name of column `c` of row `q`.
-   function column_word(m, g, q, c) result(word)
-      type(mechanism_t), intent(in) :: m
-      type(grid_t), intent(in) :: g
-      integer, intent(in) :: q, c
-      character(:), allocatable :: word
-      character(7), parameter :: names(3, 4) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
-         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT'], [3, 4])
-      integer :: language
-
-      language = merge(2, 1, m%polish)
-      if (g%row(q, 0)%kind == request_pair) language = language + 2
-      word = trim(names(g%row(q, 0)%column(c), language))
-   end function column_word
 
    !> Number (c, k) of `row`, in the unit of its column.
    function number_of(m, scales, row, c, k, value) result(text)
@@ -411,7 +406,7 @@ contains
       real(qp), intent(in) :: value
       character(field_length) :: text
 
-      associate (what => dimension_of(row%column(c)))
+      associate (what => row%dimension(c))
          text = number_by_hand(value/merge(degree_q, 1.0_qp, what == 2 .and. m%degrees), 0.0_qp, scales%decimals(what, k), &
             scales%power(what, k))
       end associate
@@ -475,7 +470,7 @@ contains
          repeats = mod(size(dead), few) == 0
          do i = few + 1, size(dead)
             change = dead(i)%value - dead(i - few)%value
-            if (dimension_of(g%row(q, 0)%column(c)) == 2) change = without_turns(change)
+            if (g%row(q, 0)%dimension(c) == 2) change = without_turns(change)
             repeats = repeats .and. abs(change) < closes_to .and. abs(dead(i)%t - dead(i - few)%t - period) &
                < closes_to*abs(g%t(n) - g%t(0))
          end do
@@ -530,7 +525,7 @@ contains
       integer :: i, n
 
       n = ubound(g%t, 1)
-      distance = real(m%requests(g%asked(q))%dwell(dimension_of(g%row(q, 0)%column(c))), qp)
+      distance = real(m%requests(g%asked(q))%dwell(g%row(q, 0)%dimension(c)), qp)
       level = e%value - way*distance
       call find_dead_centres(m, g, q, c, dead, period)
       path = [(extreme_t(g%t(i), g%row(q, i)%value(c, 0)), i=0, n), dead, e]
@@ -561,7 +556,7 @@ contains
 
          text = number_of(m, scales, g%row(q, 0), c, 0, distance)
          first = drive_value(m, m%drives(1), scales, from)
-         call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//column_word(m, g, q, c) &
+         call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//column_word(g%row(q, 0), c, 0, m%polish) &
             //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = '//instant_text(scales, from)//' .. ' &
             //instant_text(scales, to)//'   '//drive//' = '//first(:index(first, ' ') - 1)//' .. ' &
             //trim(adjustl(in_field(drive_value(m, m%drives(1), scales, to)))))

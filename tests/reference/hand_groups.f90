@@ -62,6 +62,12 @@ module hand_groups
       statement_t('cardan', 0, '*BAR SHOE-A SHOE-B'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('drawing', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('transmission', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('geneva', 0, '*CRANK; WHEEL BLOCK'), &
+      statement_t('points_meet', 0, '*BLOCK; *CROSS'), &
+      statement_t('boom', 0, '*BOOM BARREL ROD'), &
+      statement_t('leverage', 0, '*ARM'), &
+      statement_t('jacobian', 0, '*UPPER; *FORE'), &
       statement_t('drawn_slider', 1, '*CRANK; ROD SLIDER'), &
       statement_t('drawn_slider', 2, '*SLIDER; CRANK ROD'), &
       statement_t('drawn_cylinder', 0, '*BOOM BARREL ROD'), &

@@ -1,12 +1,13 @@
-!> Tests. The links of a deck at any time by its closed form, angles without leaps.
+!> Tests. The links of a deck at any time by its closed form, angles without leaps; and with one drive that moves alone.
 module hand_links
    use mechanism, only: mechanism_t
-   use quad_jet, only: qp, pi_q
+   use quad_jet, only: qp, pi_q, jet_t, constant_jet
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
+   use closed_forms_ratios, only: ratio_laws, by_drives
    implicit none
    private
-   public :: move_links_to
+   public :: move_links_to, links_by_drive
 
 contains
 
@@ -18,11 +19,38 @@ contains
       real(qp), intent(in) :: t
       type(body_t), intent(inout) :: links(:)
       character(:), allocatable, intent(out) :: fault
-      type(body_t), allocatable :: found(:)
+
+      call put_links(m, closed_form(name, merge(m%variant, m%set_number, m%variant > 0), t), links, fault)
+   end subroutine move_links_to
+
+   !> The `links` at the time `t` in a motion in which drive number `drive` has the rate 1, and all others rest.
+   function links_by_drive(name, m, t, links, drive) result(moved)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: t
+      type(body_t), intent(in) :: links(:)
+      integer, intent(in) :: drive
+      type(body_t) :: moved(size(links))
+      type(jet_t), allocatable :: f(:)
+      character(:), allocatable :: fault
+
+      f = ratio_laws(name, t)
+      if (size(f) < drive) error stop 'NO CLOSED FORM OF RATIOS FOR THE DECK'
+      f = constant_jet(f%v)
+      f(drive)%d = 1.0_qp
+      moved = links
+      call put_links(m, by_drives(name, f), moved, fault)
+   end function links_by_drive
+
+   !> Puts `links` where they are `found`, as `move_links_to`.
+   subroutine put_links(m, found, links, fault)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: found(:)
+      type(body_t), intent(inout) :: links(:)
+      character(:), allocatable, intent(out) :: fault
       real(qp) :: phi
       integer :: k, i
 
-      found = closed_form(name, merge(m%variant, m%set_number, m%variant > 0), t)
       fault = ''
       if (size(found) /= size(m%links)) fault = 'THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS'
       do i = 1, size(found)
@@ -36,7 +64,7 @@ contains
          links(k) = found(i)
          links(k)%phi%v = phi
       end do
-   end subroutine move_links_to
+   end subroutine put_links
 
    !> `phi` turned by whole turns until it is within half a turn of `before`.
    pure real(qp) function next_to(before, phi)

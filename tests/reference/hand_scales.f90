@@ -2,16 +2,16 @@
 !> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
 module hand_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
-      term_harmonic, term_power, term_table, rise_words
+      term_harmonic, term_power, term_table, term_kinds
    use rise_laws, only: peak_rate
    use quad_jet, only: qp, degree_q
    implicit none
    private
-   public :: hand_scales_t, scales_by_hand, length_by_hand, rate_by_hand
+   public :: hand_scales_t, scales_by_hand, length_by_hand, rate_by_hand, ratio_of
 
-   !> (length or angle, derivative), and those of the time.
+   !> (dimension, derivative), and those of the time. A dimension is a length (1), an angle (2), or that of a ratio.
    type :: hand_scales_t
-      integer :: decimals(2, 0:2) = 0, power(2, 0:2) = 0
+      integer :: decimals(6, 0:2) = 0, power(6, 0:2) = 0
       integer :: time_decimals = 0, time_power = 0
    end type hand_scales_t
 
@@ -23,8 +23,8 @@ contains
 
    type(hand_scales_t) function scales_by_hand(m) result(s)
       type(mechanism_t), intent(in) :: m
-      real(qp) :: length, rate, turn
-      integer :: k
+      real(qp) :: length, rate, turn, sizes(2)
+      integer :: k, quantity, drive
 
       length = length_by_hand(m)
       rate = rate_by_hand(m, length)
@@ -36,7 +36,24 @@ contains
          call take(turn, s%decimals(2, k), s%power(2, k))
       end do
       call take(last_time(m), s%time_decimals, s%time_power)
+      sizes = [length, merge(1.0_qp/degree_q, 1.0_qp, m%degrees)]
+      do quantity = 1, 2
+         do drive = 1, 2
+            associate (d => ratio_of(quantity, drive))
+               do k = 0, 1
+                  call take(sizes(quantity)/sizes(drive)**(k + 1), s%decimals(d, k), s%power(d, k))
+               end do
+            end associate
+         end do
+      end do
    end function scales_by_hand
+
+   !> The dimension of the ratio of a quantity to a drive, each a length (1) or an angle (2).
+   pure integer function ratio_of(quantity, drive) result(dimension)
+      integer, intent(in) :: quantity, drive
+
+      dimension = 2*quantity + drive
+   end function ratio_of
 
    !> Decimals and power of ten of numbers as large as `x`, by its first digit's place; 1 where it is 0.
    subroutine take(x, decimals, power)
@@ -153,7 +170,7 @@ contains
                      /(real(a%table%x(k), qp) - a%table%x(k - 1))))
                end do
             case default
-               steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(rise_words(a%kind)))
+               steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(term_kinds(a%kind)%word))
             end select
             rate = rate + steepest
          end associate

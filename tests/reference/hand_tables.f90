@@ -2,25 +2,27 @@
 !> the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's tables is
 !> used.
 module hand_tables
-   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pole, drive_angle, drive_x, drive_y, &
-      drive_relangle, drive_slide
+   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pair, request_measure, request_pole, &
+      request_ratio, drive_angle, drive_relangle
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: hand_row_t, row_by_hand, has_pairs, pair_slots
+   use hand_rows, only: hand_row_t, has_form, pair_slots, column_word, drive_word, listed_name
+   use hand_ratios, only: row_at, unit_of
    use hand_tolerances, only: spread_lines
    use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
    implicit none
    private
-   public :: above_t, put_tables, put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
+   public :: above_t, put_tables, put_heads, put_ratio_heads, with_unit, drive_value, instant_text
 
    integer, parameter :: name_length = 9, line_length = name_length + 9*field_length
    !> In English and in Polish.
    character(10), parameter :: instant_words(2) = [character(10) :: ' INSTANT ', ' CHWILA ']
    character(4), parameter :: none_words(2) = [character(4) :: 'NONE', 'BRAK']
+   character(8), parameter :: coincide_words(2) = [character(8) :: 'COINCIDE', 'POKRYCIE']
    character(40), parameter :: unknown_words(2) = [character(40) :: 'DIGITS LOST TO ROUNDING', &
       'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE']
    character(40), parameter :: singular_words(2, 2) = reshape([character(40) :: 'CHANGE POINT', &
@@ -30,29 +32,34 @@ module hand_tables
    !> Two links with a smaller sine of the angle between them are in line: an instant is a change point but for the
    !> rounding of a double, and angles are off by its root at most.
    real(qp), parameter :: parallel = 1.0e-6_qp
-   !> The heads over links, points, pairs, and links of which only the angle is listed; their words end where the numbers do.
-   character(line_length), parameter :: heads(4, 2) = reshape([character(line_length) :: &
+   !> Smaller ratios with smaller derivatives are 0: in the decks of input/ both are 0 at no instant by chance.
+   real(qp), parameter :: at_rest = 1.0e-25_qp
+   !> The heads over links, points, pairs, measures, and links of which only the angle is listed; their words end where the
+   !> numbers do.
+   character(line_length), parameter :: heads(5, 2) = reshape([character(line_length) :: &
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
       ' POINT              X           Y                      VX          VY                      AX          AY', &
       ' PAIR           SLIDE    VELOCITY            ACCELERATION       ANGLE    VELOCITY            ACCELERATION', &
+      ' MEASURE       LENGTH    VELOCITY            ACCELERATION       ANGLE    VELOCITY            ACCELERATION', &
       ' LINK                                     PHI                                VPHI' &
       //'                                APHI', &
       ' OGNIWO             X           Y          FI          VX          VY         VFI' &
       //'          AX          AY         AFI', &
       ' PUNKT              X           Y                      VX          VY                      AX          AY', &
       ' PARA         PRZESUW    PREDKOSC          PRZYSPIESZENIE         KAT    PREDKOSC          PRZYSPIESZENIE', &
+      ' WIELKOSC     DLUGOSC    PREDKOSC          PRZYSPIESZENIE         KAT    PREDKOSC          PRZYSPIESZENIE', &
       ' OGNIWO                                    FI                                 VFI' &
-      //'                                 AFI'], [4, 2])
+      //'                                 AFI'], [5, 2])
    !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
-   integer, parameter :: columns(3, 4) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 0, 0, 2], [3, 4])
+   integer, parameter :: columns(3, 5) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 1, 0, 2, 0, 0, 2], [3, 5])
+   integer, parameter :: of_angles_alone = 5
    !> The heads over pairs are those of slides, then those of angles; these begin here.
    integer, parameter :: before_angles = name_length + 4*field_length
-   !> Of x, y, phi: a length (1) or an angle (2).
-   integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> More drives do not stand over the tables, and no line is longer.
    integer, parameter :: most_drives = 6, widest = 120
-   !> Heads stand once for all rows of a kind below them, but again after remarks and after so many lines.
+   !> Heads stand once for all rows of a kind below them, for ratios of a dimension, but again after remarks and after so
+   !> many lines.
    integer, parameter :: heads_every = 60
 
    !> The kind of rows to which the last heads belong, 0 where there are none, and the lines since.
@@ -62,11 +69,13 @@ module hand_tables
 
 contains
 
-   !> Instant number `step` of `m`, whose links are at `b`, in the order of the deck; `resting` (links): they have no
-   !> velocity of their own, for at a change point those numbered `crossing` have two; `error` (3, 0:2, requests), of size
-   !> 0 where all digits are known. `remarks`: some follow. `above`: what the instant before has left.
-   subroutine put_tables(o, m, scales, step, b, resting, crossing, error, remarks, above)
+   !> Instant number `step` of `m`, of the deck `name`, whose links are at `b`, in the order of the deck; `resting`
+   !> (links): they have no velocity of their own, for at a change point those numbered `crossing` have two; `error` (3,
+   !> 0:2, requests), of size 0 where all digits are known. `remarks`: some follow. `above`: what the instant before has
+   !> left.
+   subroutine put_tables(o, name, m, scales, step, b, resting, crossing, error, remarks, above)
       type(output_t), intent(inout) :: o
+      character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       integer, intent(in) :: step
@@ -93,12 +102,20 @@ contains
          if (.not. begun) call put_time(o, m, scales, step, language, above)
          begun = .true.
          kind = m%requests(i)%kind
+         if (kind < request_pole) then
+            row = row_at(name, m, real(instant(m, step), qp), b, m%requests(i))
+            if (row%kind == request_ratio) kind = request_ratio + row%dimension(1)
+            ! A drive that does not move the quantity has no row.
+            if (row%kind == request_ratio .and. all(abs(row%value(1, :1)) < at_rest)) cycle
+         end if
          if (kind /= above%kind) then
             above = above_t(kind)
-            if (kind >= request_pole) then
+            if (kind >= request_ratio) then
+               call put_ratio_heads(o, m, scales, row, language)
+            else if (kind >= request_pole) then
                call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
             else if (kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
-               call put_heads(o, m, scales, 4, language)
+               call put_heads(o, m, scales, of_angles_alone, language)
             else
                call put_heads(o, m, scales, kind, language)
             end if
@@ -108,7 +125,6 @@ contains
             call put_centre_by_hand(o, m, scales, b, m%requests(i), resting, language)
             cycle
          end if
-         row = row_by_hand(m, b, m%requests(i))
          if (size(error) > 0) then
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), error(:, :, i), language)
          else
@@ -120,7 +136,7 @@ contains
             end do
          end if
          masked = masked .or. index(line, '?') > 0
-         call put(o, line(:name_length + field_length*row%slot(row%columns, 2)))
+         call put(o, trim(line))
          if (allocated(m%tolerances)) then
             spreads = spread_lines(m, scales, i, real(instant(m, step), qp))
             call put(o, trim(spreads(1)))
@@ -163,12 +179,15 @@ contains
       character(line_length) :: line(3), names
       character(30) :: power, unit, per
       integer :: c, k, at
-      logical :: has_room
+      logical :: has_room, has_slots
 
       has_room = max(3, len_trim(m%length_unit)) + len('/'//trim(m%time_unit)//'**2') <= field_length - 1
       names = heads(kind, language)
-      if (kind == 3 .and. .not. has_pairs(m, .true.)) names = names(:name_length)//names(before_angles + 1:)
-      if (kind == 3 .and. .not. has_pairs(m, .false.)) names(before_angles + 1:) = ''
+      has_slots = any(kind == [request_pair, request_measure])
+      if (has_slots) then
+         if (.not. has_form(m, kind, .true.)) names = names(:name_length)//names(before_angles + 1:)
+         if (.not. has_form(m, kind, .false.)) names(before_angles + 1:) = ''
+      end if
       line = ''
       do k = 0, 2
          per = ''
@@ -177,9 +196,9 @@ contains
          do c = 1, 3
             if (columns(c, kind) == 0) cycle
             at = 3*k + c
-            if (kind == 3) then
-               if (.not. has_pairs(m, c == 1)) cycle
-               at = pair_slots(k, merge(2, 1, c == 3 .and. has_pairs(m, .true.)))
+            if (has_slots) then
+               if (.not. has_form(m, kind, c == 1)) cycle
+               at = pair_slots(k, merge(2, 1, c == 3 .and. has_form(m, kind, .true.)))
             end if
             unit = m%length_unit
             if (columns(c, kind) == 2) unit = merge('DEG', 'RAD', m%degrees)
@@ -198,6 +217,32 @@ contains
          if (line(k) /= '') call put(o, trim(line(k)))
       end do
    end subroutine put_heads
+
+   !> The heads over ratios of the dimension of `row`.
+   subroutine put_ratio_heads(o, m, scales, row, language)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(hand_row_t), intent(in) :: row
+      integer, intent(in) :: language
+      character(line_length) :: line(3)
+      character(30) :: power
+      integer :: k
+
+      line = ''
+      line(1) = merge(' PRZELOZENIE', ' RATIO      ', language == 2)
+      associate (d => row%dimension(1))
+         do k = 0, 1
+            write (power, '("1.E", sp, i0.2)') scales%power(d, k)
+            call put_end(column_word(row, 1, k, language == 2), row%slot(1, k), line(1))
+            if (scales%power(d, k) /= 0) call put_end(power, row%slot(1, k), line(2))
+            call put_end(unit_of(m, d, k), row%slot(1, k), line(3))
+         end do
+      end associate
+      do k = 1, 3
+         if (line(k) /= '') call put(o, trim(line(k)))
+      end do
+   end subroutine put_ratio_heads
 
    !> Puts `word` where column number `column` of `line` ends.
    subroutine put_end(word, column, line)
@@ -266,26 +311,6 @@ contains
       text = text//' '//trim(unit)
    end function with_unit
 
-   !> The kind of the drive `d` and the names of what it drives.
-   function drive_word(m, d) result(text)
-      type(mechanism_t), intent(in) :: m
-      type(drive_t), intent(in) :: d
-      character(:), allocatable :: text
-
-      select case (d%kind)
-      case (drive_angle)
-         text = 'ANGLE '//trim(m%links(d%subject)%name)
-      case (drive_x)
-         text = 'X '//trim(m%points(d%subject)%name)
-      case (drive_y)
-         text = 'Y '//trim(m%points(d%subject)%name)
-      case (drive_relangle)
-         text = 'RELANGLE '//trim(m%links(d%subject)%name)//' '//trim(m%links(d%second)%name)
-      case (drive_slide)
-         text = 'SLIDE '//trim(m%pairs(d%subject)%name)
-      end select
-   end function drive_word
-
    !> Where the drive `d` is at `t`, with as many digits as places and angles have in the tables.
    function drive_value(m, d, scales, t) result(text)
       type(mechanism_t), intent(in) :: m
@@ -316,16 +341,19 @@ contains
       real(qp) :: unit
       integer :: c, k, first, what
 
-      line = ' '//row%name
-      do k = 0, 2
+      line = ' '//listed_name(row, language == 2)
+      do k = 0, row%orders
          do c = 1, row%columns
             first = name_length + field_length*(row%slot(c, k) - 1) + 1
-            what = columns(row%column(c), row%kind)
+            what = row%dimension(c)
             unit = 1.0_qp
             if (degrees .and. what == 2) unit = degree_q
             line(first:first + field_length - 1) = repeat(' ', field_length - len(none_words))//none_words(language)
             if (k <= known) line(first:first + field_length - 1) = number_by_hand(row%value(c, k)/unit, &
                error(c, k)/unit, scales%decimals(what, k), scales%power(what, k))
+            ! A length has its value, and no rates.
+            if (row%coincides .and. k <= known .and. (k > 0 .or. what == 2)) &
+               line(first:first + field_length - 1) = repeat(' ', field_length - len(coincide_words))//coincide_words(language)
          end do
       end do
    end function row_line

@@ -28,6 +28,7 @@ program print_expected
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
    use hand_links, only: move_links_to
+   use hand_columns, only: put_columns_by_hand
    use hand_tolerances, only: put_shares_by_hand
    use hand_extremes, only: put_extremes_by_hand
    use hand_assemblies, only: put_assemblies_by_hand, put_circuits_by_hand
@@ -141,11 +142,12 @@ contains
          ! Next to dead points only are digits in doubt.
          error = reshape([real(qp) ::], [3, 3, 0])
          if (index(name, 'dead_point') == 1) error = estimates_by_hand(m, real(instant(m, k), qp))
-         call put_tables(o, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
+         call put_tables(o, name, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
          call put_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on.
       tally%followed = instant_count(m) - 1
+      call put_columns_by_hand(o, name, m, scales)
       if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
       if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
       if (m%circuits) call put_circuits_by_hand(o)

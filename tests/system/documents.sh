@@ -145,6 +145,10 @@ while read -r fault; do has docs/messages.md 'the code' "| $fault |"; done < "$w
 sed -n "s/.*= phrase_t('\([^']*\)'.*/\1/p" $sources > "$w/phrases"
 equal 'phrases are found' yes "$([ "$(wc -l < "$w/phrases")" -ge 60 ] && echo yes)"
 while IFS= read -r phrase; do has "$w/reference" 'the phrase' "$phrase"; done < "$w/phrases"
+# So do the heads of columns and the words of cells; a head with the name of a link ends with -I or -J.
+grep -oE "(row_column|cell_word)_t[(]'[^']+'" src/mechanism/columns.f90 | cut -d "'" -f 2 | sort -u > "$w/heads"
+equal 'heads of columns are found' yes "$([ "$(wc -l < "$w/heads")" -ge 20 ] && echo yes)"
+while IFS= read -r head; do has "$w/reference" 'the head' "$head"; done < "$w/heads"
 # Sentences of failures: the words in quotation marks behind `call fail` and `call reject`, those of two words and more.
 awk '/call (fail|reject)\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i] } !/&$/ { on = 0 }' $sources \
    | sed -e 's/^ *//' -e 's/["( ]*$//' | grep -E '^[-A-Za-z]+ .*[A-Z]' | grep -v '^[*]' | sort -u > "$w/sentences"

@@ -8,9 +8,9 @@ module echoed_deck
 
    integer, parameter :: label_length = 8, word_length = 16
    integer, parameter :: label_first(0:3) = [2, 11, 20, 29]
-   character(5), parameter :: kind_of_row(3) = [character(5) :: 'LINK', 'POINT', 'PAIR']
+   character(7), parameter :: kind_of_row(4) = [character(7) :: 'LINK', 'POINT', 'PAIR', 'MEASURE']
 
-   !> The row of one link (1), point (2) or pair (3), at every `every`-th instant; no name: all of them.
+   !> The row of one link (1), point (2), pair (3) or measure (4), at every `every`-th instant; no name: all of them.
    type :: due_t
       integer :: kind = 0, every = 1
       character(label_length) :: name = ''
@@ -29,7 +29,7 @@ module echoed_deck
    type :: echoed_deck_t
       character(label_length) :: units(3) = ''   !< of length, angle and time
       type(due_t), allocatable :: named(:)       !< links that move, points and pairs, in the order of their cards
-      logical, allocatable :: slides(:)          !< (named) prismatic pairs
+      logical, allocatable :: slides(:)          !< (named) prismatic pairs, and measures that are lengths
       type(due_t), allocatable :: requests(:)
       type(drive_words_t), allocatable :: drives(:)
       logical :: tolerances = .false.            !< below each row stand two more: what they make of it
@@ -65,6 +65,12 @@ contains
       case ('JOINT')
          call add_name(d, 2, label(1), .false.)
          call add_name(d, 3, label(1), .false.)
+      case ('DISTANCE', 'XI', 'ETA')
+         call add_name(d, 4, label(3), .true.)
+      case ('LINE', 'ANGLE')
+         call add_name(d, 4, label(3), .false.)
+      case ('SUM')
+         call add_name(d, 4, label(3), is_slide(d, 4, label(1)))
       case ('TOLER')
          d%tolerances = .true.
       case ('DRIVE')
@@ -72,7 +78,7 @@ contains
       case ('PRINT')
          read (label(3), *, iostat=status) every
          if (status /= 0) every = 1
-         do i = 1, 3
+         do i = 1, 4
             if (label(1) == 'ALL' .or. label(1) == trim(kind_of_row(i))//'S') &
                d%requests = [d%requests, due_t(i, every, label(2))]
          end do
@@ -96,12 +102,13 @@ contains
       d%drives = [d%drives, drive]
    end subroutine add_drive
 
-   !> The pair of this `name` is prismatic.
-   pure logical function is_slide(d, name)
+   !> The pair of this `name` is prismatic, or the measure (`kind`) a length.
+   pure logical function is_slide(d, kind, name)
       type(echoed_deck_t), intent(in) :: d
+      integer, intent(in) :: kind
       character(*), intent(in) :: name
 
-      is_slide = any(d%named%kind == 3 .and. d%named%name == name .and. d%slides)
+      is_slide = any(d%named%kind == kind .and. d%named%name == name .and. d%slides)
    end function is_slide
 
    subroutine add_name(d, kind, name, slides)

@@ -48,7 +48,7 @@ three_cranks() {
 
 # said LISTING: the remarks, each after the number of its instant, but for that of equations that repeat others
 # and those of drives that rest or turn fast, which many of these decks have on purpose
-on_purpose='WITHIN TIME: THE RATE|W CZASIE RUCHU: PREDKOSC|A TURN OR MORE BETWEEN|OBROT LUB WIECEJ'
+on_purpose='WITHIN TIME: THE RATE|W CZASIE RUCHU: PREDKOSC|A TURN OR MORE PER|OBROT LUB WIECEJ'
 said() { awk -v on_purpose="$on_purpose" '/ S (IS LESS THAN|JEST MNIEJSZE NIZ) / || $0 ~ on_purpose { next } /^ (INSTANT|CHWILA) / { k = $2 } /^ (\*\*\*|---) / { print k ":" $0 } /^ (LARGEST|NAJW)/' "$1"; }
 
 # told NAME STATUS WORDS: the deck in $w/deck, its status and all that is said of it
@@ -955,7 +955,7 @@ drives 'a rise after TIME' "DRIVE ANGLE CRANK $rests" "$(drive ANGLE CRANK '' 60
 drives 'a value that varies' '' "$(drive ANGLE CRANK '' 60.0; card VARY R1 3 '' 60.0 80.0)" "$run"
 drives 'in Polish' 'NAPED ANGLE CRANK NIE RUSZA SIE W CZASIE RUCHU: PREDKOSC NALEZY DO REAL-2' "$(drive ANGLE CRANK '' 60.0)" "$run" "$(card LANG PL)"
 # 2 pi rad, or 360 degrees, is a turn; a cycloidal rise has twice its mean rate, a harmonic its amplitude times its frequency.
-fast='HAS A TURN OR MORE BETWEEN TWO INSTANTS (CHECK THE UNITS), TURNS:'
+fast='HAS A TURN OR MORE PER STEP (CHECK THE UNITS), TURNS:'
 drives 'a turn in a step' "DRIVE ANGLE CRANK $fast 1.00" "$(drive ANGLE CRANK '' 60.0 360.0)" "$run"
 drives 'nearly a turn in a step' '' "$(drive ANGLE CRANK '' 60.0 -359.9)" "$run"
 drives 'back two turns in a step' "DRIVE ANGLE CRANK $fast 2.00" "$(drive ANGLE CRANK '' 60.0 -720.0)" "$run"

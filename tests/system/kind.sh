@@ -13,7 +13,7 @@ equal '--csv: digits' "$digits" "$("$BUILD/kinmat" --csv - input/four_bar.deck |
 
 for deck in $(grep -L '^VARY' input/*.deck); do
    name=$(basename "$deck" .deck)
-   awk '/^PRINT   LINKS/ || /^TOLER/ { next }
+   awk '/^(PRINT   LINKS|PRINT   RATIOS|COLUMN|TOLER)/ { next }
       /^PRINT   ALL/ { $0 = "PRINT   ALL"; all = 1 }
       /^END/ { if (!all) print "PRINT   LINKS"; all = 0 }
       { print }' "$deck" > "$w/$name.deck"

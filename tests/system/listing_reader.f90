@@ -10,23 +10,23 @@ module listing_reader
    integer, parameter :: line_length = 400
    !> A row's numbers begin behind its name.
    integer, parameter :: first_number = 10
-   character(8), parameter :: kind_words(3, 2) = reshape([character(8) :: &
-      'LINK', 'POINT', 'PAIR', 'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
+   character(8), parameter :: kind_words(4, 2) = reshape([character(8) :: &
+      'LINK', 'POINT', 'PAIR', 'MEASURE', 'OGNIWO', 'PUNKT', 'PARA', 'WIELKOSC'], [4, 2])
    !> The heads of x, y, phi and their derivatives, in two languages. The slide of a pair counts as x, its angle as phi; the
    !> heads of their derivatives are the same, and follow them.
    character(14), parameter :: head_words(*) = [character(14) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', 'AX', 'AY', &
       'APHI', 'FI', 'VFI', 'AFI', 'SLIDE', 'ANGLE', 'VELOCITY', 'ACCELERATION', 'PRZESUW', 'KAT', 'PREDKOSC', &
-      'PRZYSPIESZENIE']
-   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 3, 4, 7, 1, 3, 4, 7]
+      'PRZYSPIESZENIE', 'LENGTH', 'DLUGOSC']
+   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 3, 4, 7, 1, 3, 4, 7, 1, 1]
    !> Which columns rows of each kind have.
-   logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
-      .true., .false., .true.], [3, 3])
+   logical, parameter :: has_column(3, 4) = reshape([.true., .true., .true., .true., .true., .false., &
+      .true., .false., .true., .true., .false., .true.], [3, 4])
    !> Of more drives only the first stand over the tables.
    integer, parameter :: most_drives = 6
    !> A number and the blank before it.
    integer, parameter :: column_length = 12
 
-   !> One row of step `step`; `kind`: 1 link, 2 point, 3 pair. Where there is no column, its word is blank.
+   !> One row of step `step`; `kind`: 1 link, 2 point, 3 pair, 4 measure. Where there is no column, its word is blank.
    type :: row_text_t
       integer :: step = -1, kind = 0
       character(label_length) :: name = ''
@@ -227,11 +227,11 @@ contains
          row%word(column) = line(first:last)
       end do
       has = table%last > 0
-      if (row%kind == 3) call choose_columns(is_slide(set%deck, row%name), has)
+      if (row%kind >= 3) call choose_columns(is_slide(set%deck, row%kind, row%name), has)
       if (any((row%word == '') .eqv. has)) call blame(set, line)
       if (any(table%unit /= units_wanted(set%deck, table))) call blame(set, 'UNITS OVER '//line)
       if (row%spread == '') call compare_drives(line, row, set)
-      if (row%kind == 3 .and. .not. has(1)) then
+      if (row%kind >= 3 .and. .not. has(1)) then
          ! The CSV has one value of a pair.
          row%word(1::3) = row%word(3::3)
          row%word(3::3) = ''
@@ -299,7 +299,7 @@ contains
          if (head == 0) return
          column = head_columns(head)
          if (column == 3) angular = .true.
-         if (table%kind == 3 .and. column > 3 .and. angular) column = column + 2
+         if (table%kind >= 3 .and. column > 3 .and. angular) column = column + 2
          if (table%last(column) > 0) call blame(set, line)
          table%last(column) = last
       end do

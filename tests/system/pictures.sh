@@ -130,7 +130,9 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    equal "$svg: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$svg")"
    equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
    equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
-   equal "$svg: joints in motion" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck") 1" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
+   # Of a deck without joints nothing is compared.
+   count=$(grep -cE '^(REVOLUTE|JOINT)' "$deck")
+   equal "$svg: joints in motion" "$count $([ "$count" -gt 0 ] && echo 1 || echo 0)" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
 

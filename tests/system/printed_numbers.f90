@@ -27,7 +27,7 @@ contains
       character(*), intent(in) :: word
       integer :: first, last, e, exponent, status
 
-      p%none = word == 'NONE' .or. word == 'BRAK'
+      p%none = any(word == [character(8) :: 'NONE', 'BRAK', 'COINCIDE', 'POKRYCIE'])
       p%valid = p%none
       if (p%none) return
       first = merge(2, 1, word(1:1) == '-')

@@ -13,7 +13,8 @@ read_one() {
    echo "$found" >> "$w/counts"
 }
 
-for deck in $(grep -L '^VARY' input/*.deck); do
+# Ratios and the table of COLUMN cards are beside the CSV in ratios.sh.
+for deck in $(grep -LE '^(VARY|COLUMN|PRINT   RATIOS)' input/*.deck); do
    name=$(basename "$deck" .deck)
    "$BUILD/kinmat" --csv "$w/$name.csv" "$deck" > "$w/$name.lst" 2> "$w/err"
    # The assemblies stand in the listing as LINK cards.

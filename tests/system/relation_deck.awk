@@ -223,7 +223,9 @@ function draw(k,  dx, dy) {
 function change_card(k,  n) {
    if (change == "whole" && joints && name ~ /^(PRISM|CYLINDER|DRIVE)$/) draw(k)
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
-   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
+   # The relations of measures stand in measures.sh.
+   if (change == "whole" && name ~ /^(DISTANCE|LINE|ANGLE|XI|ETA|SUM)$/) return
+   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|COLUMN|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (change ~ /^(middle|back|beside)$/ && name == "ASSEMBLY") return

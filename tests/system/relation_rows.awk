@@ -76,9 +76,10 @@ n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; if ($15 == "NO-POSIT
    compared++
    # Whether the iteration of METHOD MATRIX converges is a matter of steps and axes; and where others have no position, whether
    # a link is reached by links alone that drives move is one of the order of cards. Other axes round all coordinates anew: a
-   # parallelogram far smaller than the links it joins is none from then on, and may not be told from one.
+   # parallelogram far smaller than the links it joins is none from then on, and may not be told from one. Near a dead point a
+   # number of a link may have no digit, and with other axes one that is larger has some.
    if (a[15] != $15) {
-      if (!($1 in matrix || change == "turned" && ($1 " " $2) in lost || change == "axes" && is_close && $15 == "NO-POSITION")) \
+      if (!($1 in matrix || change == "axes" && a[15] $15 == "UNKNOWN" && a[6] $6 != "" || change == "turned" && ($1 " " $2) in lost || change == "axes" && is_close && $15 == "NO-POSITION")) \
          print "flag " key " " a[15] " " $15
       next
    }

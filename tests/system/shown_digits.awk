@@ -18,7 +18,7 @@ function size(text) { gsub(/[?]/, "0", text); return text + 0 }
 # The cards of assemblies are estimates, whose digits are those of a card. The largest gap is rounding.
 /^ ---/ || /^ LARGEST/ || /^ ?LINK .*[.].*[.].*[.]/ || NF == 0 { next }
 # Heads with their units stand again after a remark, and remarks are not the same.
-/^          / || /^ (LINK|POINT|PAIR|OGNIWO|PUNKT|PARA|POLE|CURVE|BIEGUN|TOR)  +(X|PHI|FI|SLIDE|ANGLE|PRZESUW|KAT) / { next }
+/^          / || /^ (LINK|POINT|PAIR|MEASURE|OGNIWO|PUNKT|PARA|WIELKOSC|POLE|CURVE|BIEGUN|TOR)  +(X|PHI|FI|SLIDE|LENGTH|ANGLE|PRZESUW|DLUGOSC|KAT) / { next }
 FNR == NR { line[++lines] = $0; next }
 {
    count = split(line[++n], wanted)

@@ -44,7 +44,8 @@ cells() { awk -F, -v set="$3" '
       print found + 0
    }' "$1" "$2"; }
 
-for deck in $(grep -L '^VARY' input/*.deck); do
+# COLUMN cards choose cells: ratios.sh.
+for deck in $(grep -LE '^(VARY|COLUMN)' input/*.deck); do
    name=$(basename "$deck" .deck)
    sets=$(grep -c '^END' "$deck")
    "$kinmat" "$deck" --csv "$w/$name.csv" --table "$w/$name.table.csv" > "$w/lst" 2> "$w/err"

@@ -1,5 +1,5 @@
 # awk -f where_to_add.awk src/README.md SOURCES...: what is not true of the table "Where to add", a line each. Its cells: what
-# is added; an example, or nothing; the files that name the example, all of them and no others; what is written there.
+# is added; examples, or nothing; the files that name one of the examples, all of them and no others; what is written there.
 # Names in backquotes are files (`folder/file` of src/, docs/...), or identifiers of the sources; `word_...` is their beginning.
 function file_named(name) { return name in path }
 function known(name) {
@@ -42,14 +42,18 @@ END {
       split(row[i], cell, / *[|] */)
       n = names_in(row[i])
       for (k = 1; k <= n; k++) if (!known(list[k])) print cell[2] ": `" list[k] "` is no file and no name of the sources"
-      if (names_in(cell[3]) != 1) continue
-      example = list[1]
+      m = names_in(cell[3])
+      if (m == 0) continue
+      split("", examples)
+      for (k = 1; k <= m; k++) examples[k] = list[k]
       n = names_in(cell[4])
       split("", told)
       for (k = 1; k <= n; k++) told[list[k]]
       for (one in path) {
-         if (((example, one) in mentions) && !(one in told)) print cell[2] ": `" one "` names " example
-         if (!((example, one) in mentions) && (one in told)) print cell[2] ": `" one "` does not name " example
+         named = ""
+         for (k = 1; k <= m && named == ""; k++) if ((examples[k], one) in mentions) named = examples[k]
+         if (named != "" && !(one in told)) print cell[2] ": `" one "` names " named
+         if (named == "" && (one in told)) print cell[2] ": `" one "` does not name " examples[1]
       }
    }
 }

@@ -5,9 +5,10 @@ module whole_motion
    use error_estimate, only: error_estimate_t
    use independent, only: set_t, member_t, divide
    use set_motion, only: set_motion_t
+   use rows, only: finished_row_t, find_rows
    implicit none
    private
-   public :: one_motion, divided
+   public :: one_motion, divided, rows_of
 
 contains
 
@@ -29,6 +30,15 @@ contains
       s%motions(1) = q
       s%errors(1) = errors
    end function one_motion
+
+   !> Gives all finished rows of the motions `s` at instant number `step`.
+   function rows_of(s, step) result(rows)
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: step
+      type(finished_row_t), allocatable :: rows(:)
+
+      call find_rows(s, step, .true., rows)
+   end function rows_of
 
    !> The set `m`, divided.
    function divided(m) result(s)

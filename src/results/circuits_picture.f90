@@ -9,10 +9,10 @@ module circuits_picture
    use motion, only: motion_t, new_motion
    use names, only: drive_name, subject_name
    use numerals, only: whole
-   use points, only: row_t, find_row, coordinates_of
+   use points, only: row_t, find_row
+   use columns, only: columns_of_rows, column_at, forms, form_of, of_angle
    use set_analysis, only: set_analysis_t
    use listing_layout, only: angle_unit
-   use extremes, only: is_angle
    use circuit_curve, only: deck_position, drive_value
    use circuit_trace, only: end_closed
    use circuits, only: circuits_t
@@ -71,7 +71,7 @@ contains
                associate (r => own%requests(k))
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
-                  do column = coordinates_of(r%kind), 1, -1
+                  do column = forms(form_of(own, r))%coordinates, 1, -1
                      ! Of a link that turns its angle alone.
                      if (does_vary .and. r%kind == request_link) exit
                      call put_chart(page, s, own, found(i), r, column, does_vary)
@@ -114,7 +114,7 @@ contains
       q = new_motion(size(m%links))
       q%known = 0
       q%origin = s%now%motions(found%part)%origin
-      angular = [found%curve%is_angle, is_angle(m, request, column)]
+      angular = [found%curve%is_angle, columns_of_rows(column_at(form_of(m, request), column, 0))%dimension == of_angle]
       unit = merge(degree, 1.0_wp, angular .and. m%degrees)
       turn = merge(2.0_wp*pi/unit, 0.0_wp, angular)
       low = huge(low)

@@ -3,12 +3,11 @@ module circuits_table
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_limit
-   use set_analysis, only: set_analysis_t
    use independent, only: set_t
-   use assemblies, only: assemblies_t
    use circuit_trace, only: end_closed, end_far, end_lost
-   use circuits, only: circuits_t, circuit_branch_t, turns_of, find_circuits
-   use ranges, only: range_t, find_range, side_words, low, high
+   use circuits, only: circuits_t, circuit_branch_t, turns_of
+   use set_circuits, only: known
+   use ranges_table, only: side_words
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -17,7 +16,7 @@ module circuits_table
    use phrases
    implicit none
    private
-   public :: find_ranges, find_all_circuits, put_circuits
+   public :: put_circuits
 
    !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
    integer, parameter :: column_ends(3) = [9, 17, 31]
@@ -25,85 +24,8 @@ module circuits_table
    type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_not_limited, say_lost]
    !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
    integer, parameter :: meeting_digits = 6
-   !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
-   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
-
-   !> Ranges are alike up to this, in rad and lengths.
-   real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
 
 contains
-
-   !> The ranges of all drives of the set that `s` analyses, at its first instant. A mechanism without a position there
-   !> has those of its branches, if all of its circuits are known; a variant has none.
-   subroutine find_ranges(s, list)
-      type(set_analysis_t), intent(in) :: s
-      type(range_t), allocatable, intent(out) :: list(:)
-      type(range_t) :: r
-      type(circuits_t) :: found
-      integer :: c, i
-
-      allocate (list(0))
-      do c = 1, s%now%count
-         do i = 1, size(s%now%parts(c)%drives)
-            if (s%now%motions(c)%known >= 0) then
-               call find_range(s%now%parts(c), s%now%motions(c), i, r)
-               r%part = c
-               list = [list, r]
-            else if (s%now%variants == 0) then
-               call find_circuits(s%now%parts(c), s%now%motions(c), i, found)
-               found%part = c
-               if (found%is_complete .and. .not. found%are_more) call add_branch_ranges(found, list)
-            end if
-         end do
-      end do
-   end subroutine find_ranges
-
-   !> Adds the range of the drive on each branch of `found`; alike ones once.
-   subroutine add_branch_ranges(found, list)
-      type(circuits_t), intent(in) :: found
-      type(range_t), allocatable, intent(inout) :: list(:)
-      type(range_t) :: r
-      integer :: k, i, side
-
-      do k = 1, size(found%branches)
-         associate (b => found%branches(k), circuit => found%list(found%branches(k)%circuit))
-            if (circuit%rests) cycle
-            r = range_t(part=found%part, drive=found%drive, is_of_branch=.true., has_limit=b%dead > 0)
-            r%is_all = all(circuit%ends == end_closed) .and. all(b%dead == 0)
-            if (r%is_all) r%turns = turns_of(circuit)
-            do side = low, high
-               r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
-               if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))
-               r%limit(side)%value = known(b%range(side))
-            end do
-         end associate
-         do i = 1, size(list)
-            if (list(i)%part == r%part .and. list(i)%drive == r%drive .and. (list(i)%is_all .eqv. r%is_all) &
-               .and. all(abs(list(i)%limit%value - r%limit%value) <= alike*found%curve%closure%length)) exit
-         end do
-         if (i > size(list)) list = [list, r]
-      end do
-   end subroutine add_branch_ranges
-
-   !> Finds the circuits of each drive, the others held, of the set that `s` analyses, from its first instant.
-   subroutine find_all_circuits(s, list)
-      type(set_analysis_t), intent(in) :: s
-      type(circuits_t), allocatable, intent(out) :: list(:)
-      type(assemblies_t), allocatable :: first
-      integer :: c, i, n
-
-      allocate (list(sum([(size(s%now%parts(c)%drives), c=1, s%now%count)])))
-      n = 0
-      do c = 1, s%now%count
-         do i = 1, size(s%now%parts(c)%drives)
-            n = n + 1
-            ! Not allocated: they are not known.
-            if (allocated(s%assemblies)) first = s%assemblies(c)
-            call find_circuits(s%now%parts(c), s%now%motions(c), i, list(n), first)
-            list(n)%part = c
-         end do
-      end do
-   end subroutine find_all_circuits
 
    !> Writes the circuits `list` of the set `s` at its end.
    subroutine put_circuits(o, s, list)
@@ -218,13 +140,6 @@ contains
 
       words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), value_digits)
    end function value_words
-
-   !> `x` (rad or length), 0 if it is rounding.
-   pure real(wp) function known(x)
-      real(wp), intent(in) :: x
-
-      known = merge(0.0_wp, x, abs(x) <= rounding)
-   end function known
 
    !> BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT
    function meeting_words(one, many, numbers, polish) result(text)

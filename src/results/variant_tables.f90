@@ -1,17 +1,15 @@
 !> The rows of variants as text: lines of the listing, and of a file with all digits (--summary).
 module variant_tables
    use kinds, only: wp
-   use planar, only: in_degrees
    use mechanism, only: settings_t
    use independent, only: set_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of, right, choose_digits
-   use listing_tables, only: known_text
+   use listing_layout, only: layout_t, line_length, put_folded
+   use table, only: cell_text, add_cell, add_name, power_text, unit_of, right
    use listing, only: put_diagnostics
-   use csv, only: add_name
    use text_output, only: output_t, put, add
-   use numerals, only: whole, full
+   use numerals, only: whole
    use variant_rows
    use phrases
    implicit none
@@ -22,7 +20,6 @@ module variant_tables
    integer, parameter :: number_length = 10, least_width = 12
    !> Characters of an exponent.
    integer, parameter :: exponent_length = 4
-   character(1), parameter :: no_cell = '-'
 
 contains
 
@@ -51,22 +48,7 @@ contains
       call add(o, whole(m%set_number))
       do i = 1, size(s%columns)
          call add(o, ',')
-         associate (cell => r%cells(i))
-            select case (cell%kind)
-            case (cell_count)
-               call add(o, whole(nint(cell%value)))
-            case (cell_number)
-               if (s%columns(i)%angular .and. m%degrees) then
-                  call add(o, full(in_degrees(cell%value)))
-               else
-                  call add(o, full(cell%value))
-               end if
-            case (cell_unbounded)
-               call add(o, trim(merge('-inf', 'inf ', cell%value < 0.0_wp)))
-            case (cell_word)
-               call add_name(o, trim(cell%word))
-            end select
-         end associate
+         call add_cell(o, r%cells(i), m%degrees .and. s%columns(i)%format%is_angle)
       end do
       call put(o, '')
    end subroutine summary_row
@@ -86,7 +68,7 @@ contains
       do i = 2, s%numbers + 1
          associate (c => s%columns(i))
             item = '   '//trim(c%above)//' '//trim(c%below)//' = ' &
-               //trim(cell_text(l, m, c, r%cells(i))//' '//unit_of(c%power, trim(c%unit)))
+               //trim(cell_text(c%format, c%by_size, r%cells(i), l%words)//' '//unit_of(c%format%power, trim(c%unit)))
          end associate
          if (len(line) + len(item) > line_length) then
             call put(o, line)
@@ -115,8 +97,8 @@ contains
             do i = 1, starts(n + 1) - 1
                associate (c => s%columns(i))
                   if (.not. c%printed .or. (i > 1 .and. i < starts(n))) cycle
-                  heads = [c%above, c%below, repeat(' ', len(c%above)), c%unit]
-                  if (c%power /= 0) heads(3) = power_text(c%power)
+                  heads = [character(len(heads)) :: c%above, c%below, '', c%unit]
+                  if (c%format%power /= 0) heads(3) = power_text(c%format%power)
                   line = line//right(trim(heads(k)), merge(number_length, width(c), i == 1))
                end associate
             end do
@@ -140,8 +122,9 @@ contains
       do n = 1, size(starts) - 1
          line = right(whole(r%number), number_length)
          do i = starts(n), starts(n + 1) - 1
-            if (s%columns(i)%printed) &
-               line = line//right(cell_text(l, set, s%columns(i), r%cells(i)), width(s%columns(i)))
+            associate (c => s%columns(i))
+               if (c%printed) line = line//right(cell_text(c%format, c%by_size, r%cells(i), l%words), width(c))
+            end associate
          end do
          call put(o, line)
       end do
@@ -189,37 +172,4 @@ contains
       width = max(least_width, len_trim(c%above) + 2, len_trim(c%below) + 2, len_trim(c%unit) + 2)
       if (c%by_size) width = max(width, least_width + exponent_length)
    end function width
-
-   !> A cell in the listing, without blanks.
-   function cell_text(l, m, c, cell) result(text)
-      type(layout_t), intent(in) :: l
-      class(settings_t), intent(in) :: m
-      type(summary_column_t), intent(in) :: c
-      type(cell_t), intent(in) :: cell
-      character(:), allocatable :: text
-      real(wp) :: unit
-      integer :: decimals, power
-      character(:), allocatable :: exponent
-
-      unit = merge(l%angle, 1.0_wp, c%angular)
-      select case (cell%kind)
-      case (cell_none)
-         text = no_cell
-      case (cell_count)
-         text = whole(nint(cell%value))
-      case (cell_number)
-         decimals = c%decimals
-         power = c%power
-         if (c%by_size) call choose_digits(log10(max(abs(cell%value)/unit, tiny(1.0_wp))), decimals, power)
-         text = known_text(cell%value/unit, decimals, power, cell%error/unit)
-         if (c%by_size .and. power /= 0) then
-            exponent = power_text(power)
-            text = text//exponent(3:)
-         end if
-      case (cell_unbounded)
-         text = phrase(say_unbounded, m%polish)
-      case (cell_word)
-         text = trim(cell%word)
-      end select
-   end function cell_text
 end module variant_tables

@@ -2,54 +2,38 @@
 module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: request_t, driven_kinds, request_link
-   use motion, only: mark_none, diagnostic_t, diagnostic_limit
+   use mechanism, only: mechanism_t, request_t
+   use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
+   use scales, only: is_length
+   use table, only: format_t, cell_t, choose_digits
+   use motion, only: mark_none
    use drives, only: drive_motion
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
-   use set_analysis, only: set_analysis_t
-   use set_motion, only: is_flagged
-   use listing_layout, only: layout_t, dimension_of, choose_digits, angle_unit
-   use csv, only: marks, table_t, new_table, drive_columns, dotted
-   use extremes, only: strokes_t, least, greatest, outward, extreme_words, rows_asked, column_of, strokes_of, &
-      ratio_decimals
+   use listing_layout, only: layout_t, angle_unit, column_name, column_unit
+   use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
+   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, rows_asked, strokes_of
+   use extremes_table, only: extreme_words, ratio_format
    use ranges, only: low, high
    use answers, only: answers_t
+   use counts, only: counts_t
    use numerals, only: whole
    use phrases
    implicit none
    private
-   public :: summary_t, summary_column_t, cell_t, variant_row_t, new_summary, new_row, note_flag, fill_row
-   public :: cell_count, cell_number, cell_word, cell_unbounded, cell_none
+   public :: summary_t, summary_column_t, variant_row_t, new_summary, new_row, fill_row
 
    !> Roundings of a coordinate and of the difference of two.
    real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
-
-   !> What a cell holds.
-   enum, bind(c)
-      enumerator :: cell_none = 0     !< nothing
-      enumerator :: cell_count        !< a whole number
-      enumerator :: cell_number       !< a number in the deck's units, of angles in rad
-      enumerator :: cell_unbounded    !< there is no bound; the sign of `value` says in which direction
-      enumerator :: cell_word         !< a word
-   end enum
-
-   type :: cell_t
-      integer :: kind = cell_none
-      real(wp) :: value = 0.0_wp
-      real(wp) :: error = 0.0_wp                    !< what rounding leaves open of `value`
-      character(3*label_length + 2) :: word = ''
-   end type cell_t
 
    !> A column: its name in a file, and its form in the listing.
    type :: summary_column_t
       character(80) :: name = ''
       logical :: printed = .false.                  !< it is in the listing too
-      character(3*label_length) :: above = '', below = ''   !< the lines over it
+      character(6*label_length) :: above = '', below = ''   !< the lines over it
       character(3*label_length) :: unit = ''
-      logical :: angular = .false.                  !< `value` is in rad
-      integer :: decimals = 0, power = 0            !< as in `digits_t`
+      type(format_t) :: format = format_t(decimals=0)
       logical :: by_size = .false.                  !< instead, each value has the digits for its own size
    end type summary_column_t
 
@@ -59,15 +43,10 @@ module variant_rows
       type(table_t) :: extremes                     !< the columns of what EXTREMES asks for
    end type summary_t
 
-   type :: variant_row_t
+   type, extends(counts_t) :: variant_row_t
       integer :: number = 0                         !< of the variant
       type(cell_t), allocatable :: cells(:)         !< (columns)
       character(:), allocatable :: rejected         !< the error for which it is not computed; '' for none
-      integer :: solved = 0, flagged = 0            !< instants
-      integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
-      integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
-      real(wp) :: t = 0.0_wp                        !< its time
-      type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
    end type variant_row_t
 
 contains
@@ -83,22 +62,25 @@ contains
 
       s%numbers = size(v%numbers)
       drives = drive_columns(set)
+
       allocate (s%columns(0))
       call add_column(summary_column_t('variant', .true., phrase(say_variant, set%polish)))
       do i = 1, size(v%numbers)
          call add_number(v%numbers(:i))
       end do
+
       call add_column(summary_column_t('solved', .true., phrase(say_instants, set%polish), &
          phrase(say_are_solved, set%polish)))
       call add_column(summary_column_t('flagged', .true., phrase(say_instants, set%polish), &
          phrase(say_flagged, set%polish)))
       call add_column(summary_column_t('flag.t', .true., phrase(say_first_flag, set%polish), &
-         phrase(say_at_time, set%polish), set%time_unit, decimals=l%time_decimals, power=l%time_power))
+         phrase(say_at_time, set%polish), set%time_unit, format=l%time))
       call add_drive(min(1, size(set%drives)), 'flag', '', '')
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
       call add_column(summary_column_t('limit.value'))
+
       do i = 1, merge(size(set%drives), 0, set%ranges)
          associate (own => set%parts(set%drives(i)%part))
             name = drive_name(own, own%drives(set%drives(i)%number))
@@ -135,8 +117,8 @@ contains
             if (alike > 1) c%name = trim(c%name)//'.'//whole(alike)
             largest = max(abs(one%first), abs(one%last))
             if (allocated(one%list)) largest = maxval(abs(one%list))
-            call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
-            if (.not. largest > 0.0_wp) c%power = 0
+            call choose_digits(log10(max(largest, tiny(1.0_wp))), 0, c%format)
+            if (.not. largest > 0.0_wp) c%format%power = 0
          end associate
          call add_column(c)
       end subroutine add_number
@@ -152,25 +134,34 @@ contains
          if (d > 0) then
             c%name = start//'.'//drives(d)
             associate (place => set%drives(d))
-               c%angular = driven_kinds(set%parts(place%part)%drives(place%number)%kind) == request_link
+               c%format%is_angle = .not. is_length(set%parts(place%part)%drives(place%number))
             end associate
             c%printed = above /= ''
             c%above = above
             c%below = below
-            c%unit = merge(angle_unit(set), set%length_unit, c%angular)
-            if (d <= size(l%drives)) then
-               c%decimals = l%drives(d)%decimals
-               c%power = l%drives(d)%power
-            end if
+            c%unit = merge(angle_unit(set), set%length_unit, c%format%is_angle)
+            if (c%format%is_angle) c%format%unit = l%format(of_angle, 0)%unit
+            if (d <= size(l%drives)) c%format = l%drives(d)%format
          end if
          call add_column(c)
       end subroutine add_drive
+
+      !> Gives the name of what a request is about: ROCKER, MU BY ANGLE CRANK.
+      function name_of(m, request) result(name)
+         type(mechanism_t), intent(in) :: m  !< whose request it is
+         type(request_t), intent(in) :: request
+         character(:), allocatable :: name
+
+         name = trim(subject_name(m, request%kind, request%subject))
+         if (request%drive > 0) &
+            name = name//' '//phrase(say_by, set%polish)//' '//trim(drive_name(m, m%drives(request%drive)))
+      end function name_of
 
       !> Adds the columns of what EXTREMES asks for.
       subroutine add_extremes()
          type(summary_column_t) :: c
          type(request_t) :: request
-         integer :: i, which, place, over
+         integer :: i, which
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
          character(:), allocatable :: word
 
@@ -178,14 +169,10 @@ contains
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
                request = request_of(set, column%request)
-               place = column_of(request, column%angular, column%coordinate)
-               over = l%column(place, column%order, request%kind)
-               word = trim(l%name(over, request%kind))
-               c = summary_column_t(printed=.true., angular=column%angular, &
-                  above=subject_name(set%parts(part), request%kind, request%subject), &
-                  unit=trim(l%unit(over, request%kind))//l%per(over, request%kind), &
-                  decimals=l%own(part)%decimals(dimension_of(place), column%order), &
-                  power=l%own(part)%power(dimension_of(place), column%order))
+               word = column_name(l, column%row_column_t)
+               c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
+                  above=name_of(set%parts(part), request), &
+                  format=l%own(part)%format(column%dimension, column%order))
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
                   c%below = word//' '//extreme_words(which)
@@ -193,14 +180,14 @@ contains
                   call add_column(summary_column_t(trim(c%name)//'.t'))
                   call add_drive(first_drive(set, column%request), trim(c%name), '', '')
                end do
-               if (column%order > 0) cycle
+               if (column%order > 0 .or. request%drive > 0) cycle
                c%name = trim(column%name)//'.stroke'
                c%below = word//' '//phrase(say_stroke, set%polish)
                c%by_size = .true.
-               c%power = 0
+               c%format%power = 0
                call add_column(c)
                call add_column(summary_column_t(trim(column%name)//'.ratio', .true., c%above, &
-                  word//' '//phrase(say_ratio, set%polish), decimals=ratio_decimals))
+                  word//' '//phrase(say_ratio, set%polish), format=ratio_format))
             end associate
          end do
       end subroutine add_extremes
@@ -224,33 +211,6 @@ contains
       end do
    end function new_row
 
-   !> Takes the instant to which `a` has advanced: whether it is flagged, and of the first one why.
-   subroutine note_flag(r, a)
-      type(variant_row_t), intent(inout) :: r
-      type(set_analysis_t), intent(in) :: a
-      integer :: c, i
-
-      if (.not. is_flagged(a%now)) then
-         r%solved = r%solved + 1
-         return
-      end if
-      r%flagged = r%flagged + 1
-      do c = 1, a%now%count
-         associate (q => a%now%motions(c))
-            if (r%mark == mark_none .and. q%mark /= mark_none) then
-               r%mark = q%mark
-               r%singularity = q%singularity
-               r%t = q%t
-            end if
-            if (r%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
-            i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
-            if (i == 0) cycle
-            r%limit = q%diagnostics(i)
-            r%limit%part = c
-         end associate
-      end do
-   end subroutine note_flag
-
    !> Fills the cells of `r`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
    subroutine fill_row(s, set, asked, r)
       type(summary_t), intent(in) :: s
@@ -258,7 +218,7 @@ contains
       type(answers_t), intent(in) :: asked
       type(variant_row_t), intent(inout) :: r
       type(strokes_t) :: strokes
-      integer :: n, i, k, which
+      integer :: n, i, k, which, order
 
       n = s%numbers + 1
       call next(cell_t(cell_count, real(r%solved, wp)))
@@ -283,6 +243,7 @@ contains
       end if
       n = n + 3
       if (r%rejected /= '') return
+
       if (set%ranges) then
          ! Three for each drive: the limits, and the turns after which the motion closes.
          do i = 1, size(asked%ranges)
@@ -299,14 +260,14 @@ contains
       if (set%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
          real(asked%assemblies, wp)))
       if (set%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
+
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
-            k = findloc(asked%extremes%tracks(part)%coordinates%request == c%request &
-               .and. asked%extremes%tracks(part)%coordinates%column == c%coordinate, .true., dim=1)
+            call find_number(asked%extremes%tracks(part)%coordinates, c, k, order)
             associate (one => asked%extremes%tracks(part)%coordinates(k))
                do which = least, greatest
-                  associate (e => one%found(which, c%order))
-                     if (e%exists) then
+                  associate (e => one%found(which, order))
+                     if (e%exists .and. one%sought(order)) then
                         r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
                         if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
                         r%cells(n + 2) = cell_t(cell_number, e%t)
@@ -315,7 +276,7 @@ contains
                   end associate
                   n = n + 3
                end do
-               if (c%order > 0) cycle
+               if (order > 0) cycle
                strokes = strokes_of(asked%extremes, one)
                ! It may be small: then the rounding of the difference counts.
                if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
@@ -336,6 +297,22 @@ contains
          r%cells(n) = cell
       end subroutine next
    end subroutine fill_row
+
+   !> Finds where the extremes of a column are.
+   pure subroutine find_number(coordinates, column, k, order)
+      type(coordinate_t), intent(in) :: coordinates(:)   !< of its mechanism
+      type(table_column_t), intent(in) :: column
+      integer, intent(out) :: k              !< the number of the coordinate
+      integer, intent(out) :: order          !< of its derivative
+
+      do k = 1, size(coordinates)
+         if (coordinates(k)%request /= column%request) cycle
+         do order = 0, 2
+            if (coordinates(k)%columns(order) == 0) cycle
+            if (all(columns_of_rows(coordinates(k)%columns(order))%at == column%at)) return
+         end do
+      end do
+   end subroutine find_number
 
    !> The value of drive number `d` (0: none) at the time `t`.
    type(cell_t) function drive_cell(set, d, t) result(cell)

@@ -4,26 +4,32 @@
 !> the dwells. What does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: request_t, request_pair
+   use mechanism, only: request_t, request_link
+   use separations, only: closes
+   use columns, only: columns_of_rows, forms, table_of, table_turning, cell_none, cell_unbounded, of_angle
+   use table, only: format_t, number_text
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
-   use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length, angle_unit
-   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, known_text
+   use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
+   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      is_cyclic, is_covered, ratio_decimals, closes_to, column_of, varies
+   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, strokes_of, &
+      is_cyclic, is_covered, varies
    use dwells, only: dwell_t
    use phrases
    implicit none
    private
-   public :: put_extremes
+   public :: put_extremes, extreme_words, ratio_format
 
    !> Digits of a closure.
    integer, parameter :: closure_digits = 3
    !> Of more gaps only the first are told.
    integer, parameter :: max_gaps = 4
+   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
+   !> Of a ratio of times.
+   type(format_t), parameter :: ratio_format = format_t(decimals=6)
 
 contains
 
@@ -35,24 +41,30 @@ contains
       type(extremes_t), intent(in) :: x
       type(dwell_t), intent(in) :: dwells(:)
       type(listing_state_t) :: table
-      type(digits_t) :: d
       type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
-      integer :: q, c, k, part, drive
+      integer :: q, c, k, part, drive, links_table
       logical :: moves, goes_on(size(x%tracks))
       character(:), allocatable :: driven, line
 
       call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
       goes_on = .false.
+      ! Links of which only angles are asked for have no columns of places.
+      links_table = table_turning
+      do c = 1, size(x%tracks)
+         associate (list => x%tracks(c)%coordinates)
+            if (any(forms(list%form)%kind == request_link .and. list%column < 3)) links_table = request_link
+         end associate
+      end do
       do q = 1, size(x%asked)
          part = s%rows(x%asked(q))%part
          own = pack(x%tracks(part)%coordinates, x%tracks(part)%coordinates%request == x%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(s, x%asked(q))
-         d = l%own(part)
-         call put_heads(o, l, part, request%kind, table)
+         call put_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
+            request%kind == request_link), table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(s, x%asked(q))
          if (drive > size(l%drives)) drive = 0
@@ -62,13 +74,16 @@ contains
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
-               if (w%request == x%asked(q)) call put_at(phrase(say_dwell, s%polish)//'  '//column_name(own(w%column)) &
-                  //'  '//extreme_words(w%which)//' +- '//number_text(w%distance, 0.0_wp, own(w%column)%is_angle, 0), &
-                  [w%from, w%to], w%error)
+               if (w%request /= x%asked(q)) cycle
+               c = findloc(own%column, w%column, dim=1)
+               call put_at(phrase(say_dwell, s%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which)//' +- ' &
+                  //text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
             end associate
          end do
       end do
-      if (.not. moves) call put(o, ' '//phrase(say_at_rest, s%polish))
+      ! What is not sought may move.
+      if (.not. moves .and. all([(all(request_sought(x%asked(q))), q=1, size(x%asked))])) &
+         call put(o, ' '//phrase(say_at_rest, s%polish))
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
@@ -77,18 +92,29 @@ contains
          associate (closure => x%tracks(k)%closure)
             if (.not. (goes_on(k) .and. all(closure < huge(1.0_wp)))) cycle
             line = ' --- '//phrase(say_no_period, s%polish)
-            if (all(closure(:2) <= closes_to)) then
+            if (closes(closure(:2))) then
                line = line//' '//phrase(say_in_velocity, s%polish)
             else
                line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
                   //phrase(say_lengths_apart, s%polish)//', ' &
-                  //rounded(closure(2)/l%angle, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' '//trim(angle_unit(s))
+                  //rounded(closure(2)/l%format(of_angle, 0)%unit, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
+                  //trim(angle_unit(s))
             end if
             call put(o, line)
          end associate
       end do
 
    contains
+
+      !> Tells which numbers of a row are sought.
+      function request_sought(i) result(sought)
+         integer, intent(in) :: i            !< its number among the requests of the set
+         logical :: sought(3, 0:2)
+         type(request_t) :: one
+
+         one = request_of(s, i)
+         sought = one%sought
+      end function request_sought
 
       !> The rows of a link, point or pair of this `name`.
       subroutine put_subject(name)
@@ -113,11 +139,11 @@ contains
                   if (.not. varies(own(c), k)) cycle
                   associate (e => own(c)%found(which, k))
                      if (.not. e%exists) then
-                        value(c, k) = trim(adjustl(l%none))
+                        value(c, k) = l%words(cell_none)
                         cycle
                      end if
-                     value(c, k) = phrase(say_unbounded, s%polish)
-                     if (e%has_bound) value(c, k) = number_text(e%value, e%error, own(c)%is_angle, k)
+                     value(c, k) = l%words(cell_unbounded)
+                     if (e%has_bound) value(c, k) = text_of(own(c), k, e%value, e%error)
                      time(c, k) = time_text(l, e%t, e%t_error)
                      if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
                   end associate
@@ -134,7 +160,7 @@ contains
          do c = 1, size(own)
             strokes(c) = strokes_of(x, own(c))
             associate (length => strokes(c)%length)
-               if (length%exists) value(c, 0) = number_text(length%value, length%error, own(c)%is_angle, 0)
+               if (length%exists) value(c, 0) = text_of(own(c), 0, length%value, length%error)
             end associate
          end do
          if (any(value /= '')) call put_fields(phrase(say_stroke, s%polish), value)
@@ -143,18 +169,18 @@ contains
             if (strokes(c)%ratio > 0.0_wp) then
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
                error = sum(own(c)%found(:, 0)%t_error)
-               line = '  '//column_name(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
+               line = '  '//name_of(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
                   //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
-                  //known_text(strokes(c)%ratio, ratio_decimals, 0, strokes(c)%error)
+                  //number_text(ratio_format, strokes(c)%ratio, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
             end if
             if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, part)) goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
-                  call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(own(c))//'  ' &
-                     //number_text(dead(i)%value, 0.0_wp, own(c)%is_angle, 0), [dead(i)%t], [0.0_wp])
+                  call put_at(phrase(say_dead_centre, s%polish)//'  '//name_of(own(c))//'  ' &
+                     //text_of(own(c), 0, dead(i)%value, 0.0_wp), [dead(i)%t], [0.0_wp])
                end do
             end associate
          end do
@@ -204,51 +230,43 @@ contains
       end subroutine put_gaps
 
       !> The name of the coordinate `c`.
-      pure function column_name(c) result(name)
+      pure function name_of(c) result(name)
          type(coordinate_t), intent(in) :: c
          character(:), allocatable :: name
 
-         if (request%kind == request_pair) then
-            name = phrase(say_slide, s%polish)
-            if (c%is_angle) name = phrase(say_angle, s%polish)
-         else
-            name = 'X'
-            if (c%column == 2) name = 'Y'
-            if (c%column == 3) name = phrase(say_phi, s%polish)
-         end if
-      end function column_name
+         name = column_name(l, columns_of_rows(c%columns(0)))
+      end function name_of
 
       !> A row of `fields` (own coordinates, 0:2), with a label before it.
       subroutine put_fields(label, fields)
          character(*), intent(in) :: label
          character(numeral_length), intent(in) :: fields(:, 0:)
          character(row_length) :: line
-         integer :: c, k, column, last
+         integer :: c, k, last
 
          line = '  '//label
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
             do c = 1, size(own)
-               column = column_of(request, own(c)%is_angle, own(c)%column)
-               last = name_length + numeral_length*l%column(column, k, request%kind)
+               if (own(c)%columns(k) == 0) cycle
+               last = end_of_column(l, own(c)%form, own(c)%columns(k))
                line(last - numeral_length + 1:last) = adjustr(fields(c, k))
             end do
          end do
-         table%masked = table%masked .or. index(line(name_length + 1:), unknown_digit) > 0
+         table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line(:len_trim(line)))
       end subroutine put_fields
 
-      !> A length or angle, or its derivative number `k`, with the digits of the table, without blanks; `error` is
-      !> unknown of it.
-      pure function number_text(value, error, angular, k) result(text)
-         real(wp), intent(in) :: value, error
-         logical, intent(in) :: angular
+      !> A value of derivative number `k` of the coordinate `c`, with the digits of the table; `error` is unknown of it.
+      pure function text_of(c, k, value, error) result(text)
+         type(coordinate_t), intent(in) :: c
          integer, intent(in) :: k
+         real(wp), intent(in) :: value, error
          character(:), allocatable :: text
 
-         associate (unit => merge(l%angle, 1.0_wp, angular), what => merge(2, 1, angular))
-            text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
+         associate (column => columns_of_rows(c%columns(k)))
+            text = number_text(l%own(part)%format(column%dimension, column%order), value, error)
          end associate
-      end function number_text
+      end function text_of
    end subroutine put_extremes
 end module extremes_table

@@ -2,8 +2,8 @@
 module assembly_table
    use kinds, only: wp, label_length
    use planar, only: point_of, degree, without_turns
-   use mechanism, only: mechanism_t, instant, plane_origin, drive_words, driven_kinds, request_link
-   use scales, only: characteristic_length
+   use mechanism, only: mechanism_t, instant, plane_origin, drive_words, driven_kinds
+   use scales, only: characteristic_length, is_length
    use names, only: listed, subject_name
    use cards, only: ruler_card
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
@@ -166,7 +166,7 @@ contains
             if (drive%second > 0) names(3) = m%links(drive%second)%name
             do k = 1, size(numbers)
                x = drive%polynomial(k)
-               if (m%degrees .and. driven_kinds(drive%kind) == request_link) x = x/degree
+               if (m%degrees .and. .not. is_length(drive)) x = x/degree
                numbers(k) = number_text(x, merge(abs(x), 1.0_wp, abs(x) > 0.0_wp), drawing_digits)
             end do
             call put_card(o, 'DRIVE   ', names, numbers)

@@ -18,7 +18,7 @@
 !> W is |x_i - x_j| where that is above 1: then K does not grow as a slide goes to infinity.
 module root_distance
    use kinds, only: wp
-   use mechanism, only: pair_revolute, pair_prismatic, drive_x, drive_y, drive_slide
+   use mechanism, only: has_guide, drive_x, drive_y, drive_slide
    use grouping, only: joined
    use lapack, only: getrs
    use linear_solver, only: factors_t
@@ -49,7 +49,7 @@ contains
 
       link_i = s%link_of(s%pairs%point_i)
       link_j = s%link_of(s%pairs%point_j)
-      is_guided = s%pairs%kind == pair_prismatic
+      is_guided = has_guide(s%pairs%kind)
       group = joined(spread(.true., 1, size(group)), pack(link_i, is_guided), pack(link_j, is_guided))
 
       allocate (c%angle_of(size(group)), source=0)
@@ -147,7 +147,7 @@ contains
       bound = 0.0_wp
       do k = 1, size(s%pairs)
          associate (i => s%pairs(k)%point_i, j => s%pairs(k)%point_j, slide => slide_length(s, p, k))
-            if (s%pairs(k)%kind == pair_revolute) then
+            if (.not. has_guide(s%pairs(k)%kind)) then
                bound(2*k - 1:2*k) = body(i) + body(j)
             else if (c%angle_of(s%link_of(i)) > 0) then
                bound(2*k - 1) = 2.0_wp*max(1.0_wp, slide) + slide

@@ -1,0 +1,47 @@
+!> How many instants of a run are solved, flagged and not proved, and why the first is flagged.
+module counts
+   use kinds, only: wp
+   use motion, only: mark_none, diagnostic_t, diagnostic_limit
+   use set_motion, only: is_flagged
+   use set_analysis, only: set_analysis_t
+   implicit none
+   private
+   public :: counts_t, note_flag
+
+   type :: counts_t
+      integer :: solved = 0, flagged = 0            !< instants
+      integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
+      integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
+      real(wp) :: t = 0.0_wp                        !< its time
+      type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
+   end type counts_t
+
+contains
+
+   !> Takes the instant to which `a` has advanced: whether it is flagged, and of the first one why.
+   subroutine note_flag(r, a)
+      type(counts_t), intent(inout) :: r
+      type(set_analysis_t), intent(in) :: a
+      integer :: c, i
+
+      if (.not. is_flagged(a%now)) then
+         r%solved = r%solved + 1
+         return
+      end if
+      r%flagged = r%flagged + 1
+      do c = 1, a%now%count
+         associate (q => a%now%motions(c))
+            if (r%mark == mark_none .and. q%mark /= mark_none) then
+               r%mark = q%mark
+               r%singularity = q%singularity
+               r%t = q%t
+            end if
+            if (r%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
+            i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
+            if (i == 0) cycle
+            r%limit = q%diagnostics(i)
+            r%limit%part = c
+         end associate
+      end do
+   end subroutine note_flag
+end module counts

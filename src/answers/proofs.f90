@@ -1,0 +1,80 @@
+!> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
+!> are not proved; and the counts.
+module proofs
+   use kinds, only: wp
+   use motion, only: mark_none
+   use following, only: branch_crossed
+   use motion_proof, only: holds
+   use set_analysis, only: set_analysis_t, set_bounds
+   implicit none
+   private
+   public :: proofs_t, reason_t, note_proof
+
+   !> Of a printed instant, and the steps to it from the last one.
+   type :: line_t
+      integer :: step = 0                        !< number of the instant
+      logical :: is_proved = .true.
+      integer :: parts = 0                       !< into which the steps were divided
+      real(wp) :: tube = 0.0_wp                  !< largest radius, in rad and units of the blocks
+      real(wp) :: bounds(0:2) = 0.0_wp           !< of errors, in the characteristic length and rate
+   end type line_t
+
+   !> Why an instant is not proved.
+   type :: reason_t
+      integer :: step = 0                        !< number of the instant
+      integer :: part = 1                        !< the independent mechanism
+      integer :: mark = mark_none, singularity = 0   !< of its motion
+      logical :: is_crossed = .false.            !< a change point may be in the step
+      integer :: too_many = 0                    !< parts into which the step is divided, if these are too many
+      integer, allocatable :: links(:)           !< whose position is not proved
+   end type reason_t
+
+   type :: proofs_t
+      type(line_t), allocatable :: lines(:)      !< with room behind
+      integer :: count = 0                       !< of them; the next one is in the making
+      type(reason_t), allocatable :: reasons(:)  !< the first ones
+      integer :: instants = 0, proved = 0        !< in all
+      real(wp) :: gap = 0.0_wp                   !< of redundant equations at most, in units of the blocks
+   end type proofs_t
+
+   !> So many reasons are kept; of more, the number.
+   integer, parameter :: max_reasons = 50
+
+contains
+
+   !> Takes what is proved of instant number `k`, to which `s` has advanced; `due`: it is printed.
+   subroutine note_proof(p, s, k, due)
+      type(proofs_t), intent(inout) :: p
+      type(set_analysis_t), intent(in) :: s
+      integer, intent(in) :: k               !< the number of the instant, from 0
+      logical, intent(in) :: due             !< it is printed
+      type(reason_t) :: reason
+      integer :: c
+
+      if (.not. allocated(p%lines)) allocate (p%lines(max(2, s%now%steps + size(s%now%at) + 2)), p%reasons(0))
+      p%instants = p%instants + 1
+      associate (line => p%lines(p%count + 1))
+         do c = 1, s%now%count
+            associate (proof => s%now%proofs(c))
+               line%parts = line%parts + proof%step%parts
+               line%tube = max(line%tube, proof%step%radius)
+               if (proof%is_proved) p%gap = max(p%gap, proof%gap)
+               if (holds(proof)) cycle
+               line%is_proved = .false.
+               if (size(p%reasons) == max_reasons) cycle
+               associate (q => s%now%motions(c))
+                  reason = reason_t(k, c, q%mark, q%singularity, s%list(c)%branch%kind == branch_crossed, &
+                     proof%too_many)
+               end associate
+               if (allocated(proof%failed)) reason%links = proof%failed
+               p%reasons = [p%reasons, reason]
+            end associate
+         end do
+         if (all(holds(s%now%proofs))) p%proved = p%proved + 1
+         if (.not. due) return
+         line%step = k
+         line%bounds = set_bounds(s)
+         p%count = p%count + 1
+      end associate
+   end subroutine note_proof
+end module proofs

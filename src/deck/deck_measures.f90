@@ -1,0 +1,208 @@
+!> The cards DISTANCE, LINE, ANGLE, XI, ETA and SUM: the measures of a set. A measure may be named before the card that
+!> defines it, and a sum of sums is kept as the sum of their terms.
+module deck_measures
+   use kinds, only: wp
+   use mechanism
+   use card_sets, only: card_set_t, define_name, look_up, look_up_kinds, add_card_error
+   use card_numbers, only: angle_in_radians
+   use cards
+   use input_errors
+   use name_table, only: find_name
+   use independent, only: part_of_links
+   implicit none
+   private
+   public :: build_measures, check_measures
+
+contains
+
+   !> Builds `set`%mechanism%measures in the order of their cards; links, points and pairs are there. Unknown names and
+   !> sums of a length and an angle, or of themselves, are errors.
+   subroutine build_measures(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 to do, 1 begun, 2 done
+      integer :: n
+
+      if (size(states) == 0) return
+      allocate (set%mechanism%measures(size(states)))
+      do n = 1, size(states)
+         associate (k => set%named(request_measure)%card(n), one => set%mechanism%measures(n))
+            one%kind = set%cards(k)%form - form_distance + measure_distance
+            one%name = set%cards(k)%label(label_c)
+            one%is_angle = any(one%kind == [measure_line, measure_angle])
+            one%continues = one%kind == measure_line
+            allocate (one%subjects(0))
+         end associate
+         call define_name(set, request_measure, n)
+      end do
+      ! All names are there.
+      do n = 1, size(states)
+         associate (k => set%named(request_measure)%card(n))
+            select case (set%mechanism%measures(n)%kind)
+            case (measure_distance, measure_line)
+               call take_subjects([request_point, request_point])
+               if (set%cards(k)%label(label_a) == set%cards(k)%label(label_b) .and. set%cards(k)%valid) &
+                  call add_card_error(set, point_twice, k, label_b)
+            case (measure_xi, measure_eta)
+               call take_subjects([request_point, request_link])
+            case (measure_angle)
+               call take_sides()
+            case default
+               call take_summands()
+            end select
+         end associate
+      end do
+      states = 0
+      do n = 1, size(states)
+         if (set%mechanism%measures(n)%kind == measure_sum) call add_up(n)
+      end do
+
+   contains
+
+      !> Takes the two subjects of measure number `n`.
+      subroutine take_subjects(kinds)
+         integer, intent(in) :: kinds(2)     !< request_link, ...
+         type(subject_t) :: subjects(2)
+         integer :: i
+
+         do i = 1, 2
+            subjects(i)%kind = kinds(i)
+            call look_up(set, kinds(i), set%named(request_measure)%card(n), label_a + i - 1, subjects(i)%number)
+         end do
+         set%mechanism%measures(n)%subjects = subjects
+      end subroutine take_subjects
+
+      !> Takes the lines or links of ANGLE, measure number `n`.
+      subroutine take_sides()
+         type(subject_t) :: sides(2)
+         integer :: i, k, link
+
+         k = set%named(request_measure)%card(n)
+         do i = 1, 2
+            associate (one => sides(i), name => set%cards(k)%label(label_a + i - 1))
+               link = find_name(set%named(request_link)%table, name)
+               one = subject_t(request_measure, find_name(set%named(request_measure)%table, name))
+               if (one%number > 0) then
+                  if (set%mechanism%measures(one%number)%kind /= measure_line) one%number = 0
+               end if
+               if (one%number > 0 .and. link > 0) then
+                  call add_card_error(set, side_twofold, k, label_a + i - 1)
+               else if (one%number == 0) then
+                  call look_up_kinds(set, [request_link], side_unknown, k, label_a + i - 1, one%kind, one%number)
+               end if
+            end associate
+         end do
+         if (all(sides%number > 0) .and. set%cards(k)%label(label_a) == set%cards(k)%label(label_b)) &
+            call add_card_error(set, drive_one_link, k, label_b)
+         associate (measure => set%mechanism%measures(n))
+            measure%subjects = sides
+            measure%continues = any(sides%kind == request_measure)
+         end associate
+      end subroutine take_sides
+
+      !> Takes the summands of SUM, measure number `n`, one or two, as its card names them.
+      subroutine take_summands()
+         type(subject_t) :: summands(2)
+         integer :: i, k
+
+         k = set%named(request_measure)%card(n)
+         associate (card => set%cards(k))
+            do i = 1, 2
+               call look_up_kinds(set, [request_measure, request_pair], summand_unknown, k, label_a + i - 1, &
+                  summands(i)%kind, summands(i)%number)
+               if (card%given(i)) summands(i)%factor = card%real(i)
+            end do
+            set%mechanism%measures(n)%subjects = pack(summands, summands%number > 0)
+            if (card%label(label_b) == '' .and. card%given(2)) call add_card_error(set, field_unused, k, real_2)
+         end associate
+      end subroutine take_summands
+
+      !> Puts the terms of other sums in their place in SUM, measure number `i`.
+      recursive subroutine add_up(i)
+         integer, intent(in) :: i            !< its number
+         type(subject_t), allocatable :: own(:), terms(:)
+         logical :: is_angle(2)
+         integer :: j, k
+
+         if (states(i) == 2) return
+         k = set%named(request_measure)%card(i)
+         associate (measure => set%mechanism%measures(i))
+            if (states(i) == 1) then
+               ! It contains itself.
+               call add_card_error(set, sum_refused, k, label_a)
+               measure%subjects = [subject_t ::]
+               states(i) = 2
+               return
+            end if
+            states(i) = 1
+            own = measure%subjects
+            allocate (terms(0))
+            do j = 1, size(own)
+               if (own(j)%kind == request_pair) then
+                  is_angle(j) = .not. has_guide(set%mechanism%pairs(own(j)%number)%kind)
+                  call add_term(own(j), terms)
+               else
+                  associate (one => set%mechanism%measures(own(j)%number))
+                     if (one%kind == measure_sum) call add_up(own(j)%number)
+                     is_angle(j) = one%is_angle
+                     call add_term(own(j), terms)
+                     measure%constant = measure%constant + own(j)%factor*one%constant
+                  end associate
+               end if
+            end do
+            if (states(i) == 2) return
+            states(i) = 2
+            if (size(own) == 2) then
+               if (is_angle(1) .neqv. is_angle(2)) call add_card_error(set, sum_refused, k, label_b)
+            end if
+            if (size(own) > 0) measure%is_angle = is_angle(1)
+            measure%subjects = terms
+            measure%constant = measure%constant &
+               + set%cards(k)%real(3)*merge(angle_in_radians(set%mechanism), 1.0_wp, measure%is_angle)
+         end associate
+      end subroutine add_up
+
+      !> Adds a summand to the terms of a sum: itself or, of a sum, the terms of that. Each subject has one term.
+      recursive subroutine add_term(one, terms)
+         type(subject_t), intent(in) :: one
+         type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number)
+         type(subject_t) :: part
+         integer :: j
+
+         if (one%kind == request_measure) then
+            if (set%mechanism%measures(one%number)%kind == measure_sum) then
+               do j = 1, size(set%mechanism%measures(one%number)%subjects)
+                  part = set%mechanism%measures(one%number)%subjects(j)
+                  part%factor = one%factor*part%factor
+                  call add_term(part, terms)
+               end do
+               return
+            end if
+         end if
+         do j = 1, size(terms)
+            if (terms(j)%kind == one%kind .and. terms(j)%number == one%number) exit
+         end do
+         if (j > size(terms)) then
+            terms = [terms, one]
+         else
+            terms(j)%factor = terms(j)%factor + one%factor
+         end if
+      end subroutine add_term
+   end subroutine build_measures
+
+   !> Checks, in a set without errors, that all links of each measure are ground or of one independent mechanism. A link
+   !> that nothing uses is ground by now.
+   subroutine check_measures(set)
+      type(card_set_t), intent(inout) :: set
+      integer, allocatable :: part(:), parts(:)
+      integer :: n, k
+
+      if (.not. allocated(set%mechanism%measures)) return
+      part = part_of_links(set%mechanism)
+      do n = 1, size(set%mechanism%measures)
+         k = set%named(request_measure)%card(n)
+         parts = part(measure_links(set%mechanism, set%mechanism%measures(n)))
+         parts = pack(parts, parts > 0)
+         if (any(parts /= maxval([0, parts]))) call add_card_error(set, centre_apart, k, label_b)
+      end do
+   end subroutine check_measures
+end module deck_measures

@@ -1,0 +1,270 @@
+!> Columns, forms and kinds of rows as data: who prints, searches or sums up the numbers of rows asks here. No other
+!> module says which numbers a row of a kind has, what they are called, or whether one exists.
+module columns
+   use kinds, only: wp, label_length
+   use planar, only: degree
+   use scales, only: is_length
+   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_measure, &
+      request_pole, request_curve, request_ratio, has_guide
+   use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
+   implicit none
+   private
+   public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
+      row_turning, row_ratio, last_form, table_turning, last_table, of_length, of_angle, last_dimension
+   public :: table_of, is_ratio, usual_size, quantities, drives
+   public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, &
+      cell_spare, cell_at_rest, cell_infinite, cell_coincide, last_cell
+
+   !> The dimensions of numbers, of which derivatives are taken.
+   integer, parameter :: of_length = 1, of_angle = 2
+   !> Those of ratios of the first two to the first two: in the deck's units, whatever their angles are in.
+   integer, parameter :: length_by_length = 3, length_by_angle = 4, angle_by_length = 5, angle_by_angle = 6, &
+      last_dimension = 6
+   integer, parameter :: quantities(length_by_length:last_dimension) = [of_length, of_length, of_angle, of_angle], &
+      drives(length_by_length:last_dimension) = [of_length, of_angle, of_length, of_angle]
+
+   !> One number of a row, wherever it is printed.
+   type :: row_column_t
+      character(14) :: english = '', polish = ''   !< its head; PRZYSPIESZENIE begins over the column before
+      character(5) :: word = ''              !< after the name in the head of --table; '': it has no column there
+      integer :: place = 0                   !< in the listing, 1 to 9; 0: it is not there
+      integer :: at(2) = 0                   !< its place in the value (3, 0:2) of a row: coordinate, derivative or axes
+      integer :: dimension = of_length       !< of_length, ...
+      integer :: order = 0                   !< of the derivative (0 to 2) whose unit, digits and size it has
+      integer :: needs = 0                   !< what must be known: 0 the position, 1 velocities, 2 accelerations
+      logical :: there(centre_finite:points_coincide) = .true.   !< by the state of its row: the number exists
+   end type row_column_t
+
+   !> Rows of one form have the same columns.
+   type :: row_form_t
+      integer :: kind = 0                    !< of the rows: request_link, ...
+      integer :: first = 0, last = 0         !< its columns
+      integer :: coordinates = 0             !< columns of order 0 whose extremes can be asked for
+   end type row_form_t
+
+   !> The words of a kind of rows: the kind of a request, or `table_turning`.
+   type :: row_kind_t
+      character(12) :: english = '', polish = ''   !< over the names in the listing
+      integer :: names = 1                   !< names in a row, each with a column of its own
+      integer :: rows = 1                    !< in the CSV: one, or one for each of the three axes of `at`,
+      character(7) :: csv(0:2) = ''          !< and their kinds
+      integer :: forms(2) = 0                !< of its rows; the columns of the second one follow those of the first
+      character(8) :: quantities(0:2) = ''   !< on COLUMN cards, by the order of a column; '': the English heads
+   end type row_kind_t
+
+   !> The contents of a cell.
+   enum, bind(c)
+      enumerator :: cell_none = 0     !< nothing: it is not known
+      enumerator :: cell_count        !< a whole number
+      enumerator :: cell_number       !< a number in the deck's units, of angles in rad
+      enumerator :: cell_unbounded    !< there is no bound; the sign of the value says in which direction
+      enumerator :: cell_word         !< a word
+      enumerator :: cell_spare        !< a number that counts only where the first one of the row has no digit
+      enumerator :: cell_at_rest      !< AT REST
+      enumerator :: cell_infinite     !< INFINITE
+      enumerator :: cell_coincide     !< COINCIDE
+   end enum
+   integer, parameter :: last_cell = cell_coincide
+
+   !> The word of a cell without a number.
+   type :: cell_word_t
+      character(12) :: english = '', polish = ''   !< in the listing
+      character(8) :: mark = ''              !< in the CSV
+   end type cell_word_t
+
+   type(cell_word_t), parameter :: cell_words(cell_none:last_cell) = [ &
+      cell_word_t('NONE', 'BRAK'), cell_word_t(), cell_word_t(), cell_word_t('UNBOUNDED', 'NIEOGRAN.'), cell_word_t(), &
+      cell_word_t(), cell_word_t('AT REST', 'W SPOCZYNKU', 'AT-REST'), &
+      cell_word_t('INFINITE', 'NIESKONCZ.', 'INFINITE'), cell_word_t('COINCIDE', 'POKRYCIE', 'COINCIDE')]
+
+   logical, parameter :: finite(5) = [.true., .false., .false., .false., .false.], &
+      at_infinity(5) = [.false., .true., .false., .false., .false.], &
+      moving(5) = [.true., .true., .true., .false., .false.]
+
+   ! The heads, the word, the place, at, the dimension, the order, what it needs, where it is there.
+   type(row_column_t), parameter :: columns_of_rows(*) = [ &
+      ! 1: links.
+      row_column_t('X', 'X', 'x', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('Y', 'Y', 'y', 2, [2, 0], of_length, 0, 0), &
+      row_column_t('PHI', 'FI', 'phi', 3, [3, 0], of_angle, 0, 0), &
+      row_column_t('VX', 'VX', 'vx', 4, [1, 1], of_length, 1, 1), &
+      row_column_t('VY', 'VY', 'vy', 5, [2, 1], of_length, 1, 1), &
+      row_column_t('VPHI', 'VFI', 'vphi', 6, [3, 1], of_angle, 1, 1), &
+      row_column_t('AX', 'AX', 'ax', 7, [1, 2], of_length, 2, 2), &
+      row_column_t('AY', 'AY', 'ay', 8, [2, 2], of_length, 2, 2), &
+      row_column_t('APHI', 'AFI', 'aphi', 9, [3, 2], of_angle, 2, 2), &
+      ! 10: links of which the listing has only the angle.
+      row_column_t('PHI', 'FI', 'phi', 3, [3, 0], of_angle, 0, 0), &
+      row_column_t('VPHI', 'VFI', 'vphi', 6, [3, 1], of_angle, 1, 1), &
+      row_column_t('APHI', 'AFI', 'aphi', 9, [3, 2], of_angle, 2, 2), &
+      ! 13: points.
+      row_column_t('X', 'X', 'x', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('Y', 'Y', 'y', 2, [2, 0], of_length, 0, 0), &
+      row_column_t('VX', 'VX', 'vx', 4, [1, 1], of_length, 1, 1), &
+      row_column_t('VY', 'VY', 'vy', 5, [2, 1], of_length, 1, 1), &
+      row_column_t('AX', 'AX', 'ax', 7, [1, 2], of_length, 2, 2), &
+      row_column_t('AY', 'AY', 'ay', 8, [2, 2], of_length, 2, 2), &
+      ! 19: slides of prismatic pairs; 22: angles of revolute pairs. A pair may have the name of a link: other words.
+      row_column_t('SLIDE', 'PRZESUW', 's', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'v', 2, [1, 1], of_length, 1, 1), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'a', 4, [1, 2], of_length, 2, 2), &
+      row_column_t('ANGLE', 'KAT', 'theta', 1, [1, 0], of_angle, 0, 0), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'omega', 2, [1, 1], of_angle, 1, 1), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'alpha', 4, [1, 2], of_angle, 2, 2), &
+      ! 25: poles in the fixed plane and in the axes of links I and J; at infinity the direction in each of the three.
+      row_column_t('X', 'X', '', 1, [1, 0], of_length, 0, 1, finite), &
+      row_column_t('Y', 'Y', '', 2, [2, 0], of_length, 0, 1, finite), &
+      row_column_t('XI-I', 'KSI-I', '', 3, [1, 1], of_length, 0, 1, finite), &
+      row_column_t('ETA-I', 'ETA-I', '', 4, [2, 1], of_length, 0, 1, finite), &
+      row_column_t('XI-J', 'KSI-J', '', 5, [1, 2], of_length, 0, 1, finite), &
+      row_column_t('ETA-J', 'ETA-J', '', 6, [2, 2], of_length, 0, 1, finite), &
+      row_column_t('DIRECTION', 'KIERUNEK', '', 7, [3, 0], of_angle, 0, 1, at_infinity), &
+      row_column_t('', '', '', 0, [3, 1], of_angle, 0, 1, at_infinity), &
+      row_column_t('', '', '', 0, [3, 2], of_angle, 0, 1, at_infinity), &
+      ! 34: paths of points: the point, the tangent, the radius and the centre of curvature.
+      row_column_t('X', 'X', '', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('Y', 'Y', '', 2, [2, 0], of_length, 0, 0), &
+      row_column_t('TANGENT', 'STYCZNA', '', 3, [3, 0], of_angle, 0, 1, moving), &
+      row_column_t('RADIUS', 'PROMIEN', '', 4, [1, 2], of_length, 0, 2, finite), &
+      row_column_t('X-CENTRE', 'X-SRODKA', '', 5, [1, 1], of_length, 0, 2, finite), &
+      row_column_t('Y-CENTRE', 'Y-SRODKA', '', 6, [2, 1], of_length, 0, 2, finite), &
+      ! 40: lengths that are measured, which have no rates where points coincide; 43: angles, which have no value there.
+      row_column_t('LENGTH', 'DLUGOSC', 's', 1, [1, 0], of_length, 0, 0), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'v', 2, [1, 1], of_length, 1, 1, finite), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'a', 4, [1, 2], of_length, 2, 2, finite), &
+      row_column_t('ANGLE', 'KAT', 'theta', 1, [1, 0], of_angle, 0, 0, finite), &
+      row_column_t('VELOCITY', 'PREDKOSC', 'omega', 2, [1, 1], of_angle, 1, 1, finite), &
+      row_column_t('ACCELERATION', 'PRZYSPIESZENIE', 'alpha', 4, [1, 2], of_angle, 2, 2, finite), &
+      ! 46: ratios, by the dimensions of the quantity and of the drive.
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], length_by_length, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], length_by_length, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], length_by_angle, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], length_by_angle, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], angle_by_length, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], angle_by_length, 1, 0, finite), &
+      row_column_t('VALUE', 'WARTOSC', 'by', 1, [1, 0], angle_by_angle, 0, 0, finite), &
+      row_column_t('DERIVATIVE', 'POCHODNA', 'd', 2, [1, 1], angle_by_angle, 1, 0, finite)]
+
+   !> The numbers of rows with one coordinate on COLUMN cards.
+   character(8), parameter :: of_value(0:2) = ['VALUE   ', 'VVALUE  ', 'AVALUE  ']
+
+   integer, parameter :: row_link = 1, row_turning = 2, row_point = 3, row_slide = 4, row_angle = 5, row_pole = 6, &
+      row_curve = 7, row_length = 8, row_direction = 9, row_ratio = 10, last_form = 13
+   type(row_form_t), parameter :: forms(last_form) = [ &
+      row_form_t(request_link, 1, 9, 3), row_form_t(request_link, 10, 12, 1), row_form_t(request_point, 13, 18, 2), &
+      row_form_t(request_pair, 19, 21, 1), row_form_t(request_pair, 22, 24, 1), row_form_t(request_pole, 25, 33), &
+      row_form_t(request_curve, 34, 39), row_form_t(request_measure, 40, 42, 1), &
+      row_form_t(request_measure, 43, 45, 1), row_form_t(request_ratio, 46, 47, 1), &
+      row_form_t(request_ratio, 48, 49, 1), row_form_t(request_ratio, 50, 51, 1), row_form_t(request_ratio, 52, 53, 1)]
+
+   !> The kind of tables of links of which only angles are listed; the others are the kinds of rows, that of ratios once
+   !> for each of their forms.
+   integer, parameter :: table_turning = 0, last_table = request_ratio + last_form - row_ratio
+   character(8), parameter :: of_ratio(0:2) = ['VALUE   ', 'DERIV   ', '        ']
+   type(row_kind_t), parameter :: kinds_of_rows(table_turning:last_table) = [ &
+      row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_turning, 0]), &
+      row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_link, 0]), &
+      row_kind_t('POINT', 'PUNKT', 1, 1, 'POINT', [row_point, 0]), &
+      row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
+      row_kind_t('MEASURE', 'WIELKOSC', 1, 1, 'MEASURE', [row_length, row_direction], of_value), &
+      row_kind_t('POLE', 'BIEGUN', 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0]), &
+      row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0]), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 1, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 2, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 3, 0], of_ratio)]
+
+contains
+
+   !> Finds the form of the rows of a request.
+   pure integer function form_of(m, request)
+      type(mechanism_t), intent(in) :: m     !< whose request it is
+      type(request_t), intent(in) :: request
+
+      form_of = kinds_of_rows(request%kind)%forms(1)
+      if (request%kind == request_pair) then
+         if (.not. has_guide(m%pairs(request%subject)%kind)) form_of = row_angle
+      else if (request%kind == request_measure) then
+         if (m%measures(request%subject)%is_angle) form_of = row_direction
+      end if
+      if (request%drive == 0) return
+      form_of = row_ratio + 2*(columns_of_rows(forms(form_of)%first)%dimension - of_length) &
+         + merge(0, 1, is_length(m%drives(request%drive)))
+   end function form_of
+
+   !> Finds the kind of the table in which a row is.
+   pure integer function table_of(kind, form) result(table)
+      integer, intent(in) :: kind            !< of the row: request_link, ...
+      integer, intent(in) :: form            !< of the row: row_link, ...
+
+      table = kind
+      if (kind == request_ratio) table = kind + form - row_ratio
+   end function table_of
+
+   !> Tells whether rows of a form are ratios.
+   elemental logical function is_ratio(form)
+      integer, intent(in) :: form            !< row_link, ...
+
+      is_ratio = forms(form)%kind == request_ratio
+   end function is_ratio
+
+   !> Gives the size of a usual number of a dimension. That of a ratio is in the deck's units, otherwise in rad.
+   pure real(wp) function usual_size(dimension, order, length, rate, degrees) result(size_of)
+      integer, intent(in) :: dimension       !< of_length, ...
+      integer, intent(in) :: order           !< of the derivative, from 0: by the time, of a ratio by the drive
+      real(wp), intent(in) :: length         !< characteristic length of the mechanism
+      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
+      logical, intent(in) :: degrees         !< the deck's unit of angles
+      real(wp) :: sizes(of_length:of_angle)
+
+      if (dimension <= of_angle) then
+         size_of = merge(length, 1.0_wp, dimension == of_length)*rate**order
+      else
+         sizes = [length, merge(1.0_wp/degree, 1.0_wp, degrees)]
+         size_of = sizes(quantities(dimension))/sizes(drives(dimension))**(order + 1)
+      end if
+   end function usual_size
+
+   !> Finds the column that has one number of the values of rows; 0: no column has it.
+   pure integer function column_at(form, c, k) result(j)
+      integer, intent(in) :: form            !< of the rows
+      integer, intent(in) :: c, k            !< coordinate (1 to 3), and derivative or axes (0 to 2)
+
+      do j = forms(form)%first, forms(form)%last
+         if (all(columns_of_rows(j)%at == [c, k])) return
+      end do
+      j = 0
+   end function column_at
+
+   !> Gives the word of a column on COLUMN cards.
+   pure character(8) function quantity_of(form, j) result(word)
+      integer, intent(in) :: form            !< of the rows
+      integer, intent(in) :: j               !< the column, in `columns_of_rows`
+
+      word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)
+      if (word == '') word = columns_of_rows(j)%english(:len(word))
+   end function quantity_of
+
+   !> Finds the contents of a cell: cell_number, cell_none, cell_spare, or the word for the state of its row.
+   pure integer function cell_of(column, known, state) result(cell)
+      type(row_column_t), intent(in) :: column
+      integer, intent(in) :: known           !< how much of the row exists: -1 nothing, 0 the position, 1, 2 derivatives
+      integer, intent(in) :: state           !< of the row: centre_finite, ...
+
+      cell = cell_number
+      if (column%needs > known) then
+         cell = cell_none
+      else if (.not. column%there(state)) then
+         select case (state)
+         case (centre_finite)
+            cell = cell_spare
+         case (centre_infinite)
+            cell = cell_infinite
+         case (points_coincide)
+            cell = cell_coincide
+         case default
+            cell = cell_at_rest
+         end select
+      end if
+   end function cell_of
+end module columns

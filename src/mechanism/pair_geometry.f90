@@ -1,0 +1,62 @@
+!> The closure error and the coordinate of a pair, where its links are given.
+!>
+!> Point P of link i and point Q of link j. The guide of a prismatic pair lies in link i: its direction is
+!> e = (cos theta, sin theta), theta = phi_i + alpha, and its normal n is e turned by a quarter turn. Its slide is
+!> (Q - P) . e, eq. (3) and (4), and it is closed where (P - Q) . n = h, eq. (9).
+module pair_geometry
+   use kinds, only: wp
+   use planar, only: direction, quarter_turn, point_of
+   use mechanism, only: mechanism_t, pair_t, has_guide
+   use instant_centres, only: seen_from
+   implicit none
+   private
+   public :: way_of, opening_of, slide_of, pair_motion
+
+contains
+
+   !> Finds the vector (2) from P to Q of a pair, in the deck's unit.
+   pure function way_of(m, pair, i, j) result(way)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+      real(wp) :: way(2)
+
+      way = point_of(j, m%points(pair%point_j)%offset) - point_of(i, m%points(pair%point_i)%offset)
+   end function way_of
+
+   !> Finds by how much a pair is open, in the deck's unit: the distance from P to Q, or h + (Q - P) . n across a guide.
+   pure real(wp) function opening_of(m, pair, i, j) result(opening)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+
+      opening = norm2(way_of(m, pair, i, j))
+      if (has_guide(pair%kind)) opening = pair%offset + dot_product(way_of(m, pair, i, j), &
+         quarter_turn(direction(i(3) + pair%alpha)))
+   end function opening_of
+
+   !> Finds the slide of a prismatic pair, in the deck's unit.
+   pure real(wp) function slide_of(m, pair, i, j) result(slide)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+
+      slide = dot_product(way_of(m, pair, i, j), direction(i(3) + pair%alpha))
+   end function slide_of
+
+   !> Finds the coordinate of a pair with its derivatives (0:2): the slide of a prismatic pair (length), or the angle
+   !> phi_j - phi_i (rad). The slide is found in the axes of link i, in which P and the guide are at rest.
+   pure function pair_motion(m, pair, i, j, q) result(coordinate)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)   !< x, y (length) and phi (rad) of its links, with derivatives
+      real(wp), intent(in) :: q(2, 0:2)      !< x and y (length) of Q, with derivatives
+      real(wp) :: coordinate(0:2), r(2, 0:2)
+
+      coordinate = j(3, :) - i(3, :)
+      if (.not. has_guide(pair%kind)) return
+      r = seen_from(i, q)
+      r(:, 0) = r(:, 0) - m%points(pair%point_i)%offset
+      coordinate = matmul(direction(pair%alpha), r)
+   end function pair_motion
+end module pair_geometry

@@ -1,0 +1,51 @@
+!> How far two positions or two motions of a mechanism are apart, and whether a motion closes.
+module separations
+   use kinds, only: wp
+   use planar, only: without_turns
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t
+   use scales, only: characteristic_length, characteristic_rate
+   implicit none
+   private
+   public :: separation, motions_apart, closes, closes_to
+
+   !> A motion closes if its end differs from its beginning by less, in characteristic lengths, rad and rates: a turn of
+   !> 6.2831853 rad is one.
+   real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
+
+contains
+
+   !> Finds how far two positions of all links are apart at most: places in `length`, and angles but for whole turns.
+   pure function separation(p, q, length) result(apart)
+      real(wp), intent(in) :: p(:, :), q(:, :)   !< (3, links): x and y (length), phi (rad)
+      real(wp), intent(in) :: length         !< the unit of the result, in the deck's unit
+      real(wp) :: apart(2)
+
+      apart = [maxval(abs(p(:2, :) - q(:2, :)))/length, maxval(abs(without_turns(p(3, :) - q(3, :))))]
+   end function separation
+
+   !> Finds how far two motions are apart at most: places, angles but for whole turns, and velocities, in characteristic
+   !> lengths, rad and rates. Huge where a position is not known. Velocities that are not unique count as alike.
+   pure function motions_apart(m, first, last) result(apart)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: first, last
+      real(wp) :: apart(3), d(3, size(m%links)), length
+
+      apart = huge(1.0_wp)
+      if (min(first%known, last%known) < 0) return
+      length = characteristic_length(m)
+      apart = [separation(last%position, first%position, length), 0.0_wp]
+      ! At a change point velocities are not unique.
+      if (min(first%known, last%known) < 1) return
+      d = last%velocity - first%velocity
+      d(:2, :) = d(:2, :)/length
+      apart(3) = maxval(abs(d))/characteristic_rate(m, length)
+   end function motions_apart
+
+   !> Tells whether a motion closes, by how far its end is from its beginning.
+   pure logical function closes(apart)
+      real(wp), intent(in) :: apart(:)       !< some of what `motions_apart` finds
+
+      closes = all(apart <= closes_to)
+   end function closes
+end module separations

@@ -1,0 +1,197 @@
+!> The table of COLUMN cards: a line for each instant, with its time, the values of the drives and the numbers that the
+!> cards name. What has no room in a line is in a second table, and so on. The lines are kept until the run ends.
+module column_table
+   use kinds, only: wp
+   use columns, only: row_column_t, columns_of_rows, column_at, form_of, cell_of, of_length, of_angle
+   use drives, only: drive_motion
+   use mechanism, only: request_t
+   use names, only: drive_name, subject_name
+   use independent, only: set_t, request_of
+   use set_motion, only: set_motion_t, is_flagged
+   use rows, only: finished_row_t
+   use listing_layout, only: layout_t, line_length, column_name, column_unit
+   use listing_tables, only: law_error
+   use table, only: format_t, put_cell, put_number, power_text, right
+   use text_output, only: output_t, open_held, move_text, put
+   use numerals, only: numeral_length
+   use known_digits, only: unknown_digit
+   use phrases
+   implicit none
+   private
+   public :: column_table_t, new_column_table, note_columns, put_columns
+
+   !> Behind the time of a flagged instant.
+   character(1), parameter :: flag = '*'
+   !> Lines of heads: two names, the power of ten, the unit.
+   integer, parameter :: head_lines = 4, line_of_power = 3
+
+   !> A column: the time, a drive, or a number of a row.
+   type :: listed_column_t
+      integer :: drive = 0                   !< its number among those of the layout; 0: none
+      integer :: request = 0                 !< the row, among the requests of the set; 0: none
+      type(row_column_t) :: number           !< of the row
+      type(format_t) :: format
+      character(line_length) :: heads(head_lines) = ''
+      integer :: width = numeral_length      !< characters
+   end type listed_column_t
+
+   !> The tables of a set.
+   type :: column_table_t
+      logical :: alone = .false.             !< nothing else is printed at the instants: their remarks are in `remarks`
+      type(listed_column_t), allocatable :: columns(:)   !< the time first; not allocated: no COLUMN cards
+      integer, allocatable :: starts(:)      !< (tables + 1) the first column of each after the time, and one more
+      type(output_t), allocatable :: lines(:)   !< (tables)
+      type(output_t) :: remarks
+      logical :: masked = .false.            !< some digit is a question mark
+      logical :: flagged = .false.           !< some instant has a flag
+   end type column_table_t
+
+contains
+
+   !> Makes the tables of a set ready for its first instant.
+   subroutine new_column_table(l, s, t)
+      type(layout_t), intent(in) :: l
+      class(set_t), intent(in) :: s
+      type(column_table_t), intent(out) :: t
+      integer :: i, c, used
+
+      if (.not. allocated(s%columns)) return
+      t%alone = .not. any([(any(s%parts(c)%requests%every > 0), c=1, s%count)])
+      allocate (t%columns(1 + size(l%drives) + size(s%columns)))
+      call put_heads(t%columns(1), '', 'T', l%time, trim(s%time_unit))
+      do i = 1, size(l%drives)
+         t%columns(1 + i)%drive = i
+         call take_drive(t%columns(1 + i))
+      end do
+      do i = 1, size(s%columns)
+         call take_number(i, t%columns(1 + size(l%drives) + i))
+      end do
+
+      ! A table ends where a line has no room for the next column. After the time there is the flag.
+      t%starts = [2]
+      used = t%columns(1)%width + len(flag)
+      do i = 2, size(t%columns)
+         used = used + t%columns(i)%width
+         if (used <= line_length) cycle
+         t%starts = [t%starts, i]
+         used = t%columns(1)%width + len(flag) + t%columns(i)%width
+      end do
+      t%starts = [t%starts, size(t%columns) + 1]
+      allocate (t%lines(size(t%starts) - 1))
+      do i = 1, size(t%lines)
+         call open_held(t%lines(i))
+      end do
+      call open_held(t%remarks)
+
+   contains
+
+      !> Makes the column of a drive: its kind over what it drives.
+      subroutine take_drive(column)
+         type(listed_column_t), intent(inout) :: column   !< has the number of the drive
+         character(:), allocatable :: name
+         integer :: border
+
+         associate (place => s%drives(column%drive), drive => l%drives(column%drive))
+            name = trim(drive_name(s%parts(place%part), s%parts(place%part)%drives(place%number)))
+            border = index(name, ' ')
+            call put_heads(column, name(:border - 1), name(border + 1:), drive%format, &
+               trim(l%unit(merge(of_angle, of_length, drive%format%is_angle))))
+         end associate
+      end subroutine take_drive
+
+      !> Makes the column of COLUMN number `i`: the name of its row over that of the number.
+      subroutine take_number(i, column)
+         integer, intent(in) :: i
+         type(listed_column_t), intent(inout) :: column
+         type(request_t) :: request
+         character(:), allocatable :: name
+
+         column%request = s%columns(i)%request
+         request = request_of(s, column%request)
+         associate (part => s%rows(column%request)%part)
+            column%number = columns_of_rows(column_at(form_of(s%parts(part), request), s%columns(i)%at(1), &
+               s%columns(i)%at(2)))
+            name = subject_name(s%parts(part), request%kind, request%subject)
+            if (request%drive > 0) name = trim(name)//' '//phrase(say_by, s%polish)//' ' &
+               //drive_name(s%parts(part), s%parts(part)%drives(request%drive))
+            call put_heads(column, trim(name), column_name(l, column%number), &
+               l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
+         end associate
+      end subroutine take_number
+
+      !> Gives a column its heads and the width that they need.
+      subroutine put_heads(column, above, below, format, unit)
+         type(listed_column_t), intent(inout) :: column
+         character(*), intent(in) :: above, below   !< its names
+         type(format_t), intent(in) :: format
+         character(*), intent(in) :: unit
+
+         column%heads = [character(line_length) :: above, below, '', unit]
+         if (format%power /= 0) column%heads(line_of_power) = power_text(format%power)
+         column%format = format
+         column%width = max(numeral_length, 2 + maxval(len_trim(column%heads)))
+      end subroutine put_heads
+   end subroutine new_column_table
+
+   !> Takes the rows of an instant: a line for each table.
+   subroutine note_columns(t, l, s, rows)
+      type(column_table_t), intent(inout) :: t
+      type(layout_t), intent(in) :: l
+      type(set_motion_t), intent(in) :: s
+      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
+      character(line_length) :: line
+      character(numeral_length) :: field, time
+      real(wp) :: f(3)
+      integer :: n, i, last, cell
+
+      call put_number(t%columns(1)%format, 0, s%motions(1)%t, 0.0_wp, time, t%masked)
+      t%flagged = t%flagged .or. is_flagged(s)
+      do n = 1, size(t%lines)
+         line = right(time, t%columns(1)%width)
+         last = t%columns(1)%width + len(flag)
+         if (is_flagged(s)) line(last:last) = flag
+         do i = t%starts(n), t%starts(n + 1) - 1
+            associate (c => t%columns(i))
+               if (c%drive > 0) then
+                  f = drive_motion(l%drives(c%drive)%law, s%motions(1)%t)
+                  call put_number(c%format, 0, f(1), law_error(l%drives(c%drive), s%motions(1)%t), field, t%masked)
+               else
+                  associate (row => rows(c%request), at => c%number%at)
+                     cell = cell_of(c%number, row%known, row%state)
+                     call put_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, &
+                        field, t%masked)
+                  end associate
+               end if
+               last = last + c%width
+               line(last - numeral_length + 1:last) = field
+            end associate
+         end do
+         call put(t%lines(n), line(:len_trim(line)))
+      end do
+   end subroutine note_columns
+
+   !> Writes the tables, and below them what there is to say.
+   subroutine put_columns(o, t, polish)
+      type(output_t), intent(inout) :: o
+      type(column_table_t), intent(inout) :: t   !< gives up its lines
+      logical, intent(in) :: polish
+      character(:), allocatable :: line
+      integer :: n, k, i
+
+      if (.not. allocated(t%columns)) return
+      do n = 1, size(t%lines)
+         call put(o, '')
+         do k = 1, head_lines
+            line = right(trim(t%columns(1)%heads(k)), t%columns(1)%width)//repeat(' ', len(flag))
+            do i = t%starts(n), t%starts(n + 1) - 1
+               line = line//right(trim(t%columns(i)%heads(k)), t%columns(i)%width)
+            end do
+            if (line /= '') call put(o, trim(line))
+         end do
+         call move_text(t%lines(n), o)
+      end do
+      if (t%flagged .and. .not. t%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, polish))
+      if (t%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, polish))
+      call move_text(t%remarks, o)
+   end subroutine put_columns
+end module column_table

@@ -1,0 +1,54 @@
+!> The answer to the card RANGE in the listing: the ends of the range of each drive.
+module ranges_table
+   use independent, only: set_t
+   use names, only: drive_name
+   use ranges, only: range_t, low, high
+   use listing, only: limit_words, full_turn_words
+   use listing_layout, only: put_folded
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use phrases
+   implicit none
+   private
+   public :: put_ranges, side_words
+
+   character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
+
+contains
+
+   !> Writes the ranges of drives after the last instant of a set.
+   subroutine put_ranges(o, s, list)
+      type(output_t), intent(inout) :: o     !< the listing
+      class(set_t), intent(in) :: s          !< the set
+      type(range_t), intent(in) :: list(:)   !< in the order of the drives
+      character(:), allocatable :: words
+      integer :: i, side
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_range, s%polish))
+      if (size(list) == 0) call put(o, '   '//phrase(say_none, s%polish))
+      do i = 1, size(list)
+         associate (r => list(i), m => s%parts(list(i)%part))
+            words = trim(drive_name(m, m%drives(r%drive)))
+            if (r%is_of_branch) words = words//'   '//phrase(say_range_of_branch, m%polish)
+            call put(o, ' '//words)
+            if (r%is_all) then
+               call put(o, '   '//full_turn_words(r%turns, m%polish))
+            else
+               do side = low, high
+                  words = limit_words(m, r%limit(side))
+                  ! Where no limit is told rounding is too coarse to follow the motion farther.
+                  if (r%has_limit(side) .and. r%limit(side)%links(1) == 0) &
+                     words = words//'   '//phrase(say_close, m%polish)
+                  if (r%has_limit(side)) then
+                     call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
+                  else
+                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' '//words)
+                  end if
+               end do
+            end if
+            if (r%change_points > 0) call put(o, '   '//phrase(say_on_the_way, m%polish)//' '//whole(r%change_points))
+         end associate
+      end do
+   end subroutine put_ranges
+end module ranges_table

@@ -1,0 +1,123 @@
+!> The shares of tolerances in the listing: of each quantity the share of each number in the sum of squares, the largest
+!> first.
+module shares_table
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_t, is_centre
+   use independent, only: set_t, request_of
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning
+   use table, only: format_t, unit_of, number_text
+   use names, only: subject_name
+   use sensitivities, only: has_tolerances
+   use tolerance_shares, only: shares_t, share_t, alike
+   use listing_layout, only: layout_t, column_name, column_unit
+   use listing_tables, only: time_text
+   use text_output, only: output_t, put
+   use numerals, only: fixed, whole
+   use phrases
+   implicit none
+   private
+   public :: put_shares
+
+   !> Smaller shares are only counted.
+   real(wp), parameter :: least_share = 1.0e-4_wp
+   integer, parameter :: percent_decimals = 2
+   !> By this part more, what rounding has left below a half is rounded up.
+   real(wp), parameter :: half_up = max(1.0e-9_wp, 8.0_wp*epsilon(1.0_wp))
+   !> Characters of the name of a number before its sensitivity, unless it is longer.
+   integer, parameter :: number_name = 36
+
+contains
+
+   !> Writes the shares after the last instant of the set `s`.
+   subroutine put_shares(o, l, a, s)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(shares_t), intent(in) :: a
+      class(set_t), intent(in) :: s
+      type(request_t) :: request
+      integer :: i, c, d, j, form
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_shares, s%polish))
+      if (any([(any(is_centre(s%parts(c)%requests%kind)), c=1, s%count)])) &
+         call put(o, ' --- '//phrase(say_no_shares, s%polish))
+      if (any([(any(s%parts(c)%requests%drive > 0), c=1, s%count)])) &
+         call put(o, ' --- '//phrase(say_no_ratio_shares, s%polish))
+      do c = 1, s%count
+         do d = 1, size(s%parts(c)%tolerances)
+            if (a%jams(d, c)) &
+               call put(o, ' *** '//trim(s%parts(c)%tolerances(d)%name)//': '//phrase(say_jams, s%polish))
+         end do
+      end do
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         associate (part => s%rows(i)%part)
+            if (.not. has_tolerances(s%parts(part), request)) cycle
+            form = merge(row_turning, form_of(s%parts(part), request), request%angle_alone)
+            do j = forms(form)%first, forms(form)%last
+               associate (c => columns_of_rows(j))
+                  call put_quantity(o, l, l%own(part)%format(c%dimension, c%order), s%parts(part), request, c, &
+                     a%list(c%at(1), c%at(2), i))
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine put_shares
+
+   !> Writes the lines of a quantity, one column of a row; none where the tables, with the digits `d`, have zero.
+   subroutine put_quantity(o, l, d, m, request, c, share)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(format_t), intent(in) :: d
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      type(row_column_t), intent(in) :: c
+      type(share_t), intent(in) :: share
+      character(:), allocatable :: unit, word
+      type(format_t) :: f
+      integer :: i
+      real(wp), allocatable :: part(:)
+      character(12) :: sensitivity
+      character(max(number_name, len(m%tolerances%name))) :: name
+
+      if (.not. allocated(share%s)) return
+      f = d
+      f%decimals = d%decimals + l%more_decimals
+      if (share%root/f%unit < 0.5_wp*10.0_wp**(f%power - f%decimals)) return
+      unit = unit_of(f%power, column_unit(l, c))
+      associate (kind => kinds_of_rows(request%kind))
+         word = trim(merge(kind%polish, kind%english, l%polish))
+      end associate
+      call put(o, ' '//word//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
+         //column_name(l, c)//'   T = '//time_text(l, share%t)//l%behind_time &
+         //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
+         //value_text(share%worst)//' '//unit)
+
+      ! A line for each number with a share of note, the largest first: share, name, sensitivity, tolerance.
+      part = (share%s*m%tolerances%size_of/share%root)**2
+      do while (any(part >= least_share))
+         ! Of those that are alike the first one comes first.
+         i = findloc(part >= maxval(part)*(1.0_wp - alike), .true., dim=1)
+         associate (one => m%tolerances(i))
+            write (sensitivity, '(es12.4e3)') share%s(i)/f%unit
+            name = one%name
+            ! A half is rounded up, whatever the last bit.
+            call put(o, fixed(100.0_wp*part(i)*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
+               //name(:max(number_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
+               //trim(one%unit_name))
+         end associate
+         part(i) = -1.0_wp
+      end do
+      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(count(part >= 0.0_wp)))
+
+   contains
+
+      !> Gives a value of the quantity.
+      function value_text(x) result(text)
+         real(wp), intent(in) :: x           !< in the deck's units and rad
+         character(:), allocatable :: text
+
+         text = number_text(f, x, 0.0_wp)
+      end function value_text
+   end subroutine put_quantity
+end module shares_table

@@ -1,0 +1,170 @@
+!> The motion of a set at one instant, as the writers take it: that of each of its independent mechanisms (its
+!> parts), how far it is known, and the rows that the set asks for, in the order of the cards.
+module set_motion
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_t, wanted_links
+   use motion, only: motion_t, new_motion, mark_none
+   use independent, only: set_t, divide, request_of
+   use columns, only: columns_of_rows, forms, of_length, of_angle
+   use structure, only: findings_t, structure_t, make_structure
+   use blocks, only: blocks_t, largest_known
+   use block_state, only: state_t, new_state, set_direction
+   use block_solver, only: solve_direct
+   use link_motion, only: chain_t, new_chain, move_links
+   use points, only: row_t, find_row
+   use error_estimate, only: error_estimate_t
+   use sensitivities, only: sensitivities_t
+   use motion_proof, only: motion_proof_t
+   implicit none
+   private
+   public :: set_motion_t, new_set_motion, is_flagged, has_words, find_row_in_set
+
+   !> Of each part, as many as the set has.
+   type, extends(set_t) :: set_motion_t
+      type(motion_t), allocatable :: motions(:)
+      type(error_estimate_t), allocatable :: errors(:)
+      type(sensitivities_t), allocatable :: sensitivities(:)
+      type(motion_proof_t), allocatable :: proofs(:)
+      logical :: has_begun = .false.                !< the first instant is taken
+      type(motion_t), allocatable :: first(:)       !< its motions; of size 0 if no extremes are asked for
+   end type set_motion_t
+
+contains
+
+   !> Divides a set into its parts, at rest.
+   subroutine new_set_motion(m, s, findings)
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(out) :: s
+      type(findings_t), intent(inout), optional :: findings   !< they give up their set if it is divided
+      type(structure_t) :: structure
+      integer :: c
+      logical :: is_divided
+
+      is_divided = .false.
+      if (present(findings)) is_divided = allocated(findings%set)
+      if (is_divided) then
+         s%set_t = findings%set
+         deallocate (findings%set)
+      else
+         call divide(m, s%set_t)
+      end if
+      allocate (s%motions(s%count), s%errors(s%count), s%sensitivities(s%count), s%proofs(s%count))
+      allocate (s%first(merge(s%count, 0, any([(any(s%parts(c)%requests%extremes), c=1, s%count)]))))
+      do c = 1, s%count
+         s%motions(c) = new_motion(size(s%parts(c)%links))
+         if (all(s%parts(c)%requests%drive == 0)) cycle
+         if (present(findings)) then
+            call leave_out_unmoved(s%parts(c), findings%structures(c)%blocks)
+         else
+            call make_structure(s%parts(c), structure)
+            call leave_out_unmoved(s%parts(c), structure%blocks)
+         end if
+      end do
+      if (allocated(s%columns)) s%columns = pack(s%columns, [(has_row(request_of(s, s%columns(c)%request)), &
+         c=1, size(s%columns))])
+   end subroutine new_set_motion
+
+   !> Tells whether a request has a row anywhere: `leave_out_unmoved` takes all from that of a ratio.
+   pure logical function has_row(request)
+      type(request_t), intent(in) :: request
+
+      has_row = request%drive == 0 .or. request%in_columns
+   end function has_row
+
+   !> Takes their rows from the requests for ratios of what the drive cannot move. That is asked at positions that close
+   !> nothing, where the unknowns that depend on the drive have rates of their own: a drive that moves something there
+   !> can move it anywhere but at single positions.
+   subroutine leave_out_unmoved(m, b)
+      type(mechanism_t), intent(inout) :: m
+      type(blocks_t), intent(in) :: b
+      type(chain_t) :: chain
+      type(state_t) :: state
+      type(motion_t) :: q
+      type(row_t) :: row
+      type(request_t) :: request
+      integer :: moves(0:b%unknowns), d, i, k
+      logical :: finite
+      real(wp) :: largest(of_length:of_angle)
+      !> Parts of the largest rate of a length or an angle: smaller ones are roundings.
+      real(wp), parameter :: rounded_part = sqrt(epsilon(1.0_wp))
+
+      if (.not. b%solvable) return
+      chain = new_chain(m, b, wanted_links(m))
+      do d = 1, size(m%drives)
+         if (all(m%requests%drive /= d)) cycle
+         state = new_state(b, size(m%drives))
+         do k = 1, b%unknowns
+            state%u(k)%value = arbitrary(k)
+            call set_direction(b, k, state)
+         end do
+         state%drive_value(0, 1:) = arbitrary([(k, k=1, size(m%drives))] + 2*b%unknowns)
+         state%drive_value(1, d) = 1.0_wp
+         moves = 0
+         do i = 1, size(b%list)
+            associate (own => b%unknown(b%list(i)%first:b%list(i)%last))
+               if (any(b%rows(b%list(i)%first_row:b%list(i)%last_row)%drive == d) .or. largest_known(b, i, moves) > 0) &
+                  moves(own) = 1
+               if (b%list(i)%direct) then
+                  call solve_direct(b, i, state)
+               else
+                  state%u(own)%rate = moves(own)*arbitrary(own + b%unknowns)
+               end if
+            end associate
+         end do
+
+         q = new_motion(size(m%links))
+         q%known = 2
+         call move_links(chain, state, 1.0_wp, q, finite)
+         largest = [maxval(abs(q%velocity(:2, :))), maxval(abs(q%velocity(3, :)))]
+         do i = 1, size(m%requests)
+            if (m%requests(i)%drive /= d) cycle
+            request = m%requests(i)
+            request%drive = 0
+            call find_row(m, q, request, row)
+            if (abs(row%value(1, 1)) > rounded_part*largest(columns_of_rows(forms(row%form)%first)%dimension)) cycle
+            m%requests(i)%every = 0
+            m%requests(i)%extremes = .false.
+            m%requests(i)%in_columns = .false.
+         end do
+      end do
+
+   contains
+
+      !> Gives a number between 0.25 and 1.25 that has nothing to do with those of others.
+      elemental real(wp) function arbitrary(k)
+         integer, intent(in) :: k            !< of an unknown, or any other
+
+         arbitrary = 0.25_wp + mod(k*0.6180339887498949_wp + 0.31_wp*sin(real(k, wp))**2, 1.0_wp)
+      end function arbitrary
+   end subroutine leave_out_unmoved
+
+   !> Tells whether some part has not all of its motion.
+   pure logical function is_flagged(s)
+      type(set_motion_t), intent(in) :: s
+
+      is_flagged = any(s%motions%mark /= mark_none)
+   end function is_flagged
+
+   !> Tells whether the instant has marks or diagnostics in addition to its numbers.
+   pure logical function has_words(s)
+      type(set_motion_t), intent(in) :: s
+      integer :: c
+
+      has_words = is_flagged(s)
+      do c = 1, s%count
+         has_words = has_words .or. allocated(s%motions(c)%diagnostics)
+      end do
+   end function has_words
+
+   !> Finds the row of a request of the set.
+   pure subroutine find_row_in_set(s, i, row)
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i               !< its number among the requests of the set
+      type(row_t), intent(inout) :: row
+
+      associate (c => s%rows(i)%part)
+         call find_row(s%parts(c), s%motions(c), request_of(s, i), row)
+      end associate
+   end subroutine find_row_in_set
+end module set_motion
+
