@@ -89,11 +89,13 @@ contains
       row = new_row
       row%kind = request%kind
       row%form = form_of(m, request)
-      ! Without an allocation, but for measures.
-      if (request%kind == request_measure) then
-         call find_known(m, q, request_links(m, request), row%known, row%mark)
-      else
-         call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%mark)
+      ! Mostly all is known of all links. Without an allocation, but for measures.
+      if (q%known < 2 .or. allocated(q%link_known)) then
+         if (request%kind == request_measure) then
+            call find_known(m, q, request_links(m, request), row%known, row%mark)
+         else
+            call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%mark)
+         end if
       end if
 
       associate (i => request%subject)

@@ -162,8 +162,9 @@ contains
       integer, intent(in) :: i               !< its number among the requests of the set
       type(row_t), intent(inout) :: row
 
+      ! The request in its place: as the result of a function it would be copied.
       associate (c => s%rows(i)%part)
-         call find_row(s%parts(c), s%motions(c), request_of(s, i), row)
+         call find_row(s%parts(c), s%motions(c), s%parts(c)%requests(s%rows(i)%number), row)
       end associate
    end subroutine find_row_in_set
 end module set_motion
