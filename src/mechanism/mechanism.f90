@@ -289,15 +289,21 @@ contains
       last = max(last, m%t0, m%t1)
    end subroutine find_instants
 
-   !> The place (2) of the first ground link, from which all computed places are counted. It is added when a row is
-   !> written. Reason: far from the origin of the deck, small lengths would be rounded with large places.
+   !> Finds the place (2) from which all computed places are counted: that of the first ground link that a pair uses, or
+   !> of the first one. It is added when a row is written. Reason: far from the origin of the deck, or from a ground link
+   !> that a row alone uses, small lengths would be rounded with large places.
    pure function plane_origin(m) result(origin)
       type(mechanism_t), intent(in) :: m
       real(wp) :: origin(2)
+      logical :: in_pair(size(m%links))
       integer :: first
 
       origin = 0.0_wp
-      first = findloc(m%links%ground, .true., dim=1)
+      in_pair = .false.
+      in_pair(m%points(m%pairs%point_i)%link) = .true.
+      in_pair(m%points(m%pairs%point_j)%link) = .true.
+      first = findloc(m%links%ground .and. in_pair, .true., dim=1)
+      if (first == 0) first = findloc(m%links%ground, .true., dim=1)
       if (first > 0) origin = m%links(first)%position(:2)
    end function plane_origin
 
