@@ -1,0 +1,179 @@
+!> The variants of a set with VARY cards: each is made when its turn comes, starts from the deck's own estimate and
+!> leaves a row. So the row is the same whatever the others are, and memory does not grow with them. Where rows alone
+!> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
+module variant_runs
+   use failures, only: status_flagged
+   use mechanism, only: settings_t, mechanism_t
+   use independent, only: set_t
+   use structure, only: findings_t, find_structure, faults_text
+   use deck, only: build_variant
+   use deck_variants, only: variation_t
+   use command_line, only: out_listing, out_csv, out_log, out_summary
+   use outputs, only: outputs_t, is_over
+   use shares, only: write_in_turn
+   use writers, only: writers_t, break_off
+   use motion_run, only: run_motion
+   use listing, only: layout_t, new_layout
+   use solver_log, only: log_head
+   use answers, only: answers_t
+   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
+   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
+      put_variants_end
+   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
+   use lane_state, only: lanes_t
+   use phrases, only: say_broken_variant
+   use set_motion, only: new_set_motion
+   use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis
+   implicit none
+   private
+   public :: run_variants, are_together
+
+contains
+
+   !> Solves and writes the variants `first` to `last` of `v`, those of the set `m`.
+   subroutine run_variants(m, first, last, v, o)
+      class(set_t), intent(in) :: m
+      integer, intent(in) :: first, last     !< numbers of variants
+      type(variation_t), intent(inout) :: v
+      type(writers_t), intent(inout) :: o
+      type(layout_t) :: layout
+      type(summary_t) :: summary
+      type(variant_row_t) :: row
+      type(mechanism_t) :: variant
+      logical :: full, has_ratios
+      integer :: n, k
+
+      n = first
+      full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
+      has_ratios = any([(any(m%parts(k)%requests%drive > 0), k=1, m%count)])
+      layout = new_layout(m)
+      summary = new_summary(m, layout, v)
+      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
+      if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
+         call put_variant_heads(o%files(out_listing), summary)
+      end if
+      if (are_together(m, full .or. has_ratios, o)) then
+         call run_together()
+      else
+         do while (n <= last)
+            row = new_row(summary, v, n)
+            if (o%asked(out_listing) .and. full) call put_variant(o%files(out_listing), layout, summary, m, row)
+            call run_variant(variant, row)
+            if (is_over(o)) exit
+            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing), summary)
+            call write_row(row)
+            n = n + 1
+         end do
+      end if
+      if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
+      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing), m)
+
+   contains
+
+      !> Solves and writes rows alone of the variants `n` to `last` of `v`, as many at a time as there are lanes; `n`:
+      !> the first that is not written.
+      subroutine run_together()
+         ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
+         class(lane_run_t), allocatable :: runs(:)
+         type(variant_row_t) :: rows(width)
+         type(lanes_t) :: lanes
+         integer :: k, count
+
+         allocate (lane_run_t :: runs(width))
+         do while (n <= last)
+            count = min(width, last - n + 1)
+            do k = 1, count
+               rows(k) = new_row(summary, v, n + k - 1)
+               call start(runs(k), rows(k))
+            end do
+            call run_lanes(runs(:count), lanes)
+            do k = 1, count
+               if (is_over(o)) return
+               if (rows(k)%rejected == '') then
+                  rows(k)%counts_t = runs(k)%counts
+                  call fill_row(summary, runs(k)%s%now, runs(k)%asked, rows(k))
+               else
+                  call fill_row(summary, m, runs(k)%asked, rows(k))
+               end if
+               call write_row(rows(k))
+               n = n + 1
+            end do
+         end do
+      end subroutine run_together
+
+      !> Makes the variant of `v` whose `row` this is, unless it is refused.
+      subroutine start(r, row)
+         type(lane_run_t), intent(inout) :: r
+         type(variant_row_t), intent(inout) :: row
+         type(findings_t) :: findings
+         logical :: is_done
+
+         call build_variant(v, row%number, r%m, row%rejected)
+         r%is_over = row%rejected /= ''
+         if (r%is_over) return
+         ! A variant with the structure of the one before takes over what that has made.
+         call renew_set_analysis(r%m, r%s, is_done)
+         if (.not. is_done) then
+            call check_variant(r%m, findings, row)
+            r%is_over = row%rejected /= ''
+            if (r%is_over) return
+            call make_set_analysis(r%m, r%s, findings)
+         end if
+         call begin_run(r)
+      end subroutine start
+
+      !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
+      subroutine check_variant(variant, findings, row)
+         type(mechanism_t), intent(in) :: variant
+         type(findings_t), intent(out) :: findings
+         type(variant_row_t), intent(inout) :: row
+         character(:), allocatable :: faults
+
+         findings = find_structure(variant)
+         faults = faults_text(variant, findings, variant%set_number)
+         row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
+      end subroutine check_variant
+
+      !> Solves and writes the variant of `v` whose `row` this is: it is `variant` now. `full`: its
+      !> tables are asked for.
+      subroutine run_variant(variant, row)
+         type(mechanism_t), intent(inout) :: variant
+         type(variant_row_t), intent(inout) :: row
+         type(findings_t) :: findings
+         type(set_analysis_t) :: a
+         type(answers_t) :: asked
+
+         call build_variant(v, row%number, variant, row%rejected)
+         if (row%rejected == '') call check_variant(variant, findings, row)
+         if (row%rejected == '') then
+            call new_set_motion(variant, a%now, findings)
+            if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
+            if (o%asked(out_log)) call log_head(o%files(out_log), variant)
+            call run_motion(a, findings, full, o, row, asked)
+            call fill_row(summary, a%now, asked, row)
+         else
+            call fill_row(summary, m, asked, row)
+         end if
+      end subroutine run_variant
+
+      !> Writes the `row` of a variant.
+      subroutine write_row(row)
+         type(variant_row_t), intent(in) :: row
+
+         if (o%asked(out_summary)) call summary_row(o%files(out_summary), summary, m, row)
+         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing), layout, summary, m, row)
+         call write_in_turn(o)
+         if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
+      end subroutine write_row
+   end subroutine run_variants
+
+   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables or ratios,
+   !> or not: then as many are solved together as there are lanes.
+   pure logical function are_together(m, not_have, o)
+      class(settings_t), intent(in) :: m
+      logical, intent(in) :: not_have        !< the set has tables or ratios, which lanes do not have
+      class(outputs_t), intent(in) :: o
+
+      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
+   end function are_together
+end module variant_runs
