@@ -45,7 +45,8 @@ module card_sets
       definer_t(request_link, form_ground), definer_t(request_link, form_link), definer_t(request_point, form_point), &
       definer_t(request_point, form_joint), definer_t(request_point, form_joint), &
       definer_t(request_pair, form_revolute, label_c), definer_t(request_pair, form_prism, label_c), &
-      definer_t(request_pair, form_cylinder, label_c), definer_t(request_pair, form_joint), &
+      definer_t(request_pair, form_slot, label_c), definer_t(request_pair, form_cylinder, label_c), &
+      definer_t(request_pair, form_joint), &
       definer_t(request_measure, form_distance, label_c), definer_t(request_measure, form_line, label_c), &
       definer_t(request_measure, form_angle, label_c), definer_t(request_measure, form_xi, label_c), &
       definer_t(request_measure, form_eta, label_c), definer_t(request_measure, form_sum, label_c)]
@@ -89,12 +90,13 @@ contains
       name_field = definers(findloc(definers%form, form, dim=1))%label
    end function name_field
 
-   !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
-   !> names are errors, and so are pairs that do not join two links.
+   !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards, and after them the
+   !> block of each SLOT card, a point of it, and its revolute pair. Repeated and unknown names are errors, and so are
+   !> pairs that do not join two links.
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: unit
-      integer :: kind, n, k, i
+      integer :: kind, n, k, i, slots
 
       unit = angle_in_radians(set%mechanism)
       do kind = request_link, request_measure
@@ -102,20 +104,23 @@ contains
          set%named(kind)%card = [((k, i=1, count(definers%kind == kind .and. definers%form == set%cards(k)%form)), &
             k=1, set%count)]
       end do
-      allocate (set%mechanism%links(size(set%named(request_link)%card)))
-      allocate (set%mechanism%points(size(set%named(request_point)%card)))
-      allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
-      do n = 1, size(set%mechanism%links)
+      associate (blocks => set%number_of(form_slot))
+         allocate (set%mechanism%links(size(set%named(request_link)%card) + blocks))
+         allocate (set%mechanism%points(size(set%named(request_point)%card) + blocks))
+         allocate (set%mechanism%pairs(size(set%named(request_pair)%card) + blocks))
+      end associate
+      do n = 1, size(set%named(request_link)%card)
          associate (card => set%cards(set%named(request_link)%card(n)))
             set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
                position=card%real*[1.0_wp, 1.0_wp, unit])
          end associate
          call define_name(set, request_link, n)
       end do
-      do n = 1, size(set%mechanism%points)
+      do n = 1, size(set%named(request_point)%card)
          call build_point()
       end do
-      do n = 1, size(set%mechanism%pairs)
+      slots = 0
+      do n = 1, size(set%named(request_pair)%card)
          call build_pair()
       end do
 
@@ -149,8 +154,8 @@ contains
          if (is_first .neqv. is_ground) call define_name(set, request_point, n)
       end subroutine build_point
 
-      !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
-      !> not both of them ground.
+      !> Pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. It must join two
+      !> links, not both of them ground.
       subroutine build_pair()
          real(wp) :: numbers(3)
          integer :: k, i, j
@@ -165,13 +170,14 @@ contains
          end if
          associate (card => set%cards(k), pair => set%mechanism%pairs(n))
             pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
-            if (card%form == form_prism) then
+            if (any(card%form == [form_prism, form_slot])) then
                numbers = card%real*[unit, 1.0_wp, unit]
                pair = pair_t(pair_prismatic, pair%name, i, j, numbers(1), numbers(2), numbers(3), &
                   [.false., .not. card%given(2:) .and. has_drawing(set)])
             end if
             if (card%form == form_cylinder) pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true.)
          end associate
+         if (set%cards(k)%form == form_slot) call build_block(n, j)
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
             call add_card_error(set, cylinder_drawing, k, card_name)
          call define_name(set, request_pair, n)
@@ -181,13 +187,30 @@ contains
          if (i == 0 .or. j == 0) return
          if (i == j .or. (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground)) then
             call add_card_error(set, pair_one_link, k, label_c)
-         else if (any(set%mechanism%pairs(n)%drawn)) then
+         else if (any(set%mechanism%pairs(n)%drawn) .or. set%mechanism%pairs(n)%pin > 0) then
             ! It has those numbers as drawn. The points of a cylinder must lie apart.
             call take_drawn(set%mechanism, n)
             if (set%mechanism%pairs(n)%drawn(1) .and. coincides(set%mechanism, set%mechanism%pairs(n))) &
                call add_card_error(set, cylinder_points, k, label_b)
          end if
       end subroutine build_pair
+
+      !> Builds the block of the slot of a pair: the block turns with link i and about the point in the slot.
+      subroutine build_block(n, pin)
+         integer, intent(in) :: n            !< the number of the pair
+         integer, intent(in) :: pin          !< the number of the point in the slot; 0: not known
+
+         slots = slots + 1
+         associate (m => set%mechanism, pair => set%mechanism%pairs(n), &
+            link => size(set%named(request_link)%card) + slots, point => size(set%named(request_point)%card) + slots)
+            m%links(link)%hidden = .true.
+            m%points(point)%link = link
+            m%pairs(size(set%named(request_pair)%card) + slots) = pair_t(name=pair%name, point_i=point, point_j=pin)
+            pair%point_j = point
+            pair%pin = pin
+            pair%drawn(3) = .false.
+         end associate
+      end subroutine build_block
    end subroutine build_bodies
 
    !> Enters the name on the card of a link, point, pair or measure. A name that is there already is an error, and so is

@@ -50,7 +50,8 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler
+      enumerator :: form_revolute, form_prism, form_slot, form_cylinder, form_joint, form_drive, form_add, form_rise
+      enumerator :: form_toler
       enumerator :: form_time, form_at, form_method, form_print, form_column, form_extremes, form_range, form_circuits
       enumerator :: form_pole, form_curve, form_branch, form_vary, form_assembly, form_prove
       enumerator :: form_distance, form_line, form_angle, form_xi, form_eta, form_sum, form_end
@@ -66,6 +67,7 @@ module cards
       form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('LLL', 2, .false., 'SLOT    POINT-I POINT-J PAIR    ALPHA           H'), &
       form_t('LLL', 0, .false., 'CYLINDERPOINT-P POINT-Q PAIR'), &
       form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &

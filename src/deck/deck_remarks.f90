@@ -73,7 +73,7 @@ contains
             end associate
          end do
       end associate
-      do i = 1, size(point)
+      do i = 1, size(set%named(request_point)%card)
          if (.not. point(i)) call add_card_remark(set, remark_point_unused, set%named(request_point)%card(i), label_a)
       end do
    end subroutine check_unused
@@ -283,7 +283,7 @@ contains
 
       if (.not. has_drawing(set)) return
       length = solver_length(set%mechanism)
-      do i = 1, size(set%mechanism%pairs)
+      do i = 1, size(set%named(request_pair)%card)
          k = set%named(request_pair)%card(i)
          text = ''
          associate (m => set%mechanism, pair => set%mechanism%pairs(i))
@@ -296,7 +296,7 @@ contains
                end associate
                if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) text = angle_text(turn)
                turn = without_turns(m%links(m%points(pair%point_i)%link)%position(3))
-               if (abs(turn) > same_direction .and. set%cards(k)%form == form_prism) call add_remark(set%errors, &
+               if (abs(turn) > same_direction .and. set%cards(k)%form /= form_cylinder) call add_remark(set%errors, &
                   remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
                   angle_text(pair%alpha)//', '//angle_text(pair%alpha + turn))
             end if

@@ -23,10 +23,10 @@ module deck_variants
    character(*), parameter :: list_word = 'LIST'
    character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
-   integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_joint, form_drive, &
-      form_add, form_rise, form_time]
-   integer, parameter :: number_kinds(*) = [number_link, number_link, number_point, number_pair, number_joint, &
-      number_drive, number_drive, number_drive, number_time]
+   integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
+      form_drive, form_add, form_rise, form_time]
+   integer, parameter :: number_kinds(*) = [number_link, number_link, number_point, number_pair, number_pair, &
+      number_joint, number_drive, number_drive, number_drive, number_time]
 
    !> A number that varies.
    type :: varied_t
@@ -244,14 +244,14 @@ contains
 
    !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT cards
    !> depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term of a
-   !> drive is defined depends on those of TIME.
+   !> drive is defined depends on those of TIME. The block of a slot is where the cards put the point in it.
    pure logical function stands_alone(set, form)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: form
 
       select case (form)
-      case (form_ground, form_link, form_point, form_prism)
-         stands_alone = .not. has_drawing(set)
+      case (form_ground, form_link, form_point, form_prism, form_slot)
+         stands_alone = .not. has_drawing(set) .and. set%number_of(form_slot) == 0
       case (form_time)
          stands_alone = sum(set%number_of([form_add, form_rise])) == 0
       case default

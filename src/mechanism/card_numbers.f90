@@ -81,7 +81,7 @@ contains
          case (number_joint)
             name = 'JOINT '//trim(m%points(k)%name)
          case (number_pair)
-            name = 'PRISM '//trim(m%pairs(k)%name)
+            name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
          case (number_time)
             name = 'TIME T'//whole(n%place - 1)
             return
@@ -222,7 +222,7 @@ contains
       if (any(n%kind == [number_drive, number_knot])) call put_table(m%drives(n%subject), n%term)
       if (n%kind > number_pair) return
       do i = 1, size(m%pairs)
-         if (any(m%pairs(i)%drawn)) call take_drawn(m, i)
+         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call take_drawn(m, i)
       end do
       do i = 1, size(m%drives)
          if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))

@@ -17,7 +17,8 @@ contains
 
    !> Gives prismatic pair number `i` of `m` those of its numbers alpha, h and beta (length, rad) that are as drawn.
    !> Along a guide that is drawn from P to Q the direction is that of PQ, in (-pi, pi], less the angle of link i, and h
-   !> is 0. Differences that rounding alone makes are exactly 0.
+   !> is 0. Differences that rounding alone makes are exactly 0. The block of a slot is where the point in the slot is
+   !> drawn, and turned as link i.
    pure subroutine take_drawn(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i
@@ -25,6 +26,8 @@ contains
       real(wp) :: d(2), phi(2), theta
 
       pair = m%pairs(i)
+      if (pair%pin > 0) m%links(m%points(pair%point_j)%link)%position = &
+         [place(m, pair%pin), m%links(m%points(pair%point_i)%link)%position(3)]
       phi = m%links(pair_links(m, pair))%position(3)
       if (pair%drawn(2)) then
          pair%offset = 0.0_wp
@@ -119,7 +122,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
 
-      length = size_of_point(m, pair%point_i) + size_of_point(m, pair%point_j) + norm2(drawn_way(m, pair)) &
+      length = size_of_point(m, pair%point_i) + size_of_point(m, merge(pair%pin, pair%point_j, pair%pin > 0)) &
+         + norm2(drawn_way(m, pair)) &
          *(abs(pair%alpha) + abs(m%links(m%points(pair%point_i)%link)%position(3)))
    end function size_of_pair
 

@@ -191,6 +191,7 @@ contains
       own%pairs = m%pairs(part(request_pair)%of)
       own%pairs%point_i = place(request_point)%of(own%pairs%point_i)
       own%pairs%point_j = place(request_point)%of(own%pairs%point_j)
+      own%pairs%pin = place(request_point)%of(own%pairs%pin)
 
       if (allocated(m%measures)) then
          own%measures = m%measures(part(request_measure)%of)

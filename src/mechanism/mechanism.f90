@@ -116,6 +116,7 @@ module mechanism
       character(label_length) :: name = ''
       logical :: ground = .false.            !< does not move
       real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or the estimate that selects the assembly
+      logical :: hidden = .false.            !< the block of a SLOT card: it has no name, and no table shows it
    end type link_t
 
    type :: point_t
@@ -133,6 +134,8 @@ module mechanism
       real(wp) :: offset = 0.0_wp            !< prismatic: h of eq. (9)
       real(wp) :: beta = 0.0_wp              !< prismatic: phi_j - phi_i, eq. (10)
       logical :: drawn(3) = .false.          !< alpha, h, beta: it is the one of the drawing, not of its card
+      !> Prismatic, of a SLOT card: the number of the point of link j that moves in the slot. Q is a point of the block.
+      integer :: pin = 0
    end type pair_t
 
    !> What a measure is made of.
@@ -400,6 +403,42 @@ contains
          end associate
       end do
    end function measures_within
+
+   !> Finds the links that the card of a pair joins: of a slot not its block.
+   pure function joined_by(m, pair) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      integer :: links(2)
+
+      links = pair_links(m, pair)
+      if (pair%pin > 0) links(2) = m%points(pair%pin)%link
+   end function joined_by
+
+   !> Tells whether a pair is the revolute pair of a block with the point in its slot, which no table shows.
+   pure logical function is_hidden(m, pair)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+
+      is_hidden = pair%pin == 0 .and. m%links(m%points(pair%point_i)%link)%hidden
+   end function is_hidden
+
+   !> Leaves out the blocks of SLOT cards. If no other link remains, the moving links that these cards join stand for
+   !> them.
+   pure function shown_links(m, links) result(shown)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: links(:)        !< their numbers
+      integer, allocatable :: shown(:)       !< (any number) the numbers of the links that may be named
+      integer :: i, ends(2)
+
+      shown = pack(links, .not. m%links(links)%hidden)
+      if (size(shown) > 0 .or. size(links) == 0) return
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%pin == 0) cycle
+         if (all(links /= m%points(m%pairs(i)%point_j)%link)) cycle
+         ends = joined_by(m, m%pairs(i))
+         shown = [shown, pack(ends, .not. m%links(ends)%ground .and. [all(shown /= ends(1)), all(shown /= ends(2))])]
+      end do
+   end function shown_links
 
    !> Tells whether pairs of a kind have a guide, on which a link slides; otherwise it turns about a joint.
    elemental logical function has_guide(kind)

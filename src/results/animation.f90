@@ -93,7 +93,7 @@ contains
          axes%s%place = 0.0_wp
          axes%s%known = .true.
          do link = 1, size(c%m%links)
-            if (c%m%links(link)%ground .or. size(d%outlines(link)%corner, 2) == 0) cycle
+            if (c%m%links(link)%ground .or. c%m%links(link)%hidden .or. size(d%outlines(link)%corner, 2) == 0) cycle
             known = [(d%frame(frame(k))%known(link), k=1, size(known))]
             if (.not. any(known)) cycle
             ! It turns about a corner of its own: its origin may be far away.

@@ -2,7 +2,7 @@
 module assembly_table
    use kinds, only: wp, label_length
    use planar, only: point_of, degree, without_turns
-   use mechanism, only: mechanism_t, instant, plane_origin, drive_words, driven_kinds
+   use mechanism, only: mechanism_t, shown_links, instant, plane_origin, drive_words, driven_kinds
    use scales, only: characteristic_length, is_length
    use names, only: listed, subject_name
    use cards, only: ruler_card
@@ -63,9 +63,11 @@ contains
       integer, intent(in) :: k
       type(assembly_block_t), intent(in) :: one
       character(:), allocatable :: links, text
+      integer, allocatable :: shown(:)
 
-      links = phrase(merge(say_link, say_links, size(one%links) == 1), m%polish)
-      if (size(one%links) > 0) links = links//' '//listed(m%links(one%links)%name, m%polish)
+      shown = shown_links(m, one%links)
+      links = phrase(merge(say_link, say_links, size(shown) == 1), m%polish)
+      if (size(shown) > 0) links = links//' '//listed(m%links(shown)%name, m%polish)
       call put_folded(o, '   '//phrase(say_block, m%polish)//' '//whole(k)//': ', links, indent)
       text = phrase(say_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
          //phrase(say_paths, m%polish)//' '//whole(one%paths)//' = ' &
@@ -137,7 +139,7 @@ contains
       if (any(is_joint)) digits = drawing_digits
       call put(o, ruler_card)
       do i = 1, size(m%links)
-         if (m%links(i)%ground) cycle
+         if (m%links(i)%ground .or. m%links(i)%hidden) cycle
          names = ''
          names(1) = m%links(i)%name
          numbers(1) = number_text(position(1, i), largest, digits)

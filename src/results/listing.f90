@@ -5,8 +5,8 @@
 module listing
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_title_long, remark_rest, remark_turns, remark_more, &
-      request_link
+   use mechanism, only: settings_t, mechanism_t, shown_links, remark_title_long, remark_rest, remark_turns, &
+      remark_more, request_link
    use names, only: drive_name, listed, more
    use motion
    use structure, only: findings_t
@@ -437,11 +437,11 @@ contains
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
-      integer :: n
+      integer, allocatable :: shown(:)
 
-      n = count(r%links > 0)
-      text = phrase(merge(say_link, say_links, n == 1), m%polish)
-      if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name, m%polish)
+      shown = shown_links(m, pack(r%links, r%links > 0))
+      text = phrase(merge(say_link, say_links, size(shown) == 1), m%polish)
+      if (size(shown) > 0) text = text//' '//listed(m%links(shown)%name, m%polish)
       text = text//more(r%more, m%polish)
    end function links
 

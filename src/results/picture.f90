@@ -236,6 +236,7 @@ contains
       do i = 1, size(c%m%pairs)
          if (.not. has_guide(c%m%pairs(i)%kind)) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
       end do
+      open = open .and. .not. c%m%links(c%m%points%link)%hidden
       open = open .and. c%s%known(c%m%points%link)
       printed = .false.
       printed(pack(c%m%requests%subject, c%m%requests%kind == request_point &
@@ -261,7 +262,7 @@ contains
       integer :: i, j, k, n, places
 
       do i = 1, size(c%m%links)
-         if (c%m%links(i)%ground .or. .not. c%s%known(i)) cycle
+         if (c%m%links(i)%ground .or. c%m%links(i)%hidden .or. .not. c%s%known(i)) cycle
          corners = moved(c%d%outlines(i)%corner, c%s%place(:, i))
          n = size(corners, 2)
          if (n == 0) cycle
@@ -323,7 +324,7 @@ contains
       integer :: i, j, k, n
 
       allocate (list(0))
-      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. d%m%links%ground))))
+      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. (d%m%links%ground .or. d%m%links%hidden)))))
       do i = 0, n
          k = own(1 + i*(size(own) - 1)/n)
          if (distance(d, k, best) < alike) cycle

@@ -2,7 +2,7 @@
 !> are not proved; and the counts.
 module proof_table
    use kinds, only: wp
-   use mechanism, only: instant
+   use mechanism, only: shown_links, instant
    use motion, only: mark_none
    use independent, only: set_t
    use proofs, only: proofs_t, reason_t
@@ -77,8 +77,10 @@ contains
          words = phrase(say_near_singular, m%polish)
          if (r%too_many > 0) words = phrase(say_too_wide, m%polish)//' '//whole(r%too_many)
          if (.not. allocated(r%links)) return
-         if (size(r%links) > 0) words = phrase(say_links, m%polish)//' ' &
-            //listed(m%parts(r%part)%links(r%links)%name, m%polish)//': '//words
+         associate (part => m%parts(r%part))
+            if (size(r%links) > 0) words = phrase(say_links, m%polish)//' ' &
+               //listed(part%links(shown_links(part, r%links))%name, m%polish)//': '//words
+         end associate
       end if
    end function words_of
 

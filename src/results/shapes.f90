@@ -93,6 +93,7 @@ contains
       end do
       do i = 1, size(d%guides)
          associate (g => d%guides(i))
+            if (d%m%links(g%block)%hidden) cycle
             u = half_block(1)*direction(g%block_angle)
             v = half_block(2)*quarter_turn(direction(g%block_angle))
             call add(g%block, 'polygon', 'class="block" style="fill:' &
@@ -102,7 +103,9 @@ contains
       end do
       do i = 1, size(d%m%pairs)
          ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-         k = ends(maxloc(merge(0, d%m%points(ends)%link, d%m%links(d%m%points(ends)%link)%ground), dim=1))
+         associate (links => d%m%links(d%m%points(ends)%link))
+            k = ends(maxloc(merge(0, merge(1, 1 + d%m%points(ends)%link, links%ground), links%hidden), dim=1))
+         end associate
          if (.not. has_guide(d%m%pairs(i)%kind)) call add(d%m%points(k)%link, 'circle', &
             'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)), spread(d%m%points(k)%offset, 2, 1), &
             weight=box, radius=joint_radius)

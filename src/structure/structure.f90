@@ -10,7 +10,7 @@ module structure
    use numerals, only: whole
    use names, only: drive_name, listed, more
    use grouping, only: once
-   use mechanism, only: mechanism_t, pair_links, has_guide, method_newton
+   use mechanism, only: mechanism_t, has_guide, is_hidden, joined_by, shown_links, method_newton
    use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
@@ -54,12 +54,12 @@ contains
       logical, allocatable :: over(:)
       integer :: k, parts
 
-      f%links = size(m%links)
+      f%links = count(.not. m%links%hidden)
       f%ground = count(m%links%ground)
-      f%revolute = count(.not. has_guide(m%pairs%kind))
       f%prismatic = count(has_guide(m%pairs%kind))
-      f%coordinates = 3*f%links
-      f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
+      f%revolute = size(m%pairs) - f%prismatic - count(m%links%hidden)
+      f%coordinates = 3*size(m%links)
+      f%equations = 2*size(m%pairs) + 3*f%ground
       f%degrees_of_freedom = f%coordinates - f%equations
       f%drives = size(m%drives)
 
@@ -68,10 +68,16 @@ contains
       over = overdetermined(c%incidence, unknown_of, equation_of)
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack([((k + 1)/2, k=1, 2*size(m%pairs))], over(:2*size(m%pairs)))
+      ! The revolute pair of a block is that of its slot.
+      do k = 1, size(f%many_pairs)
+         associate (pair => m%pairs(f%many_pairs(k)))
+            if (is_hidden(m, pair)) f%many_pairs(k) = findloc(m%pairs%point_j, pair%point_i, dim=1)
+         end associate
+      end do
       f%many_drives = pack([(k, k=1, size(m%drives))], over(2*size(m%pairs) + 1:))
       f%free = count(equation_of == 0)
       if (f%free > 0) then
-         f%loose = once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of)))
+         f%loose = shown_links(m, once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of))))
          return
       end if
       parts = max(1, maxval([0, part_of_links(m)]))
@@ -88,17 +94,23 @@ contains
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, parts)])
       ! Two links that a prismatic pair joins have one angle: which links can move, that does not say.
       f%free = sum([(size(f%structures(k)%blocks%free), k=1, parts)])
-      if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. m%links%ground)
+      if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. (m%links%ground .or. m%links%hidden))
    end function find_structure
 
-   !> Finds the groups of `m`, whose findings `f` are; none where it is not solvable. Only the listing has them, and the
-   !> sets of a long job are checked one after another, but listed by several processes.
+   !> Finds the groups of `m`, whose findings `f` are, without the blocks of slots; none where it is not solvable. Only
+   !> the listing has them, and the sets of a long job are checked one after another, but listed by several processes.
    subroutine find_groups(m, f)
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(inout) :: f
+      integer :: i
 
       if (.not. allocated(f%groups)) allocate (f%groups(0))
-      if (f%solvable) f%groups = groups_of(m, new_closure(m))
+      if (.not. f%solvable) return
+      f%groups = groups_of(m, new_closure(m))
+      do i = 1, size(f%groups)
+         f%groups(i)%links = pack(f%groups(i)%links, .not. m%links(f%groups(i)%links)%hidden)
+      end do
+      f%groups = pack(f%groups, [(size(f%groups(i)%links) > 0, i=1, size(f%groups))])
    end subroutine find_groups
 
    !> Every link of every set can be found: `findings` (sets).
@@ -183,7 +195,8 @@ contains
       if (.not. any(m%points%drawn)) return
       n = 0
       do i = 1, size(m%pairs)
-         ends = pair_links(m, m%pairs(i))
+         if (is_hidden(m, m%pairs(i))) cycle
+         ends = joined_by(m, m%pairs(i))
          if (.not. (any(f%many_pairs == i) .or. any(f%loose == ends(1)) .or. any(f%loose == ends(2)))) cycle
          n = n + 1
          if (n > most) cycle

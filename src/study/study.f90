@@ -175,8 +175,8 @@ contains
             end do
          end do
 
-         call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, '//whole(size(m%links)) &
-            //' LINKS, '//wp_name)
+         call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, ' &
+            //whole(count(.not. m%links%hidden))//' LINKS, '//wp_name)
          if (truth%is_reference) then
             call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
                //' INSTANTS')

@@ -60,7 +60,7 @@ contains
          call add_name(d, 1, label(1), .false.)
       case ('POINT')
          call add_name(d, 2, label(1), .false.)
-      case ('REVOLUTE', 'PRISM', 'CYLINDER')
+      case ('REVOLUTE', 'PRISM', 'SLOT', 'CYLINDER')
          call add_name(d, 3, label(3), label(0) /= 'REVOLUTE')
       case ('JOINT')
          call add_name(d, 2, label(1), .false.)
