@@ -293,8 +293,8 @@ contains
    end subroutine find_instants
 
    !> Finds the place (2) from which all computed places are counted: that of the first ground link that a pair uses, or
-   !> of the first one. It is added when a row is written. Reason: far from the origin of the deck, or from a ground link
-   !> that a row alone uses, small lengths would be rounded with large places.
+   !> of the first one. It is added when a row is written. Reason: far from the origin of the deck, or from a ground
+   !> link that only a row uses, small lengths would be rounded with large places.
    pure function plane_origin(m) result(origin)
       type(mechanism_t), intent(in) :: m
       real(wp) :: origin(2)
