@@ -315,15 +315,22 @@ $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
 	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
 
 # The command with its man page; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat; the
+# library for C, with its header and what pkg-config reads: gcc ... -lkinmat; kinmat.py, which finds that library; the
 # documents, in folders of the same names as here, so that their links lead somewhere, with the decks.
 documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
-install: $(BUILD)/kinmat $(BUILD)/kinmat.1
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
+install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib/pkgconfig share/kinmat share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
+	install -m 755 $(BUILD)/libkinmat.so.2 $(DESTDIR)$(PREFIX)/lib
+	install -m 644 bindings/libkinmat.so $(DESTDIR)$(PREFIX)/lib
+	install -m 644 bindings/kinmat.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 bindings/kinmat.py $(DESTDIR)$(PREFIX)/share/kinmat
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$($< --version | sed 's/^KINMAT //; s/,.*//')|" bindings/kinmat.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/kinmat.pc
+	chmod 644 $(DESTDIR)$(PREFIX)/lib/pkgconfig/kinmat.pc
 	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
-	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/plot.gp docs/first.deck $(documents)/docs
+	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/example.c docs/plot.gp docs/first.deck $(documents)/docs
 	install -m 644 $(wildcard docs/howto/*.md) $(documents)/docs/howto
 	install -m 644 $(wildcard docs/pictures/*.svg) $(documents)/docs/pictures
 	install -m 644 $(decks) $(documents)/input

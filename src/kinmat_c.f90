@@ -49,7 +49,7 @@ module kinmat_c
       !> pthread_mutex_lock(3).
       integer(c_int) function pthread_mutex_lock(mutex) bind(c)
          import :: c_int, c_long
-         integer(c_long), intent(inout) :: mutex(*)
+         integer(c_long), intent(inout) :: mutex(*)   !< pthread_mutex_t
       end function pthread_mutex_lock
    end interface
    !> pthread_mutex_unlock(3).

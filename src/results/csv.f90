@@ -31,8 +31,8 @@ module csv
    implicit none
    private
    public :: csv_head, csv_instant, marks
-   public :: table_t, table_column_t, new_table, table_head, table_instant, find_table_row, table_width, drive_columns, &
-      dotted
+   public :: table_t, table_column_t, new_table, table_head, table_instant, find_table_row, table_width
+   public :: drive_columns, dotted
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    !> The mark where nothing is missing but known digits.

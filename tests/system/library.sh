@@ -68,6 +68,13 @@ same 'calls with a fault' "$w/expected" "$w/found"
    "$w/label.deck" "$w/loose.deck" > "$w/found"
 equal 'four threads' '0 differ' "$(sed 's/.*, //' "$w/found")"
 
+# kinmat.py, with numpy and without.
+for lists in '' --lists; do
+   if [ -z "$lists" ] && ! python3 -c 'import numpy' 2> /dev/null; then echo 'skipped: kinmat.py with numpy (not installed)'; continue; fi
+   equal "kinmat.py $lists" '' "$(PYTHONDONTWRITEBYTECODE=1 python3 tests/library/kinmat_test.py $lists "$kinmat" input/jansen.deck \
+      input/cylinder.deck input/stroke.deck input/ten_plates.deck 2>&1)"
+done
+
 # Nothing is lost, and nothing is used that was not set.
 if command -v valgrind > /dev/null; then
    OPENBLAS_NUM_THREADS=1 valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible \
