@@ -2,7 +2,7 @@
 program main
    use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int
-   use kinds, only: wp_name
+   use kinds, only: program_name, wp_name
    use failures, only: failure_t, capitals, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal, isatty
    use command_line, only: options_t, out_listing, read_command, explained
@@ -13,7 +13,6 @@ program main
    use text_output, only: output_t, open_output, put, close_output
    implicit none
 
-   character(*), parameter :: version = 'KINMAT 2.0, '//wp_name
    type(options_t) :: options
    type(failure_t), allocatable :: failure
    character(:), allocatable :: message
@@ -29,7 +28,7 @@ program main
    case ('HELP')
       call show(help_on(''))
    case ('VERSION')
-      call show(version)
+      call show(program_name//', '//wp_name)
    case ('RULER')
       message = layout_of(options%deck)
       if (len(options%deck) > 0) message = message//new_line('a')//help_on(capitals(options%deck))

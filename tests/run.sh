@@ -17,7 +17,8 @@ parts() {
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
    the command|480|tests/system/command.sh
-   what is installed|16|tests/system/install.sh
+   what is installed|22|tests/system/install.sh
+   the library for C and Python|120|tests/system/library.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|255|tests/system/output.sh
    unit tests|500|"$MAKE" --no-print-directory unit

@@ -1,11 +1,13 @@
-!> The one real kind of KINMAT and the lengths of its texts.
+!> The name of the program, its one real kind and the lengths of its texts.
 module kinds
    ! KIND of the Makefile says which of the three: single, double or quad.
    use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND, real32, real64
    implicit none
    private
-   public :: wp, wp_name, label_length, title_length
+   public :: program_name, wp, wp_name, label_length, title_length
 
+   !> The program and its version.
+   character(*), parameter :: program_name = 'KINMAT 2.0'
    !> The name of the kind `wp` of every real of the program.
    character(*), parameter :: wp_name = trim(merge('REAL32 ', merge('REAL64 ', 'REAL128', wp == real64), wp == real32))
    !> Characters of a card's name and of a label.

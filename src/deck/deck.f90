@@ -10,13 +10,13 @@ module deck
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
-   use deck_source, only: source_t, open_source, next_card
+   use deck_source, only: source_t, open_source, source_of, next_card
    use failures, only: failure_t, fail, status_rejected
    use input_errors
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, build_variant
+   public :: read_deck, read_deck_text, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
@@ -49,20 +49,41 @@ contains
       type(reading_t) :: progress
       type(source_t) :: source
 
+      call open_source(source, path, failure)
+      call read_sets(source, progress, sets, report, failure)
+      if (present(variations)) variations = progress%sets(:progress%closed)%variation
+   end subroutine read_deck
+
+   !> Reads the deck `text`, as `read_deck` reads a file.
+   subroutine read_deck_text(text, sets, report, failure)
+      character(*), intent(in) :: text       !< lines that end in LF or CR-LF
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
+      character(:), allocatable, intent(out) :: report         !< all error messages, '' if there are none
+      type(failure_t), allocatable, intent(out) :: failure     !< status_rejected
+      type(reading_t) :: progress
+      type(source_t) :: source
+
+      source = source_of(text)
+      call read_sets(source, progress, sets, report, failure)
+   end subroutine read_deck_text
+
+   !> Reads all sets of an open deck. With a `failure`, which opening it may have left, it has none.
+   subroutine read_sets(source, progress, sets, report, failure)
+      type(source_t), intent(inout) :: source
+      type(reading_t), intent(inout) :: progress
+      type(mechanism_t), allocatable, intent(out) :: sets(:)
+      character(:), allocatable, intent(out) :: report   !< all error messages, '' if there are none
+      type(failure_t), allocatable, intent(inout) :: failure
+
       allocate (progress%sets(4))
       call begin_set(progress%set, 1)
-      call open_source(source, path, failure)
-      if (.not. allocated(failure)) then
-         call read_cards(source, progress, failure)
-      end if
+      if (.not. allocated(failure)) call read_cards(source, progress, failure)
       report = error_report(progress%set%errors)
       if (.not. allocated(failure) .and. progress%set%errors%count > 0) &
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(progress%set%errors%count))
       if (allocated(failure)) progress%closed = 0
-
       sets = progress%sets(:progress%closed)%mechanism
-      if (present(variations)) variations = progress%sets(:progress%closed)%variation
-   end subroutine read_deck
+   end subroutine read_sets
 
    !> Reads all cards of the deck. Errors: status_system.
    subroutine read_cards(source, progress, failure)

@@ -1,6 +1,6 @@
-!> The lines of the deck as cards, from a file or standard input, each read once and in bounded memory. Files, pipes and
-!> terminals are read in the same way, by the system's own read: the Fortran run-time library of GNU takes an error for
-!> the end of the file.
+!> The lines of the deck as cards, from a file, standard input or a text, each read once; of a file in bounded memory.
+!> Files, pipes and terminals are read in the same way, by the system's own read: the Fortran run-time library of GNU
+!> takes an error for the end of the file.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -9,7 +9,7 @@ module deck_source
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of
    implicit none
    private
-   public :: source_t, open_source, next_card
+   public :: source_t, open_source, source_of, next_card
 
    integer(c_int), parameter :: standard_input = 0
    integer, parameter :: block_length = 2**20
@@ -25,6 +25,7 @@ module deck_source
       integer(c_int) :: descriptor = standard_input
       integer :: lines = 0                   !< lines read so far
       character(:), allocatable :: buffer    !< bytes of the deck
+      character(:), allocatable :: block     !< those read last
       integer :: at = 1                      !< the next byte of the buffer
       logical :: ended = .false.             !< there is no more to read
    end type source_t
@@ -46,14 +47,33 @@ contains
       error = last_error()
       if (source%descriptor >= 0) then
          source%buffer = ''
+         allocate (character(block_length) :: source%block)
          do while (.not. source%ended .and. len(source%buffer) < len(byte_order_mark))
             call read_on(source, failure)
          end do
-         if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
+         call pass_byte_order_mark(source)
       else
          call fail(failure, status_system, source%name//' CANNOT BE OPENED ('//capitals(reason_of(error))//')')
       end if
    end subroutine open_source
+
+   !> Makes a source of the deck `text`.
+   function source_of(text) result(source)
+      character(*), intent(in) :: text       !< its lines
+      type(source_t) :: source
+
+      source%name = 'THE TEXT'
+      source%buffer = text
+      source%ended = .true.
+      call pass_byte_order_mark(source)
+   end function source_of
+
+   !> Begins after the mark of some editors.
+   subroutine pass_byte_order_mark(source)
+      type(source_t), intent(inout) :: source
+
+      if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
+   end subroutine pass_byte_order_mark
 
    !> Reads the next `card`; `found` is false at the end. A line ends in LF or CR-LF. Errors: status_system;
    !> status_rejected for a line of more than `max_columns`, and for one with a carriage return inside: a comment in a
@@ -109,15 +129,14 @@ contains
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure
-      character(block_length), save :: block
       integer :: length, error
       logical :: closed
 
-      length = read_bytes(source%descriptor, block)
+      length = read_bytes(source%descriptor, source%block)
       error = last_error()
       source%ended = length <= 0
       if (source%ended .and. source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
-      source%buffer = source%buffer(source%at:)//block(:max(0, length))
+      source%buffer = source%buffer(source%at:)//source%block(:max(0, length))
       source%at = 1
       if (length < 0) call fail(failure, status_system, &
          source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')

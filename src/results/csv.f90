@@ -10,6 +10,7 @@
 !> read NaN as a missing value. Commas alone separate the cells, and gnuplot is given its separator. The units are those
 !> of the deck. Rejected: a blank behind each comma, for gnuplot's default: pandas takes a column with ' NaN' for text.
 module csv
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_value, ieee_quiet_nan
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: request_t, request_link, request_point
@@ -30,7 +31,8 @@ module csv
    implicit none
    private
    public :: csv_head, csv_instant, marks
-   public :: table_t, table_column_t, new_table, table_head, table_instant, drive_columns, dotted
+   public :: table_t, table_column_t, new_table, table_head, table_instant, find_table_row, table_width
+   public :: drive_columns, dotted
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    !> The mark where nothing is missing but known digits.
@@ -321,27 +323,66 @@ contains
       type(table_t), intent(in) :: t
       type(set_motion_t), intent(in) :: s
       type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
-      real(wp) :: f(3)
+      real(wp) :: values(table_width(t))
       integer :: i
 
-      call add_number(o, s%motions(1)%t, .false.)
+      call find_table_row(t, s, rows, values)
+      do i = 1, size(values)
+         if (i > 1) call add(o, ',')
+         if (ieee_is_nan(values(i))) then
+            call add(o, missing)
+         else
+            call add_number(o, values(i), .false.)
+         end if
+      end do
+      call put(o, '')
+   end subroutine table_instant
+
+   !> Finds the numbers of the row of the table for an instant, in the deck's units.
+   subroutine find_table_row(t, s, rows, values)
+      type(table_t), intent(in) :: t
+      type(set_motion_t), intent(in) :: s
+      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
+      real(wp), intent(out) :: values(:)     !< (table_width) NaN: it does not exist or has no known digit
+      real(wp) :: f(3)
+      integer :: i, n
+
+      values(1) = s%motions(1)%t
+      n = 1
       do i = 1, size(s%drives)
          associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
             f = drive_motion(drive, s%motions(1)%t)
-            call add(o, ',')
-            call add_number(o, f(1), s%degrees .and. .not. is_length(drive))
+            n = n + 1
+            values(n) = in_units(f(1), .not. is_length(drive))
          end associate
       end do
       do i = 1, size(t%columns)
          associate (c => t%columns(i), at => t%columns(i)%at, row => rows(t%columns(i)%request))
+            n = n + 1
             if (row%has_digit(at(1), at(2)) .and. cell_of(c%row_column_t, row%known, row%state) == cell_number) then
-               call add(o, ',')
-               call add_number(o, row%value(at(1), at(2)), s%degrees .and. c%dimension == of_angle)
+               values(n) = in_units(row%value(at(1), at(2)), c%dimension == of_angle)
             else
-               call add(o, ','//missing)
+               values(n) = ieee_value(values(n), ieee_quiet_nan)
             end if
          end associate
       end do
-      call put(o, '')
-   end subroutine table_instant
+
+   contains
+
+      !> Gives a number in the unit of the deck.
+      pure real(wp) function in_units(value, is_angle)
+         real(wp), intent(in) :: value       !< in the deck's units and rad
+         logical, intent(in) :: is_angle     !< it is an angle, or its derivative
+
+         in_units = value
+         if (s%degrees .and. is_angle) in_units = in_degrees(value)
+      end function in_units
+   end subroutine find_table_row
+
+   !> Counts the columns of the table.
+   pure integer function table_width(t)
+      type(table_t), intent(in) :: t
+
+      table_width = 1 + size(t%drives) + size(t%columns)
+   end function table_width
 end module csv

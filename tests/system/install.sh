@@ -16,6 +16,17 @@ same 'the installed command' expected/yoke.lst "$w/out"
 equal 'a program with the installed modules: it is built' '' "$(cat "$w/err")"
 equal 'a program with the installed modules' "$("$BUILD/example")" "$("$w/example")"
 
+# The library for C, by -lkinmat, which leaves Fortran the static one; kinmat.py finds it.
+library=$(cd "$w/usr/lib" && pwd)
+(cd "$w" && gcc -Iusr/include -o c usr/share/doc/kinmat/docs/example.c -Lusr/lib -lkinmat -lm) > "$w/err" 2>&1
+equal 'a program in C: it is built' '' "$(cat "$w/err")"
+equal 'a program in C' "$("$BUILD/example")" "$(LD_LIBRARY_PATH=$library "$w/c" 2>&1)"
+equal 'the shared library is that of C alone' '1 0' "$(for program in c example; do readelf -d "$w/$program" | grep -c 'NEEDED.*libkinmat[.]so[.]2'; done | tr '\n' ' ' | sed 's/ $//')"
+equal 'the name of the library' 'libkinmat.so.2' "$(readelf -d "$library/libkinmat.so.2" | sed -n 's/.*SONAME.*\[\(.*\)\]/\1/p')"
+equal 'what pkg-config reads' 'prefix=/usr,Version: 2.0,Cflags: -I${includedir},Libs: -L${libdir} -lkinmat,' \
+   "$(grep -E '^(prefix|Version|Cflags|Libs)' "$library/pkgconfig/kinmat.pc" | tr '\n' ',')"
+equal 'the installed kinmat.py' 'KINMAT 2.0' "$(cd "$w" && env -u LIBKINMAT -u LD_LIBRARY_PATH PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=usr/share/kinmat python3 -c 'import kinmat; print(kinmat.version())' 2>&1)"
+
 # Every link of an installed document leads to an installed file.
 documents=$w/usr/share/doc/kinmat
 (cd "$documents" && find . -name '*.md' | LC_ALL=C sort) > "$w/documents"

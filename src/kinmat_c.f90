@@ -1,0 +1,247 @@
+!> KINMAT for C, by eight functions: bindings/kinmat.h says what each does. A handle is a set and where it is in its
+!> motion; nothing else is kept, so that threads with a handle each do not meet.
+!>
+!> Decks are read one at a time: gfortran keeps the length of the text that a function returns in static memory.
+module kinmat_c
+   use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_double, c_char, c_long, c_ptr, c_null_ptr, c_null_char, &
+      c_loc, c_f_pointer, c_associated
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_value, ieee_quiet_nan
+   use kinds, only: wp, program_name
+   use failures, only: failure_t, fail, status_solved, status_rejected, status_flagged, status_system
+   use mechanism, only: mechanism_t, instant, instant_count
+   use deck, only: read_deck_text
+   use structure, only: findings_t, check_structure
+   use set_motion, only: is_flagged
+   use rows, only: finished_row_t, find_rows
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
+   use csv, only: table_t, new_table, find_table_row, table_width
+   implicit none
+   private
+
+   !> Characters of the name of a column, and the null after it.
+   integer, parameter :: name_length = 80
+
+   type :: handle_t
+      type(set_analysis_t) :: set
+      type(table_t) :: table
+      type(finished_row_t), allocatable :: rows(:)  !< (requests) of the last instant
+      real(wp), allocatable :: values(:)            !< (columns)
+      character(name_length), allocatable :: names(:)   !< (columns) with a null after each
+      character(:), allocatable :: message          !< why it is rejected, or ''; with a null after it
+      logical :: is_ready = .false.                 !< the set can be solved
+      real(wp) :: last = -huge(1.0_wp)              !< time of the call before
+      integer :: calls = 0                          !< calls so far, if
+      logical :: as_in_deck = .true.                !< all were for the instants of the deck, in their order
+   end type handle_t
+
+   character(kind=c_char), target :: version(len(program_name) + 1) = transfer(program_name//c_null_char, c_null_char, &
+      len(program_name) + 1)
+   character(kind=c_char), target :: no_memory(18) = transfer('NOT ENOUGH MEMORY'//c_null_char, c_null_char, 18)
+   !> A mutex of POSIX, which is unlocked if all of it is 0: one deck is read at a time.
+   integer(c_long), target :: reading(16) = 0
+
+   interface
+      !> strlen(3).
+      pure integer(c_size_t) function strlen(text) bind(c)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: text
+      end function strlen
+      !> pthread_mutex_lock(3).
+      integer(c_int) function pthread_mutex_lock(mutex) bind(c)
+         import :: c_int, c_long
+         integer(c_long), intent(inout) :: mutex(*)   !< pthread_mutex_t
+      end function pthread_mutex_lock
+   end interface
+   !> pthread_mutex_unlock(3).
+   procedure(pthread_mutex_lock), bind(c) :: pthread_mutex_unlock
+
+contains
+
+   !> Names the program and its version.
+   type(c_ptr) function kinmat_version() bind(c)
+      kinmat_version = c_loc(version)
+   end function kinmat_version
+
+   !> Reads set number `number` of a deck. Gives its handle, also if it is rejected; null without memory for one.
+   type(c_ptr) function kinmat_read(deck, number, status) bind(c) result(handle)
+      type(c_ptr), value :: deck             !< its text, with a null after it
+      integer(c_int), value :: number        !< from 1
+      integer(c_int), intent(out), optional :: status   !< solved: ready; rejected or system: `kinmat_message` says why
+      type(handle_t), pointer :: k
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+      integer(c_int) :: done
+      integer :: error
+
+      handle = c_null_ptr
+      if (present(status)) status = status_system
+      allocate (k, stat=error)
+      if (error /= 0) return
+      handle = c_loc(k)
+
+      done = pthread_mutex_lock(reading)
+      call read_set(text_of(deck), int(number), k, report, failure)
+      if (allocated(failure) .and. report == '') report = failure%text
+      k%message = report//c_null_char
+      done = pthread_mutex_unlock(reading)
+
+      k%is_ready = .not. allocated(failure)
+      if (present(status)) status = status_solved
+      if (present(status) .and. allocated(failure)) status = failure%status
+   end function kinmat_read
+
+   !> Makes a handle ready for the first instant of a set. Errors: status_rejected.
+   subroutine read_set(text, number, k, report, failure)
+      character(*), intent(in) :: text       !< the deck
+      integer, intent(in) :: number          !< of the set, from 1
+      type(handle_t), intent(inout) :: k
+      character(:), allocatable, intent(out) :: report   !< all errors of cards; '' if there are none
+      type(failure_t), allocatable, intent(out) :: failure
+      type(mechanism_t), allocatable :: sets(:)
+      type(findings_t), allocatable :: findings(:)
+      integer :: i
+
+      call read_deck_text(text, sets, report, failure)
+      if (.not. allocated(failure)) call check_structure(sets, findings, failure)
+      if (allocated(failure)) return
+      if (number < 1 .or. number > size(sets)) then
+         call fail(failure, status_rejected, 'THE DECK HAS NO SET OF THIS NUMBER')
+      else if (sets(number)%variants > 0) then
+         call fail(failure, status_rejected, 'THE LIBRARY TAKES NO SET WITH VARY CARDS: CHANGE THE TEXT OF THE DECK')
+      end if
+      if (allocated(failure)) return
+
+      call make_set_analysis(sets(number), k%set, findings(number))
+      k%table = new_table(k%set%now)
+      allocate (k%rows(size(k%set%now%rows)), k%values(table_width(k%table)))
+      k%names = [character(name_length) :: 't', k%table%drives, k%table%columns%name]
+      do i = 1, size(k%names)
+         k%names(i) = trim(k%names(i))//c_null_char
+      end do
+   end subroutine read_set
+
+   !> Gives why the set was rejected, or ''.
+   type(c_ptr) function kinmat_message(handle) bind(c)
+      type(c_ptr), value :: handle
+      type(handle_t), pointer :: k
+
+      kinmat_message = c_loc(no_memory)
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, k)
+      kinmat_message = c_loc(k%message)
+   end function kinmat_message
+
+   !> Counts the columns: time, drives, what PRINT or COLUMN cards ask for. 0 if the set was rejected.
+   integer(c_int) function kinmat_columns(handle) bind(c)
+      type(c_ptr), value :: handle
+      type(handle_t), pointer :: k
+
+      kinmat_columns = 0
+      if (.not. is_ready(handle)) return
+      call c_f_pointer(handle, k)
+      kinmat_columns = size(k%values)
+   end function kinmat_columns
+
+   !> Names a column; null if there is none.
+   type(c_ptr) function kinmat_column(handle, i) bind(c)
+      type(c_ptr), value :: handle
+      integer(c_int), value :: i             !< its number, from 0
+      type(handle_t), pointer :: k
+
+      kinmat_column = c_null_ptr
+      if (.not. is_ready(handle)) return
+      call c_f_pointer(handle, k)
+      if (i < 0 .or. i >= size(k%names)) return
+      kinmat_column = c_loc(k%names(i + 1))
+   end function kinmat_column
+
+   !> Counts the instants of the deck, and gives the first of them.
+   integer(c_int) function kinmat_instants(handle, t, n) bind(c)
+      type(c_ptr), value :: handle
+      type(c_ptr), value :: t                !< (n) room for their times
+      integer(c_int), value :: n
+      type(handle_t), pointer :: k
+      real(c_double), pointer :: times(:)
+      integer :: i
+
+      kinmat_instants = 0
+      if (.not. is_ready(handle)) return
+      call c_f_pointer(handle, k)
+      kinmat_instants = instant_count(k%set%now)
+      if (n < 1 .or. .not. c_associated(t)) return
+      call c_f_pointer(t, times, [n])
+      do i = 1, min(n, kinmat_instants)
+         times(i) = real(instant(k%set%now, i - 1), c_double)
+      end do
+   end function kinmat_instants
+
+   !> Solves for a time, which is not before that of the call before, unless both are instants of the deck as they
+   !> follow one another there. Gives the exit status of the command for this instant.
+   integer(c_int) function kinmat_advance(handle, t, row) bind(c) result(status)
+      type(c_ptr), value :: handle
+      real(c_double), value :: t
+      real(c_double), intent(inout) :: row(*)   !< (columns) NaN: it does not exist or has no known digit
+      type(handle_t), pointer :: k
+      real(wp) :: time
+      logical :: as_in_deck
+
+      status = status_rejected
+      if (.not. is_ready(handle)) return
+      call c_f_pointer(handle, k)
+      time = real(t, wp)
+      as_in_deck = k%as_in_deck .and. k%calls < instant_count(k%set%now)
+      if (as_in_deck) as_in_deck = .not. abs(time - instant(k%set%now, k%calls)) > 0.0_wp
+      if (.not. ieee_is_finite(t) .or. (time < k%last .and. .not. as_in_deck)) then
+         row(:size(k%values)) = ieee_value(0.0_c_double, ieee_quiet_nan)
+         return
+      end if
+
+      k%as_in_deck = as_in_deck
+      k%calls = k%calls + 1
+      k%last = time
+      call advance_set(k%set, time)
+      call sample_set(k%set, .false.)
+      call find_rows(k%set%now, k%calls, .true., k%rows)
+      call find_table_row(k%table, k%set%now, k%rows, k%values)
+      row(:size(k%values)) = real(k%values, c_double)
+      status = merge(status_flagged, status_solved, is_flagged(k%set%now))
+   end function kinmat_advance
+
+   !> Frees a handle; null is none.
+   subroutine kinmat_free(handle) bind(c)
+      type(c_ptr), value :: handle
+      type(handle_t), pointer :: k
+
+      if (.not. c_associated(handle)) return
+      call c_f_pointer(handle, k)
+      deallocate (k)
+   end subroutine kinmat_free
+
+   !> Tells whether a handle has a set that can be solved.
+   logical function is_ready(handle)
+      type(c_ptr), intent(in) :: handle
+      type(handle_t), pointer :: k
+
+      is_ready = c_associated(handle)
+      if (.not. is_ready) return
+      call c_f_pointer(handle, k)
+      is_ready = k%is_ready
+   end function is_ready
+
+   !> Copies a text of C; null is ''.
+   function text_of(place) result(text)
+      type(c_ptr), intent(in) :: place
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: characters(:)
+      integer :: i
+
+      allocate (character(0) :: text)
+      if (.not. c_associated(place)) return
+      call c_f_pointer(place, characters, [strlen(place)])
+      deallocate (text)
+      allocate (character(size(characters)) :: text)
+      do i = 1, size(characters)
+         text(i:i) = characters(i)
+      end do
+   end function text_of
+end module kinmat_c
