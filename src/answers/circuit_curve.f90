@@ -11,6 +11,7 @@ module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, drive_x, drive_y
+   use drive_path, only: drive_path_t
    use separations, only: separation
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve
@@ -81,13 +82,13 @@ contains
 
       c%closure = new_system(m)
       c%driven = c%closure
-      call find_drive_values(c%closure, t, f)
+      call find_drive_values(c%closure, drive_path_t(m%drives), t, f)
       c%first = f(1, drive)
       c%is_angle = .not. is_length(m%drives(drive))
       others = pack([(i, i=1, size(m%drives))], [(i /= drive, i=1, size(m%drives))])
       c%held = [f(1, others), 0.0_wp]
-      c%driven%laws = c%closure%laws([others, drive])
-      c%closure%laws = c%driven%laws(:size(others))
+      c%driven%drives = c%closure%drives([others, drive])
+      c%closure%drives = c%driven%drives(:size(others))
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
       c%nonlinear = new_coordinates(c%closure)
@@ -97,7 +98,7 @@ contains
    pure logical function is_redundant(c)
       type(curve_t), intent(in) :: c
 
-      is_redundant = 2*size(c%closure%pairs) + size(c%closure%laws) > c%closure%n - 1
+      is_redundant = 2*size(c%closure%pairs) + size(c%closure%drives) > c%closure%n - 1
    end function is_redundant
 
    !> Newton's method from `c%pose`, with the row `border` at rest. `c%factors` are those of the equations' Jacobian
@@ -150,7 +151,7 @@ contains
       value = x
       if (c%is_angle) return
       value = x*c%closure%length
-      associate (drive => c%driven%laws(size(c%held)))
+      associate (drive => c%driven%drives(size(c%held)))
          if (drive%kind == drive_x) value = value + c%closure%origin(1)
          if (drive%kind == drive_y) value = value + c%closure%origin(2)
       end associate

@@ -10,10 +10,10 @@
 !> on the same branch again, in either direction: the motion is a function of time.
 module block_branches
    use kinds, only: wp
-   use mechanism, only: drive_t, mechanism_t, branch_request_t
+   use mechanism, only: mechanism_t, branch_request_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, nothing_gathered, is_solved
-   use drives, only: drive_motion, halve, middle_of
+   use drive_path, only: time_at_part
    use block_state, only: set_values, values_of, largest_drive_rate
    use block_rank, only: values_t, decomposed, curvature_of
    use block_engine, only: block_engine_t, solve_each
@@ -37,8 +37,6 @@ module block_branches
    real(wp), parameter :: furthest = 0.05_wp
    !> Redundant equations are satisfied there to more than the second order in the distance.
    real(wp), parameter :: max_closure_part = 0.01_wp
-   !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
-   real(wp), parameter :: not_told = 1.0e-3_wp
 
    !> The listing gives the time of a change point to six digits; so may a card.
    real(wp), parameter :: digits_of_time = 1.0e-5_wp
@@ -130,7 +128,7 @@ contains
             if (.not. crossed(i)) cycle
             r = new_diagnostic(diagnostic_change, links_of(e, i))
             ! The least pivot goes through zero in proportion to the values of the drives.
-            r%t = time_of_values(e, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
+            r%t = time_at_part(e%path, before, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
             if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(e, i), before, t, r%t, r%other)
                if (r%other) call take_other_branch(e, i, c, passed)
@@ -166,62 +164,6 @@ contains
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
       is = correction <= min(right, max_wrong*e%change)
    end function is_short_and_right
-
-   !> The time at which the fastest drive has made this `part` of its way in the substep to `t`, by its law in the
-   !> deck. If it is so slow there that its value does not give the time, it is the one until which it slows down.
-   pure real(wp) function time_of_values(e, t, part) result(at)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t, part
-      type(drive_t) :: law
-      real(wp) :: span(2), start(size(e%laws)), way(size(e%laws)), f(3), low, high
-      integer :: d
-
-      span = [e%history%t(0), t]
-      do d = 1, size(e%laws)
-         f = drive_motion(e%laws(d), span(1))
-         start(d) = f(1)
-         f = drive_motion(e%laws(d), span(2))
-         way(d) = f(1) - start(d)
-      end do
-      d = maxloc(abs(e%unit_of*way), dim=1)
-      law = e%laws(d)
-      if (allocated(e%timed)) then
-         law = e%timed(d)
-         span = e%timed_span
-      end if
-      low = first_time(span(1), span(2), start(d) + (part - not_told)*way(d))
-      high = first_time(span(1), span(2), start(d) + (part + not_told)*way(d))
-      at = first_time(span(1), span(2), start(d) + part*way(d))
-      if (slows_down(drive_motion(law, low)) .and. .not. slows_down(drive_motion(law, high))) at = first_time(low, high)
-
-   contains
-
-      !> The time between `from` and `to` at which the drive has come to the `value` or, without that, slows down no
-      !> more.
-      pure real(wp) function first_time(from, to, value) result(first)
-         real(wp), intent(in) :: from, to
-         real(wp), intent(in), optional :: value
-         real(wp) :: before, f(3)
-         logical :: is_before
-         integer :: k
-
-         before = from
-         first = to
-         do k = 1, digits(1.0_wp)
-            f = drive_motion(law, middle_of(before, first))
-            is_before = slows_down(f)
-            if (present(value)) is_before = (f(1) - value)*way(d) < 0.0_wp
-            call halve(is_before, before, first)
-         end do
-      end function first_time
-
-      !> The speed of the drive falls, by its motion `f`.
-      pure logical function slows_down(f)
-         real(wp), intent(in) :: f(3)
-
-         slows_down = f(2)*f(3)*(span(2) - span(1)) < 0.0_wp
-      end function slows_down
-   end function time_of_values
 
    !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`:
    !> how that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are

@@ -1,7 +1,7 @@
 !> The diagnostics of the block engine: of the first motion, of a limit, and of singular positions.
 module block_diagnostics
    use kinds, only: wp
-   use drives, only: drive_motion
+   use drive_path, only: drive_at
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_far_estimate, diagnostic_singular, &
       diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
@@ -137,7 +137,7 @@ contains
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left, f(3)
-      logical :: moves(0:size(e%laws))
+      logical :: moves(0:size(e%path%laws))
       integer :: d, k
 
       allocate (list(0))
@@ -166,13 +166,13 @@ contains
             end associate
          end do
       end associate
-      do d = 1, size(e%laws)
+      do d = 1, size(e%path%laws)
          if (.not. moves(d)) cycle
-         f = drive_motion(e%laws(d), r%t)
+         f = drive_at(e%path, d, r%t)
          if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          r%drive = d
          r%value = f(1)
-         r%is_angle = .not. is_length(e%laws(d))
+         r%is_angle = .not. is_length(e%path%laws(d))
          if (abs(f(2)) > 0.0_wp) exit
       end do
       list = [r]

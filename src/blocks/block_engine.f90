@@ -2,12 +2,12 @@
 !> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: drive_t, mechanism_t, wanted_links, has_guide
+   use mechanism, only: mechanism_t, wanted_links, has_guide
    use scales, only: is_length
    use motion, only: motion_t, new_motion
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
-   use drives, only: drive_motion
+   use drive_path, only: drive_path_t, drive_at
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, remember, predict, largest_change, uncertain_part
@@ -64,10 +64,7 @@ module block_engine
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
-      type(drive_t), allocatable :: laws(:)             !< (drives)
-      type(drive_t), allocatable :: timed(:)            !< (drives) the deck's, while others are followed; then
-      real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
-      real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
+      type(drive_path_t) :: path                        !< of its drives
       integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for
       integer, allocatable :: orientation_of(:)         !< (links)
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
@@ -195,11 +192,11 @@ contains
       type(mechanism_t), intent(in) :: m
       integer :: i
 
-      e%laws = m%drives
-      e%unit_of = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives))
+      e%path%laws = m%drives
+      e%path%unit = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives))
       do i = 1, size(e%blocks%rows)
          associate (drive => e%blocks%rows(i)%drive)
-            if (drive > 0) e%unit_of(drive) = e%unit_of(drive)/e%blocks%numbers%rows(i)%unit
+            if (drive > 0) e%path%unit(drive) = e%path%unit(drive)/e%blocks%numbers%rows(i)%unit
          end associate
       end do
    end subroutine put_laws
@@ -261,16 +258,16 @@ contains
       separation = 2.0_wp/max(bound, tiny(bound))
    end function separation_of
 
-   !> Value, rate and acceleration of the drives at `t`.
+   !> Value, rate and acceleration of the drives at `t`, the time or another parameter of their path.
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       real(wp) :: f(3)
       integer :: i
 
-      do i = 1, size(e%laws)
-         f = drive_motion(e%laws(i), t)
-         e%state%drive_value(0:2, i) = e%unit_of(i)*f
+      do i = 1, size(e%path%laws)
+         f = drive_at(e%path, i, t)
+         e%state%drive_value(0:2, i) = e%path%unit(i)*f
       end do
    end subroutine set_drive_values
 
@@ -352,12 +349,12 @@ contains
       logical :: has_rates, finite
 
       ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
-      if (.not. allocated(found%by)) allocate (found%by(size(e%laws)))
+      if (.not. allocated(found%by)) allocate (found%by(size(e%path%laws)))
       unit = new_motion(size(found%position, 2))
       do j = 1, size(e%ratios)
          s = e%state
          s%drive_value(1:, :) = 0.0_wp
-         s%drive_value(1, e%ratios(j)) = e%unit_of(e%ratios(j))
+         s%drive_value(1, e%ratios(j)) = e%path%unit(e%ratios(j))
          missing = missing_nothing
          do k = 1, size(e%needed)
             associate (i => e%needed(k))
@@ -434,8 +431,8 @@ contains
 
       s = e%state
       if (e%history%filled > 0) then
-         do k = 1, size(e%laws)
-            s%drive_value(:, k) = e%unit_of(k)*drive_motion(e%laws(k), e%history%t(0))
+         do k = 1, size(e%path%laws)
+            s%drive_value(:, k) = e%path%unit(k)*drive_at(e%path, k, e%history%t(0))
          end do
          do k = 1, size(e%history%predicted)
             i = e%history%predicted(k)

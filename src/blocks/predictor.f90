@@ -20,7 +20,7 @@ module predictor
    use block_state, only: unknown_t, state_t, largest_drive_rate
    implicit none
    private
-   public :: history_t, remember, predict, is_even, largest_change, order_weights, uncertain_part
+   public :: history_t, begin_at, remember, predict, is_even, largest_change, order_weights, uncertain_part
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
    !> change may end at another assembly and still look right.
@@ -78,6 +78,15 @@ contains
       end do
       h%filled = min(h%filled + 1, 3)
    end subroutine remember
+
+   !> Puts the latest motion at the parameter `t` of another path: the rates remembered are no guide from there.
+   pure subroutine begin_at(h, t)
+      type(history_t), intent(inout) :: h
+      real(wp), intent(in) :: t
+
+      h%t(0) = t
+      h%filled = 0
+   end subroutine begin_at
 
    !> Sets the values of `u` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`: the
    !> largest difference from the latest.

@@ -2,11 +2,35 @@
 !>
 !> The motion is followed by blocks, whatever the method: they give the limits, the certificate and the remarks. METHOD
 !> DENSE and METHOD MATRIX solve for the motion at each instant where the blocks have found one.
+!>
+!> After an instant the analysis is in one of five states. The motion may stand on a singular position (`singular`).
+!>
+!> | state     | the last instant               | `reach` goes to the next instant by                               |
+!> |-----------|--------------------------------|-------------------------------------------------------------------|
+!> | not_begun | none had a position            | begin                                                             |
+!> | at_start  | none had a motion              | begin; rest, if it stands and no drive moves                      |
+!> | on_motion | had a position                 | follow; if it stands leave_position, or rest if no drive moves    |
+!> | lost      | was not reached                | follow                                                            |
+!> | beyond    | lay beyond a limit             | as before that                                                    |
+!>
+!> | from         | the instant          | `advance` | to        | remarks                                           |
+!> |--------------|----------------------|-----------|-----------|---------------------------------------------------|
+!> | not_begun    | has a motion         | arrive    | on_motion | redundant equations, other assemblies, estimate   |
+!> | not_begun    | has a position alone | arrive    | at_start  | redundant equations, links that can move          |
+!> | not_begun    | has no position      | stop_at   | not_begun | closure error                                     |
+!> | at_start     | has a motion         | arrive    | on_motion | the motion begins                                 |
+!> | at_start     | has a position alone | arrive    | at_start  |                                                   |
+!> | at_start     | has no position      | stop_at   | at_start  | closure error                                     |
+!> | the others   | has a position       | arrive    | on_motion | change points: passed, here, or returned from     |
+!> | on_motion    | is not reached       | stop_at   | lost      | closure error, or what ends the motion, and where |
+!> | lost, beyond | is not reached       | stop_at   | lost      | closure error                                     |
+!> | on_motion    | is beyond a limit    | pass_over | beyond    | what ends the motion, and where                   |
+!> | lost, beyond | is beyond a limit    | pass_over | beyond    | that it is beyond                                 |
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
-   use drives, only: is_at_rest
+   use drive_path, only: moving_drives, time_beside
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
@@ -17,10 +41,10 @@ module analysis
    use first_instant, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
-   use at_bifurcation, only: go_by_value, leave, time_beside
-   use following, only: following_t, step_record_t, begin_following, continue_to, go_on_from, &
-      go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before, branch_t, certificate_counts_t, &
-      branch_none, branch_first, branch_same, branch_crossed
+   use at_bifurcation, only: go_by_value, leave
+   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, &
+      step_rests, begin_following, continue_to, go_on_from, go_back, place_t, note_place, return_to, passed_of, &
+      limit_t, limit_before, branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -31,17 +55,19 @@ module analysis
    !> blocks.
    real(wp), parameter :: beside_start = 1.0e-3_wp
 
+   !> The states.
+   enum, bind(c)
+      enumerator :: not_begun, at_start, on_motion, lost, beyond
+   end enum
+
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
+      integer :: state = not_begun
+      logical, allocatable :: singular(:)                  !< (blocks) that are, if it stands on such a position
+      real(wp) :: last = 0.0_wp                            !< time of the last instant, but for those beyond a limit
       type(branch_t) :: branch                             !< of the last instant
       type(certificate_counts_t) :: certificate_counts     !< of all instants
       type(limit_t) :: limits(2)                           !< of the motion that is followed
-      logical :: has_begun = .false.                       !< a position was found
-      logical :: begins = .false.                          !< at the last instant none was followed yet
-      logical :: is_lost = .false.                         !< at the last instant none was
-      logical :: stands = .false.                          !< the last instant has a singular position
-      logical, allocatable :: singular(:)                  !< (blocks) if so, those that are singular there
-      real(wp) :: last = 0.0_wp                            !< time of the last instant
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
@@ -96,7 +122,6 @@ contains
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
-      logical :: goes_on
 
       call come_back(a)
       iterations = a%iterations
@@ -108,83 +133,108 @@ contains
          return
       end if
       call reach(a, t, step, list)
-      if (step%arrived) then
+      if (step%ending >= step_there) then
          call arrive(a, step, list, found)
       else
-         if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-         call give_up(a, t, step, found)
+         call stop_at(a, t, step, found)
       end if
       a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
-      goes_on = found%known == 2 .and. .not. found%rests
-      if (allocated(a%dense)) then
-         if (step%arrived) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
-         a%iterations = iterations
-         if (step%arrived) a%iterations = iterations + a%convergence%iterations
-      end if
-      if (goes_on) then
-         call go_on_from(a%following_t, t)
-      else
-         call go_back(a%following_t, step)
-      end if
-      a%is_lost = .not. step%arrived
-      a%stands = step%arrived .and. .not. goes_on
-      if (a%stands) then
-         a%singular = a%engine%is_singular
-         a%stands = any(a%singular(a%engine%needed))
-      end if
+      if (allocated(a%dense)) a%iterations = iterations + merge(a%convergence%iterations, 0, step%ending >= step_there)
       a%last = t
    end subroutine advance
 
-   !> Continues the motion to `t`; `step`: how that went, `list`: what there is to say of it if it stands on a change
-   !> point, or returns from a singular position. If no drive moves between the last instant and `t`, a singular
-   !> position is that of the last instant.
+   !> Continues the motion to `t`. `step`: how that went; `list`: what there is to say of it if it stands on a change
+   !> point, or returns from a singular position.
    subroutine reach(a, t, step, list)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      type(diagnostic_t), allocatable :: returns(:)
+
+      if (allocated(a%singular)) then
+         if (.not. any(moving_drives(a%engine%path, a%last, t))) then
+            call rest(a, t, step)
+            return
+         end if
+      end if
+      if (.not. a%follows) then
+         call begin(a, t, step, list)
+      else if (allocated(a%singular)) then
+         call leave_position(a, t, step, list)
+      else
+         call follow(a, t, step, list)
+      end if
+   end subroutine reach
+
+   !> Finds the first motion, at `t`. From a first position that is singular more than one motion begins: the one to `t`
+   !> begins in the assembly that is the nearest close to that position. At `t` another one may be, if the step is wide.
+   subroutine begin(a, t, step, list)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
       real(wp) :: beside
 
-      step%rests = a%stands
-      if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
-      if (step%rests) then
-         if (a%is_left) call return_to(a%following_t, a%left)
-         ! Blocks without velocities keep their position; the others find their velocities and accelerations.
-         associate (e => a%engine)
-            e%t = t
-            call set_drive_values(e, t)
-            a%convergence = nothing_gathered
-            call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., a%convergence)
-         end associate
-         a%convergence%singular = .true.
-         step%arrived = .true.
-         step%stands = .true.
-         return
-      end if
-
-      a%begins = .not. a%follows
-      if (a%begins .and. a%stands) then
-         ! From a first position that is singular, more than one motion begins. The one to `t` begins in the assembly
-         ! that is the nearest close to that position: at `t` another one may be, if the step is wide.
-         beside = time_beside(a%engine, a%last, t, beside_start)
+      if (allocated(a%singular)) then
+         beside = time_beside(a%engine%path, a%last, t, beside_start)
          call continue_to(a%following_t, beside, step)
-         if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
+         if (step%ending >= step_there .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
             call go_on_from(a%following_t, beside)
       end if
-      ! Back in time the motion is what it was.
-      if (a%stands .and. .not. a%begins .and. (a%t - a%last)*(t - a%last) < 0.0_wp) then
+      call follow(a, t, step, list)
+   end subroutine begin
+
+   !> Follows the motion to `t`, by time or by the value of a drive.
+   subroutine follow(a, t, step, list)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+
+      call continue_to(a%following_t, t, step)
+      if (step%ending < step_there) call go_by_value(a%following_t, t, step, list)
+   end subroutine follow
+
+   !> Follows the motion to `t` from the singular position on which it stands. Back in time it is what it was, unless a
+   !> BRANCH card asks for another branch.
+   subroutine leave_position(a, t, step, list)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable :: returns(:)
+
+      if ((a%t - a%last)*(t - a%last) < 0.0_wp) then
          call leave(a%following_t, a%last, t, &
             pack(a%engine%moving, a%singular(a%engine%moving)), returns)
          step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
-         step%blocked = size(step%dead_end) > 0
-         if (step%blocked) return
+         if (size(step%dead_end) > 0) then
+            step%ending = step_blocked
+            return
+         end if
       end if
-      call continue_to(a%following_t, t, step)
-      if (.not. step%arrived) call go_by_value(a%following_t, t, step, list)
-      if (allocated(returns) .and. step%arrived .and. .not. (allocated(list) .or. passed_of(step) > 0 &
+      call follow(a, t, step, list)
+      if (allocated(returns) .and. step%ending >= step_there .and. .not. (allocated(list) .or. passed_of(step) > 0 &
          .or. a%convergence%singular)) call move_alloc(returns, list)
-   end subroutine reach
+   end subroutine leave_position
+
+   !> Stays on the singular position on which the motion stands, since no drive moves until `t`. Blocks without
+   !> velocities keep their position; the others find their velocities and accelerations.
+   subroutine rest(a, t, step)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(inout) :: step
+
+      if (a%is_left) call return_to(a%following_t, a%left)
+      associate (e => a%engine)
+         e%t = t
+         call set_drive_values(e, t)
+         a%convergence = nothing_gathered
+         call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., a%convergence)
+      end associate
+      a%convergence%singular = .true.
+      step%ending = step_rests
+   end subroutine rest
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
    !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
@@ -205,7 +255,8 @@ contains
          a%is_left = .true.
       end if
       call reach(a, t, step, list)
-      if (step%arrived .and. (step%rests .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
+      if (step%ending >= step_there .and. (step%ending == step_rests &
+         .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
          found%t = t
          call take_motion(a, found)
          is_found = found%known == 2 .and. is_solved(a%convergence)
@@ -227,65 +278,93 @@ contains
       a%is_left = .false.
    end subroutine come_back
 
-   !> The motion found at the end of `step`, what is verified of it, and what there is to say of it; `list`: if it
-   !> stands on a change point. Where the blocks have found a position and the method has not, that is said once of
-   !> instants in a row. A motion that began beside a singular position is no longer near the deck's estimate.
+   !> Takes the motion at the end of `step` as `found`, with what is verified of it and what there is to say of it; a
+   !> regular one is followed from there on. `list`: what there is to say if it stands on a change point, or returns.
    subroutine arrive(a, step, list, found)
       type(analysis_t), intent(inout) :: a
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
-      logical :: had_missed, crosses
+      integer :: was
+      logical :: had_missed, goes_on
 
+      was = min(a%state, on_motion)
       had_missed = a%has_missed
-      if (a%convergence%singular .and. .not. step%stands) then
+      if (a%convergence%singular .and. step%ending == step_there) then
          call go_by_value(a%following_t, found%t, step, list)
          if (a%convergence%singular .and. a%follows .and. .not. allocated(list)) then
             list = change_diagnostics(a%engine, found%t)
-            step%stands = size(list) > 0
+            if (size(list) > 0) step%ending = step_stands
          end if
       end if
       call take_motion(a, found)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
-      crosses = passed_of(step) > 0
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-      if (allocated(list)) then
-         call add_diagnostics(list, found)
-         crosses = crosses .or. any(list%other)
-      end if
-
+      if (allocated(list)) call add_diagnostics(list, found)
       if (a%has_missed) then
          call cut(found, -1, mark_not_converged)
          call get_driven_links(a%engine, found%t, found)
          a%branch = branch_t()
+         ! Of instants in a row this is said once.
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
             other=a%convergence%ended == ended_elsewhere)], found)
-         return
-      end if
-
-      if (step%rests) then
-         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
       else
-         a%branch = step%branch
-         a%branch%kind = merge(branch_crossed, branch_same, crosses)
-         if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
+         call certify()
+         if (was /= on_motion) call tell_first()
       end if
-      if (a%begins) a%branch%kind = branch_first
-      associate (counts => a%certificate_counts)
-         if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
-         if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
-      end associate
 
-      if (a%has_begun .and. .not. (a%begins .and. found%known == 2)) return
-      if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
-      a%has_begun = .true.
-      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
+      goes_on = found%known == 2 .and. .not. found%rests
+      if (allocated(a%dense)) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
+      if (allocated(a%singular)) deallocate (a%singular)
+      if (goes_on) then
+         call go_on_from(a%following_t, found%t)
+      else
+         call go_back(a%following_t, step)
+         if (any(a%engine%is_singular(a%engine%needed))) a%singular = a%engine%is_singular
+      end if
+      if (a%follows) then
+         a%state = on_motion
+      else if (.not. a%has_missed) then
+         a%state = at_start
+      end if
+
+   contains
+
+      !> Notes what is verified of the position.
+      subroutine certify()
+         logical :: crosses
+
+         if (step%ending == step_rests) then
+            a%branch = branch_t(kind=min(a%branch%kind, branch_same))
+         else
+            crosses = passed_of(step) > 0
+            if (allocated(list)) crosses = crosses .or. any(list%other)
+            a%branch = step%branch
+            a%branch%kind = merge(branch_crossed, branch_same, crosses)
+            if (a%convergence%singular .and. step%ending == step_there) a%branch%kind = branch_none
+         end if
+         if (was /= on_motion) a%branch%kind = branch_first
+         associate (counts => a%certificate_counts)
+            if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
+            if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
+         end associate
+      end subroutine certify
+
+      !> Says what there is to say of the first position, or of the first motion after such positions. A motion that
+      !> began beside a singular position is no longer near the deck's estimate.
+      subroutine tell_first()
+         if (was == at_start) then
+            if (found%known < 2) return
+            call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
+         end if
+         if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
+      end subroutine tell_first
    end subroutine arrive
 
    !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
-   !> that is said once. The instant lies beyond a limit if no substep could be made and it is further behind that place
-   !> than `near_part` of the step, or if it is only known that it was not reached.
-   subroutine give_up(a, t, step, found)
+   !> that is said once. The motion is followed from where it was. `t` lies beyond a limit if no substep could be made
+   !> and it is further behind that place than `near_part` of the step, or if it is only known that it was not reached.
+   subroutine stop_at(a, t, step, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t), intent(in) :: step
@@ -294,6 +373,7 @@ contains
       real(wp) :: ahead
       logical :: inconsistent
 
+      if (allocated(step%passed)) call add_diagnostics(step%passed, found)
       a%branch = branch_t()
       inconsistent = a%convergence%ended == ended_inconsistent
       if (inconsistent) then
@@ -317,26 +397,28 @@ contains
       else
          ahead = t
          ! To where a slide is infinite there are more substeps than are tried.
-         if (step%gave_up) &
+         if (step%ending == step_creeps) &
             ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-         list = limit_diagnostic(a%engine, ahead, step%gave_up)
-         if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
+         list = limit_diagnostic(a%engine, ahead, step%ending == step_creeps)
+         if (size(list) == 0 .and. a%follows .and. step%ending == step_blocked) &
+            list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
       end if
-      if (step%gave_up) then
+      if (step%ending == step_creeps) then
          if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
       else if (allocated(step%dead_end)) then
          if (size(step%dead_end) > 0) list = step%dead_end
       end if
-      if (.not. a%is_lost) call add_diagnostics(list, found)
-      if (.not. a%follows .or. inconsistent .or. abs(t - a%place%t) <= 0.0_wp) return
-      associate (limit => a%limits(merge(2, 1, t > a%place%t)))
-         limit%known = .true.
-         limit%t = merge(a%t + near_part*(t - a%place%t), t, step%blocked)
-         limit%diagnostics = list
-      end associate
-   end subroutine give_up
+      if (a%state <= on_motion) call add_diagnostics(list, found)
 
-   !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason.
+      if (a%follows .and. .not. inconsistent .and. abs(t - a%place%t) > 0.0_wp) &
+         a%limits(merge(2, 1, t > a%place%t)) = limit_t(.true., &
+         merge(a%t + near_part*(t - a%place%t), t, step%ending == step_blocked), list)
+      call go_back(a%following_t, step)
+      if (a%follows) a%state = lost
+      if (allocated(a%singular)) deallocate (a%singular)
+   end subroutine stop_at
+
+   !> `t` lies beyond a limit, and nothing is solved for. The first of such instants gets the reason.
    subroutine pass_over(a, t, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
@@ -349,14 +431,14 @@ contains
       a%branch = branch_t()
       side = limit_before(a%limits, t)
       associate (told => a%limits(side)%diagnostics)
-         if (.not. a%is_lost) then
+         if (a%state <= on_motion) then
             call add_diagnostics(told, found)
          else if (any(told%kind == diagnostic_limit)) then
             call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
                t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
          end if
       end associate
-      a%is_lost = .true.
+      a%state = beyond
    end subroutine pass_over
 
    !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
@@ -389,7 +471,7 @@ contains
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows
-      if (found%rests) found%rests = all(is_at_rest(a%engine%laws, found%t, found%t))
+      if (found%rests) found%rests = .not. any(moving_drives(a%engine%path, found%t, found%t))
       if (found%rests) then
          found%velocity = 0.0_wp
          found%acceleration = 0.0_wp

@@ -7,13 +7,14 @@
 !> leave its own chord by more: round a cusp there is another assembly at the same values.
 module drive_excursion
    use kinds, only: wp
-   use mechanism, only: drive_t, mechanism_t, find_instants
+   use mechanism, only: mechanism_t, find_instants
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
-   use drives, only: drive_motion, bounds_t, bounds_of
+   use drives, only: bounds_t, bounds_of
+   use drive_path, only: drive_path_t, drive_at, drive_bounds
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, substep_allowed, excursion, judge_step
+   public :: drive_excursion_t, new_drive_excursion, limit_substep, excursion, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -21,10 +22,10 @@ module drive_excursion
    !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
    real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
 
-   !> The laws of all drives, and bounds of them. Times are in the deck's unit.
+   !> Bounds of the drives by time, in the deck's unit.
    type :: drive_excursion_t
-      type(drive_t), allocatable :: laws(:)       !< (drives)
-      real(wp), allocatable :: unit(:)            !< (drives) of the value: 1 over the characteristic length, or 1
+      !> (drives) Of the value: 1 over the characteristic length, or 1; none where no position depends on those before.
+      real(wp), allocatable :: unit(:)
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
       real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
@@ -38,19 +39,19 @@ contains
       logical, intent(in) :: depends
       type(drive_excursion_t) :: p
       type(bounds_t) :: b
-      real(wp) :: length, largest(2)
+      real(wp) :: largest(2)
       integer :: i
 
-      p%laws = m%drives(:merge(size(m%drives), 0, depends))
-      length = 1.0_wp
-      if (any(is_length(p%laws))) length = solver_length(m)
-      p%unit = merge(1.0_wp/length, 1.0_wp, is_length(p%laws))
+      allocate (p%unit(merge(size(m%drives), 0, depends)), source=1.0_wp)
+      associate (lengths => is_length(m%drives(:size(p%unit))))
+         if (any(lengths)) p%unit = merge(1.0_wp/solver_length(m), 1.0_wp, lengths)
+      end associate
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
       ! First and second derivatives, in radians or characteristic lengths; huge: no bound.
       largest = 0.0_wp
-      do i = 1, size(p%laws)
-         b = bounds_of(p%laws(i), p%first, p%last)
+      do i = 1, size(p%unit)
+         b = bounds_of(m%drives(i), p%first, p%last)
          where (b%high(1:) >= huge(1.0_wp) .or. b%low(1:) <= -huge(1.0_wp))
             largest = huge(1.0_wp)
          elsewhere
@@ -62,29 +63,34 @@ contains
       p%curve = largest(2)
    end function new_drive_excursion
 
-   !> The part of the `substep` from `t` on that the drives allow at once.
-   pure real(wp) function substep_allowed(p, t, substep) result(allowed)
+   !> Finds the part `allowed` of the `substep` from the parameter `t` on that the drives allow at once. `away`: how far
+   !> they leave their chords in it, in radians or characteristic lengths, at most; see `excursion`.
+   pure subroutine limit_substep(p, path, t, substep, allowed, away)
       type(drive_excursion_t), intent(in) :: p
+      type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t, substep
-      real(wp) :: change, away
+      real(wp), intent(out) :: allowed, away
+      real(wp) :: change
       logical :: inside, is_plain
 
       allowed = substep
+      inside = is_within(p, path, t, t + substep)
       call judge_step(p, substep, away, is_plain)
-      if (is_plain .and. is_within(p, t, t + substep)) return
+      if (is_plain .and. inside) return
       do while (abs((t + allowed) - t) > 0.0_wp)
-         call examine(p, t, t + allowed, change, away)
-         inside = is_within(p, t, t + allowed)
+         call examine(p, path, t, t + allowed, change, away)
+         inside = is_within(p, path, t, t + allowed)
          if (change > largest_change .and. .not. (inside .and. abs(allowed) <= p%longest)) then
             allowed = allowed*max(min_factor, a_little_less*largest_change/change)
             if (inside) allowed = sign(max(abs(allowed), p%longest), substep)
          else if (away > largest_excursion) then
             allowed = 0.5_wp*allowed
          else
-            return
+            exit
          end if
       end do
-   end function substep_allowed
+      if (inside .and. p%curve < huge(1.0_wp)) away = 0.125_wp*allowed**2*p%curve
+   end subroutine limit_substep
 
    !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
    !> `away`: bounds their `excursion`.
@@ -101,25 +107,21 @@ contains
       is_plain = away <= largest_excursion
    end subroutine judge_step
 
-   !> How far the drives leave their chords from `t1` to `t2`, in radians or characteristic lengths; unless `closely`,
-   !> an upper bound of that at hardly any cost, where there is one.
-   pure real(wp) function excursion(p, t1, t2, closely) result(away)
+   !> How far the drives leave their chords between the parameters `t1` and `t2`, in radians or characteristic lengths.
+   pure real(wp) function excursion(p, path, t1, t2) result(away)
       type(drive_excursion_t), intent(in) :: p
+      type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
-      logical, intent(in) :: closely
       real(wp) :: change
 
-      if (.not. closely .and. is_within(p, t1, t2) .and. p%curve < huge(1.0_wp)) then
-         away = 0.125_wp*(t2 - t1)**2*p%curve
-      else
-         call examine(p, t1, t2, change, away)
-      end if
+      call examine(p, path, t1, t2, change, away)
    end function excursion
 
    !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
    !> a chord being off its curve by h^2/8 times the second derivative at most.
-   pure subroutine examine(p, t1, t2, change, away)
+   pure subroutine examine(p, path, t1, t2, change, away)
       type(drive_excursion_t), intent(in) :: p
+      type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
       real(wp), intent(out) :: change, away
       type(bounds_t) :: b
@@ -131,15 +133,15 @@ contains
       off_all = 0.0_wp
       moving = 0
       h = abs(t2 - t1)
-      do i = 1, size(p%laws)
-         b = bounds_of(p%laws(i), t1, t2)
+      do i = 1, size(p%unit)
+         b = drive_bounds(path, i, t1, t2)
          if (any(b%high >= huge(1.0_wp) .or. b%low <= -huge(1.0_wp))) then
             change = huge(1.0_wp)
             away = huge(1.0_wp)
             return
          end if
-         f1 = drive_motion(p%laws(i), t1)
-         f2 = drive_motion(p%laws(i), t2)
+         f1 = drive_at(path, i, t1)
+         f2 = drive_at(path, i, t2)
          rate = max(-b%low(1), b%high(1))
          if (rate > 0.0_wp) moving = moving + 1
          change = max(change, p%unit(i)*min(rate*h, max(b%high(0) - f1(1), f1(1) - b%low(0))))
@@ -153,11 +155,12 @@ contains
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
 
-   !> `t1` and `t2` lie within the time of all instants.
-   pure logical function is_within(p, t1, t2)
+   !> `t1` and `t2` lie within the time of all instants, and are times.
+   pure logical function is_within(p, path, t1, t2)
       type(drive_excursion_t), intent(in) :: p
+      type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
 
-      is_within = min(t1, t2) >= p%first .and. max(t1, t2) <= p%last
+      is_within = min(t1, t2) >= p%first .and. max(t1, t2) <= p%last .and. .not. allocated(path%leg)
    end function is_within
 end module drive_excursion

@@ -10,16 +10,17 @@ module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
-   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, excursion
-   use drives, only: drive_motion
+   use drive_excursion, only: drive_excursion_t, new_drive_excursion, limit_substep, excursion
+   use drive_path, only: drive_at
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use block_engine, only: block_engine_t, engine_state_t, accept
    use first_instant, only: solve_instant
    use block_branches, only: pass, branch_requests_t, new_branch_requests
    implicit none
    private
-   public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, &
+   public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, follow_from, &
       place_t, note_place, return_to, passed_of
+   public :: step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
 
@@ -42,6 +43,16 @@ module following
    integer, parameter :: branch_first = 1     !< chosen by the deck's estimated position
    integer, parameter :: branch_same = 2      !< that of the motion that is followed
    integer, parameter :: branch_crossed = 3   !< the same, through change points
+
+   !> How a step ends. From step_there on it has come to the instant asked for.
+   enum, bind(c)
+      enumerator :: step_failed = 0   !< no position is found
+      enumerator :: step_blocked      !< no substep can be made from where it has come
+      enumerator :: step_creeps       !< the largest number of substeps is made
+      enumerator :: step_there        !< it has a position
+      enumerator :: step_stands       !< there, on a change point; the motion is still followed from before that
+      enumerator :: step_rests        !< there, on the singular position of the instant before
+   end enum
 
    !> What is certified of one step.
    type :: branch_t
@@ -79,12 +90,8 @@ module following
 
    !> A step of the continuation, from one instant to another.
    type :: step_record_t
-      logical :: arrived = .false.               !< at the instant asked for
-      logical :: blocked = .false.               !< at a place from which no substep could be made
-      logical :: stands = .false.                !< at a singular position; the motion is still followed from before it
-      logical :: rests = .false.                 !< at the singular position of the instant before
+      integer :: ending = step_failed            !< step_failed, ...
       integer :: tries = 0                       !< substeps tried
-      logical :: gave_up = .false.               !< after the largest number of them
       type(branch_t) :: branch                   !< what was verified of the substeps made
       type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< change points; not allocated: none
    end type step_record_t
@@ -121,7 +128,7 @@ contains
       type(step_record_t), intent(out) :: step
       real(wp) :: substep, here, longest, allowed, shortest
       integer :: failures, longer
-      logical :: accepted, grows
+      logical :: accepted, grows, is_last
 
       substep = t - f%t
       longest = abs(substep)
@@ -130,30 +137,32 @@ contains
       longer = 0
       do while (step%tries < max_substeps)
          step%tries = step%tries + 1
-         step%arrived = .not. f%follows
+         is_last = .not. f%follows
          if (f%follows) then
             substep = sign(min(abs(substep), abs(t - f%t)), substep)
-            allowed = substep_allowed(f%drives, f%t, substep)
+            call limit_substep(f%drives, f%engine%path, f%t, substep, allowed, f%engine%state%excursion)
             if (abs(allowed) < abs(substep)) longest = max(abs(allowed), shortest)
             substep = allowed
-            step%arrived = abs(substep) >= abs(t - f%t)
+            is_last = abs(substep) >= abs(t - f%t)
          end if
-         here = merge(t, f%t + substep, step%arrived)
+         here = merge(t, f%t + substep, is_last)
          call attempt(f, here, step, accepted)
-         step%arrived = step%arrived .and. accepted
-         if (step%arrived) exit
+         if (is_last .and. accepted) then
+            step%ending = step_there
+            return
+         end if
          if (step%tries == 1) call note_place(f, f%place)
          grows = accepted .and. (longer < max_longer .or. .not. f%convergence%singular)
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
-         if (.not. f%follows) exit
+         if (.not. f%follows) return
          if (.not. is_solved(f%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
          longer = merge(merge(0, longer + 1, accepted), max_longer, grows)
          substep = merge(1.5_wp, 0.5_wp, grows)*substep
-         step%blocked = abs(substep) <= min_substep*min(longest, abs(t - f%t))
-         if (step%blocked .or. failures > max_failures) exit
+         if (abs(substep) <= min_substep*min(longest, abs(t - f%t))) step%ending = step_blocked
+         if (step%ending == step_blocked .or. failures > max_failures) return
       end do
-      step%gave_up = step%tries == max_substeps .and. .not. step%arrived
+      step%ending = step_creeps
    end subroutine continue_to
 
    !> Solves for the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
@@ -163,7 +172,6 @@ contains
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
 
-      if (f%follows) f%engine%state%excursion = excursion(f%drives, f%t, t, .false.)
       call solve_instant(f%engine, t, f%follows, f%convergence)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
@@ -191,16 +199,16 @@ contains
       real(wp) :: ratio, away, off, h, first(3), last(3)
       integer :: i
 
-      associate (c => f%convergence, p => f%drives)
+      associate (c => f%convergence, path => f%engine%path)
          ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
          if (ratio > max_kantorovich_ratio) then
-            away = excursion(p, f%t, t, .true.)
+            away = excursion(f%drives, path, f%t, t)
             h = t - f%t
-            do i = 1, size(p%laws)
-               first = drive_motion(p%laws(i), f%t)
-               last = drive_motion(p%laws(i), t)
+            do i = 1, size(f%drives%unit)
+               first = drive_at(path, i, f%t)
+               last = drive_at(path, i, t)
                off = last(1) - first(1) - h*(first(2) + 0.5_wp*h*first(3))
-               if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, p%unit(i)*abs(off))
+               if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, f%drives%unit(i)*abs(off))
             end do
             ratio = c%kantorovich_ratio + c%growth*away
          end if
@@ -257,10 +265,18 @@ contains
       type(step_record_t), intent(in) :: step
 
       if (step%tries < 2) return
-      f%t = f%place%t
-      f%engine%followed_t = f%place%engine%followed_t
+      call follow_from(f, f%place)
       f%branch_requests = f%place%branch_requests
    end subroutine go_back
+
+   !> Follows the motion at the place `p` again; the motion found last stays.
+   subroutine follow_from(f, p)
+      type(following_t), intent(inout) :: f
+      type(place_t), intent(in) :: p
+
+      f%t = p%t
+      f%engine%followed_t = p%engine%followed_t
+   end subroutine follow_from
 
    !> Notes in `p` where the motion is followed.
    subroutine note_place(f, p)

@@ -27,7 +27,7 @@ module closure_equations
    use kinds, only: wp
    use planar, only: pi, rotated, quarter_turn, cross
    use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
-   use drives, only: drive_motion
+   use drive_path, only: drive_path_t, drive_at
    use pose, only: system_t, pose_t, normal_angle, secants
    implicit none
    private
@@ -51,15 +51,15 @@ contains
                p%q(3, s%link_of(pair%point_j)) - p%q(3, s%link_of(pair%point_i)) - pair%beta]
          end associate
       end do
-      do k = 1, size(s%laws)
-         associate (row => r(2*size(s%pairs) + k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
-            select case (s%laws(k)%kind)
+      do k = 1, size(s%drives)
+         associate (row => r(2*size(s%pairs) + k), subject => s%drives(k)%subject, axis => axis_of(s%drives(k)%kind))
+            select case (s%drives(k)%kind)
             case (drive_angle)
                row = p%q(3, subject)
             case (drive_x, drive_y)
                row = p%q(axis, s%link_of(subject)) + p%body_vector(axis, subject)
             case (drive_relangle)
-               row = p%q(3, s%laws(k)%second) - p%q(3, subject)
+               row = p%q(3, s%drives(k)%second) - p%q(3, subject)
             case default
                row = dot_product(closure_error(s, p, subject), along(s, p, subject))
             end select
@@ -89,10 +89,10 @@ contains
             end if
          end associate
       end do
-      do k = 1, size(s%laws)
+      do k = 1, size(s%drives)
          row = 2*size(s%pairs) + k
          coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
-         associate (drive => s%laws(k), subject => s%laws(k)%subject, axis => axis_of(s%laws(k)%kind))
+         associate (drive => s%drives(k), subject => s%drives(k)%subject, axis => axis_of(s%drives(k)%kind))
             select case (drive%kind)
             case (drive_angle)
                call place(s, a, row, subject, coefficients)
@@ -128,8 +128,8 @@ contains
             gamma(2*k - 1) = projection_remainder(s, p, v, k, normal(s, p, k))
          end if
       end do
-      do k = 1, size(s%laws)
-         associate (row => gamma(2*size(s%pairs) + k), subject => s%laws(k)%subject, kind => s%laws(k)%kind)
+      do k = 1, size(s%drives)
+         associate (row => gamma(2*size(s%pairs) + k), subject => s%drives(k)%subject, kind => s%drives(k)%kind)
             if (any(kind == [drive_x, drive_y])) &
                row = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
             if (kind == drive_slide) row = projection_remainder(s, p, v, subject, along(s, p, subject))
@@ -137,16 +137,18 @@ contains
       end do
    end subroutine remainder
 
-   !> Value, rate and acceleration (3, drives) of the drives at time `t`, in the system's unit and from its origin.
-   pure subroutine find_drive_values(s, t, f)
+   !> Value, rate and acceleration (3, drives) of the drives on `path` at the parameter `p`, in the system's unit and
+   !> from its origin.
+   pure subroutine find_drive_values(s, path, p, f)
       type(system_t), intent(in) :: s
-      real(wp), intent(in) :: t
+      type(drive_path_t), intent(in) :: path
+      real(wp), intent(in) :: p
       real(wp), intent(out) :: f(:, :)
       integer :: i
 
-      do i = 1, size(s%laws)
-         f(:, i) = drive_motion(s%laws(i), t)
-         associate (kind => s%laws(i)%kind)
+      do i = 1, size(s%drives)
+         f(:, i) = drive_at(path, i, p)
+         associate (kind => s%drives(i)%kind)
             if (any(kind == [drive_x, drive_y])) f(1, i) = f(1, i) - s%origin(axis_of(kind))
             if (any(kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
          end associate

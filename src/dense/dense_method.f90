@@ -87,7 +87,7 @@ contains
       integer :: k, iterations
 
       iterations = 0
-      call find_drive_values(d%system, found%t, d%drive_values)
+      call find_drive_values(d%system, e%path, found%t, d%drive_values)
       call get_motion(e, found, finite)
       there = found%position
       there(:2, :) = there(:2, :)/d%system%length

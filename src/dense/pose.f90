@@ -27,7 +27,7 @@ module pose
       integer, allocatable :: link_of(:)          !< (points)
       real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
       type(pair_t), allocatable :: pairs(:)
-      type(drive_t), allocatable :: laws(:)       !< of the drives
+      type(drive_t), allocatable :: drives(:)     !< each is one equation, the last ones
       real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
    end type system_t
 
@@ -67,7 +67,7 @@ contains
       s%pairs%offset = m%pairs%offset/s%length
       s%guide(1, :) = cos(m%pairs%alpha)
       s%guide(2, :) = sin(m%pairs%alpha)
-      s%laws = m%drives
+      s%drives = m%drives
    end function new_system
 
    !> The deck's positions: of ground links the given ones, of the others the estimates.

@@ -138,7 +138,7 @@ contains
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(pose_t), intent(in) :: p
-      real(wp) :: bound(2*size(s%pairs) + size(s%laws))
+      real(wp) :: bound(2*size(s%pairs) + size(s%drives))
       real(wp) :: body(size(s%link_of))
       integer :: k, row
 
@@ -154,11 +154,11 @@ contains
             end if
          end associate
       end do
-      do k = 1, size(s%laws)
+      do k = 1, size(s%drives)
          row = 2*size(s%pairs) + k
-         associate (subject => s%laws(k)%subject)
-            if (any(s%laws(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
-            if (s%laws(k)%kind == drive_slide) bound(row) = bound(2*subject - 1)
+         associate (subject => s%drives(k)%subject)
+            if (any(s%drives(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
+            if (s%drives(k)%kind == drive_slide) bound(row) = bound(2*subject - 1)
          end associate
       end do
    end function jacobian_lipschitz
@@ -170,7 +170,7 @@ contains
       type(coordinates_t), intent(in) :: c
       type(pose_t), intent(in) :: p
       real(wp), intent(in) :: y(:, :)          !< (n, forms or more)
-      real(wp) :: bound(2*size(s%pairs) + size(s%laws))
+      real(wp) :: bound(2*size(s%pairs) + size(s%drives))
       integer :: m
 
       bound = jacobian_lipschitz(s, c, p)
@@ -209,8 +209,8 @@ contains
          associate (pair => c%slides(k))
             is_of_pair = .false.
             is_of_pair(2*pair - 1) = .true.
-            is_of_pair(2*size(s%pairs) + 1:2*size(s%pairs) + size(s%laws)) = &
-               s%laws%kind == drive_slide .and. s%laws%subject == pair
+            is_of_pair(2*size(s%pairs) + 1:2*size(s%pairs) + size(s%drives)) = &
+               s%drives%kind == drive_slide .and. s%drives%subject == pair
             do axis = 1, 2
                unit = 0.0_wp
                unit(axis, s%link_of(s%pairs(pair)%point_i)) = max(1.0_wp, slide_length(s, p, pair))

@@ -5,7 +5,8 @@
 #define IS(value)
 module lane_state
    use kinds, only: wp
-   use mechanism, only: drive_t, own_predictor
+   use mechanism, only: own_predictor
+   use drive_path, only: drive_path_t
    use blocks, only: blocks_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
@@ -33,10 +34,10 @@ module lane_state
    type :: lanes_t
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)
-      logical :: is_polynomial = .true.                 !< no law of any lane has terms
-      type(drive_t), allocatable :: laws(:, :)          !< (drives, lanes)
+      logical :: is_polynomial = .true.                 !< the laws have no terms
+      type(drive_path_t) :: path(width)                 !< of the drives; its units are as `unit`
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
-      real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
+      real(wp), allocatable :: unit(:, :)               !< (lanes, drives) see `drive_path_t`
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
@@ -79,8 +80,8 @@ contains
       l%blocks = e%blocks
       l%moving = e%moving
       l%predicted = e%history%predicted
-      associate (b => l%blocks, drives => size(e%laws))
-         allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
+      associate (b => l%blocks, drives => size(e%path%laws))
+         allocate (l%polynomial(width, 3, drives), l%unit(width, drives))
          allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
          allocate (l%block(size(b%list)))
          allocate (l%past(width, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
@@ -111,16 +112,14 @@ contains
          if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
       end associate
       if (.not. is_alike) return
-      do i = 1, size(e%laws)
-         l%laws(i, lane) = e%laws(i)
-         l%polynomial(lane, :, i) = e%laws(i)%polynomial
-         l%unit_of(lane, i) = e%unit_of(i)
-      end do
+      l%path(lane) = e%path
       l%is_polynomial = .true.
-      do k = 1, width
-         do i = 1, size(e%laws)
-            if (allocated(l%laws(i, k)%terms)) l%is_polynomial = l%is_polynomial .and. size(l%laws(i, k)%terms) == 0
-         end do
+      do i = 1, size(e%path%laws)
+         associate (law => e%path%laws(i))
+            l%polynomial(lane, :, i) = law%polynomial
+            if (allocated(law%terms)) l%is_polynomial = l%is_polynomial .and. size(law%terms) == 0
+         end associate
+         l%unit(lane, i) = e%path%unit(i)
       end do
       associate (b => e%blocks, x => e%blocks%numbers)
          do i = 1, size(b%list)

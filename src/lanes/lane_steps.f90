@@ -8,7 +8,7 @@ module lane_steps
    use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
    use following, only: largest_correction
-   use drives, only: drive_motion
+   use drive_path, only: drive_at
    use lane_sines, only: width, max_angle
    use lane_elimination, only: max_order, make_room, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, unknown_t, depth
@@ -57,16 +57,16 @@ contains
       real(wp), intent(in) :: t(width)
       integer :: i, lane
 
-      do i = 1, size(l%laws, 1)
+      do i = 1, size(l%unit, 2)
          if (l%is_polynomial) then
-            associate (c => l%polynomial(:, :, i), unit => l%unit_of(:, i))
+            associate (c => l%polynomial(:, :, i), unit => l%unit(:, i))
                l%drive(:, 0, i) = (c(:, 1) + t*(c(:, 2) + t*c(:, 3)/2.0_wp))*unit
                l%drive(:, 1, i) = (c(:, 2) + t*c(:, 3))*unit
                l%drive(:, 2, i) = c(:, 3)*unit
             end associate
          else
             do lane = 1, width
-               l%drive(lane, :, i) = drive_motion(l%laws(i, lane), t(lane))*l%unit_of(lane, i)
+               l%drive(lane, :, i) = drive_at(l%path(lane), i, t(lane))*l%unit(lane, i)
             end do
          end if
       end do

@@ -118,7 +118,7 @@ contains
       type(tube_t) :: tube
       type(block_engine_t), allocatable :: other        ! few steps need it
 
-      tube = new_tube(e%blocks, size(e%laws))
+      tube = new_tube(e%blocks, size(e%path%laws))
       proof%is_proved = .true.
       call prove_part(from, to, min_part*abs(to%t - from%t))
 
@@ -152,7 +152,7 @@ contains
          call solve_each(other, other%needed, .false., c)
          if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          allocate (middle)
-         middle = new_placed(e%blocks, size(e%laws))
+         middle = new_placed(e%blocks, size(e%path%laws))
          call prove_position(p, other, other%t, 0, middle, failed)
          proof%is_proved = failed == 0
          if (proof%is_proved) call prove_part(from, middle, shortest)

@@ -93,9 +93,9 @@ contains
       q%gap = 0.0_wp
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       q%u(:) = unknown_t()
-      do i = 1, size(e%laws)
-         law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
-         associate (value => e%state%drive_value(:, i), unit => e%unit_of(i))
+      do i = 1, size(e%path%laws)
+         law = bounds_of(e%path%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
+         associate (value => e%state%drive_value(:, i), unit => e%path%unit(i))
             q%drive(:, i)%mid = value
             q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value))*room
          end associate

@@ -55,7 +55,7 @@ contains
       type(block_engine_t), intent(in) :: e
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      logical :: unbounded(0:size(e%laws))
+      logical :: unbounded(0:size(e%path%laws))
       type(ball_t) :: c(0:2)
       real(wp) :: h, radius
       integer :: k, j
@@ -119,12 +119,13 @@ contains
          earliest = min(from%t, to%t)
          earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)
          unbounded(0) = .false.
-         do i = 1, size(e%laws)
-            law = bounds_of(e%laws(i), earliest, max(from%t, to%t) + late)
+         do i = 1, size(e%path%laws)
+            law = bounds_of(e%path%laws(i), earliest, max(from%t, to%t) + late)
             unbounded(i) = max(abs(law%low(2)), abs(law%high(2))) >= huge(1.0_wp)
             if (unbounded(i)) cycle
             c = cubic(h, from%drive(:1, i)%mid, to%drive(:1, i)%mid)
-            change = max(0.0_wp, law%high(2)*e%unit_of(i) - c(2)%mid, c(2)%mid - law%low(2)*e%unit_of(i)) + c(2)%radius
+            change = c(2)%radius + max(0.0_wp, law%high(2)*e%path%unit(i) - c(2)%mid, &
+               c(2)%mid - law%low(2)*e%path%unit(i))
             tube%balls%drive(1, i) = ball_t(0.0_wp, (0.125_wp*h**2*change &
                + 4.0_wp*max(from%drive(0, i)%radius, to%drive(0, i)%radius) &
                + 2.0_wp*abs(h)*max(from%drive(1, i)%radius, to%drive(1, i)%radius) &
