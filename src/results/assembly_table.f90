@@ -148,6 +148,8 @@ contains
             numbers(3) = number_text(angle, max(largest_angle, abs(angle)), &
                min(drawing_digits, digits + floor(log10(max(1.0_wp, abs(angle)/largest_angle)))))
          end associate
+         if (m%links(i)%from > 0) names(2:) = m%points([m%links(i)%from, m%links(i)%to])%name
+         where (m%links(i)%along) numbers = ''
          call put_card(o, 'LINK    ', names, numbers)
       end do
       do i = 1, size(m%pairs)
@@ -190,7 +192,7 @@ contains
          do k = 1, size(numbers)
             text = text//numbers(k)(star_width - number_width + 1:)
          end do
-         call put(o, text)
+         call put(o, trim(text))
       else
          stars = '*       '
          do k = 1, size(numbers)
