@@ -58,7 +58,7 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example shared pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
+.PHONY: all assembly-peers example shared pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 # The paper's example at two instants.
@@ -242,6 +242,10 @@ circuits: $(addprefix $(BUILD)/release/,circuits_by_chance twins_by_chance)
 	$(BUILD)/release/circuits_by_chance
 	$(BUILD)/release/twins_by_chance 500
 
+# 300 drawings made by chance with LENGTH cards and axes along bars, against closed forms.
+lengths: $(addprefix $(BUILD)/,kinmat release/lengths_by_chance)
+	$(BUILD)/release/lengths_by_chance deck 300 | $(BUILD)/kinmat --no-listing --csv - | $(BUILD)/release/lengths_by_chance check 300
+
 # Dwells of 6000 random mechanisms on their dead and change points, against closed forms.
 dwells: $(BUILD)/release/dwells_by_chance
 	$< 6000
@@ -305,7 +309,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance random_blocks
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance random_blocks
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

@@ -2,19 +2,19 @@
 !> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
    use kinds, only: wp, label_length
-   use planar, only: direction, rotated
    use mechanism
    use cards
    use card_reader, only: parsed_card_t, find_long_label
    use input_errors
    use card_numbers, only: angle_in_radians
    use drawn_values, only: take_drawn, coincides
+   use drawn_lengths, only: put_axes, same_place_tolerance
    use name_table, only: name_table_t, put_name, find_name
    use names, only: subject_name
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, begin_mechanism, build_bodies, define_name, has_drawing, look_up, &
+   public :: card_set_t, begin_set, begin_mechanism, build_bodies, define_name, has_drawing, joint_points, look_up, &
       look_up_kinds, match_word
    public :: add_card_error, add_card_remark, real_text
 
@@ -31,6 +31,7 @@ module card_sets
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
       type(named_t) :: named(request_link:request_measure)
       type(mechanism_t) :: mechanism
+      type(mechanism_t), allocatable :: drawing     !< it before lengths move points; without lengths not allocated
       type(input_errors_t) :: errors                !< all errors of the deck so far
    end type card_set_t
 
@@ -81,6 +82,7 @@ contains
          set%named(kind) = named_t()
       end do
       set%mechanism = mechanism_t(set_number=number)
+      if (allocated(set%drawing)) deallocate (set%drawing)
    end subroutine begin_mechanism
 
    !> The label field of a card of `form` that holds the name of what the card defines.
@@ -119,6 +121,12 @@ contains
       do n = 1, size(set%named(request_point)%card)
          call build_point()
       end do
+      do n = 1, size(set%named(request_link)%card)
+         if (any(set%cards(set%named(request_link)%card(n))%label(label_b:) /= '')) call find_bar()
+      end do
+      associate (m => set%mechanism)
+         call put_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
+      end associate
       slots = 0
       do n = 1, size(set%named(request_pair)%card)
          call build_pair()
@@ -126,9 +134,9 @@ contains
 
    contains
 
-      !> Point number `n`, of a POINT card, or one of the two of a JOINT card, which gives their place in the drawing:
-      !> its place in the axes of its link follows from where the link's card puts these. Both have the name of the
-      !> card; it stands for the point of the first link that is not ground. The links are there.
+      !> Point number `n`, of a POINT card, or one of the two of a JOINT card, which gives their place in the drawing.
+      !> Both have the name of the card; it stands for the point of the first link that is not ground. The links are
+      !> there.
       subroutine build_point()
          integer :: k, link
          logical :: is_first, is_ground
@@ -144,15 +152,49 @@ contains
          if (is_first) set%cards(k)%subject = n
          call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
          associate (m => set%mechanism, place => set%cards(k)%real(1:2))
-            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place, drawn=.true.)
-            if (link > 0) m%points(n)%offset = &
-               rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
+            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, place=place, drawn=.true.)
             link = m%points(set%cards(k)%subject)%link
             is_ground = .false.
             if (link > 0) is_ground = m%links(link)%ground
          end associate
          if (is_first .neqv. is_ground) call define_name(set, request_point, n)
       end subroutine build_point
+
+      !> Finds the joints of link number `n` at which its axes begin and to which they point; numbers on its card hold.
+      !> The points are there.
+      subroutine find_bar()
+         integer :: ends(2), k, label, one, i
+
+         k = set%named(request_link)%card(n)
+         if (set%cards(k)%form /= form_link .or. .not. set%cards(k)%valid) return
+         ends = 0
+         do label = label_b, label_c
+            if (set%cards(k)%label(label) == '') then
+               call add_card_error(set, field_blank, k, label)
+            else if (.not. has_drawing(set)) then
+               if (set%names_certain) call add_card_error(set, bar_drawing, k, label)
+               return
+            else
+               call look_up(set, request_point, k, label, one)
+               if (one == 0) cycle
+               associate (list => joint_points(set, one), end_of => ends(label - label_a), m => set%mechanism)
+                  do i = 1, size(list)
+                     if (m%points(list(i))%link == n .and. m%points(list(i))%drawn) end_of = list(i)
+                  end do
+                  if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
+               end associate
+            end if
+         end do
+         if (any(ends == 0)) return
+         associate (link => set%mechanism%links(n), p => set%mechanism%points(ends(1))%place, &
+            q => set%mechanism%points(ends(2))%place)
+            if (norm2(q - p) <= same_place_tolerance*(norm2(p) + norm2(q))) &
+               call add_card_error(set, bar_place, k, label_c)
+            link%from = ends(1)
+            link%to = ends(2)
+            link%along = .not. set%cards(k)%given
+         end associate
+      end subroutine find_bar
 
       !> Pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. It must join two
       !> links, not both of them ground.
@@ -212,6 +254,18 @@ contains
          end associate
       end subroutine build_block
    end subroutine build_bodies
+
+   !> Finds the points of the card of a point: of a JOINT card both, otherwise the point itself.
+   pure function joint_points(set, n) result(points)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: n               !< the number of the point
+      integer, allocatable :: points(:)      !< (1 or 2) their numbers
+
+      points = [n]
+      associate (card => set%cards(set%named(request_point)%card(n)))
+         if (card%form == form_joint) points = [card%subject, card%subject + 1]
+      end associate
+   end function joint_points
 
    !> Enters the name on the card of a link, point, pair or measure. A name that is there already is an error, and so is
    !> the name of a pair for a measure. Of two JOINT cards the error of their points stands for both.

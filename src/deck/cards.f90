@@ -51,7 +51,7 @@ module cards
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_slot, form_cylinder, form_joint, form_drive, form_add, form_rise
-      enumerator :: form_toler
+      enumerator :: form_length, form_toler
       enumerator :: form_time, form_at, form_method, form_print, form_column, form_extremes, form_range, form_circuits
       enumerator :: form_pole, form_curve, form_branch, form_vary, form_assembly, form_prove
       enumerator :: form_distance, form_line, form_angle, form_xi, form_eta, form_sum, form_end
@@ -63,7 +63,7 @@ module cards
       form_t('lll', 0, .true.,  'UNITS   LENGTH  RAD/DEG TIME'), &
       form_t('L--', 0, .true.,  'LANG    EN/PL'), &
       form_t('L--', 3, .false., 'GROUND  LINK                    X               Y               PHI'), &
-      form_t('L--', 3, .false., 'LINK    LINK                    X               Y               PHI'), &
+      form_t('Lll', 3, .false., 'LINK    LINK    FROM    TO      X               Y               PHI'), &
       form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
@@ -73,6 +73,7 @@ module cards
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
       form_t('L--', 3, .false., 'RISE    LAW                     START           DURATION        LIFT'), &
+      form_t('LLl', 1, .false., 'LENGTH  POINT-P POINT-Q LINK    LENGTH'), &
       form_t('---', 3, .false., 'TOLER                           OF R1           OF R2           OF R3'), &
       form_t('W--', 2, .true.,  'TIME    STEPS                   T0              T1'), &
       form_t('---', 3, .false., 'AT                              T               T               T'), &

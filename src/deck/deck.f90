@@ -8,6 +8,7 @@ module deck
    use cards
    use deck_measures, only: build_measures, check_measures
    use deck_drives, only: build_drives, check_terms
+   use deck_lengths, only: build_lengths
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
    use deck_source, only: source_t, open_source, source_of, next_card
@@ -199,6 +200,7 @@ contains
       call build_bodies(set)
       call build_measures(set)
       call build_drives(set)
+      call build_lengths(set)
       call build_requests(set)
       call build_branches(set)
       call build_tolerances(set)

@@ -286,7 +286,7 @@ contains
       pure logical function has_axes(i)
          integer, intent(in) :: i            !< the number of the link
 
-         has_axes = any(set%cards(set%named(request_link)%card(i))%given)
+         has_axes = any(set%cards(set%named(request_link)%card(i))%given) .or. set%mechanism%links(i)%from > 0
       end function has_axes
 
       !> Reads the COLUMN card `k`: one number of a row, or its coordinates if the card names no quantity. Of a link

@@ -6,7 +6,7 @@ module deck_remarks
    use planar, only: pi, in_degrees, without_turns
    use mechanism
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
-   use drawn_values, only: drawn_way, drawn_opening
+   use drawn_values, only: drawn_way, drawn_opening, drawn_place
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
    use names, only: drive_name, listed
    use scales, only: solver_length
@@ -17,7 +17,7 @@ module deck_remarks
    use input_errors, only: link_unused, add_remark
    implicit none
    private
-   public :: check_unused, check_angles, check_drives, check_drawing, build_echo
+   public :: check_unused, check_angles, check_drives, check_drawing, build_echo, drawn_text
 
    !> The echo: its characters in a line, and in a real.
    integer, parameter :: line_length = 119, real_width = 25
@@ -26,6 +26,10 @@ module deck_remarks
    character(*), parameter :: default_mark = '(DEFAULT)'
    !> What follows a number that is as drawn, in English and in Polish ("according to the drawing").
    character(*), parameter :: drawn_marks(2) = ['(AS DRAWN)', '(WG RYS.) ']
+   !> What follows a number of axes along a bar.
+   character(*), parameter :: bar_marks(2) = ['(FROM TO)', '(OD DO)  ']
+   !> What precedes the places to which a length has moved a point.
+   character(*), parameter :: axis_words(2) = ['X = ', 'Y = ']
    !> What the listing has of links whose axes are those of a drawing.
    character(*), parameter :: angles = 'PHI, VPHI, APHI', of_some = ' OF THOSE WITHOUT NUMBERS'
 
@@ -67,6 +71,7 @@ contains
          where (.not. link) m%links%ground = .true.
          point(pack(m%requests%subject, &
             m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
+         if (allocated(m%lengths)) point([m%lengths%point(1), m%lengths%point(2)]) = .true.
          do i = 1, measure_count(m)
             associate (subjects => m%measures(i)%subjects)
                point(pack(subjects%number, subjects%kind == request_point)) = .true.
@@ -223,8 +228,8 @@ contains
          type(unit_t) :: unit
          character(label_length) :: labels(3)
          character(real_width) :: text
-         real(wp) :: x
-         integer :: i, column
+         real(wp) :: x, place(2)
+         integer :: i
 
          associate (card => set%cards(k), m => set%mechanism)
             labels = card%label
@@ -247,11 +252,33 @@ contains
                   text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
                   if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
-               column = real_column + (i - 1)*real_width
-               set%mechanism%echo(n)(column:column + real_width - 1) = text
+               if (card%form == form_link) then
+                  if (m%links(card%subject)%along(i)) then
+                     x = m%links(card%subject)%position(i)
+                     if (i == 3 .and. m%degrees) x = in_degrees(x)
+                     text = drawn_text(x)//' '//bar_marks(merge(2, 1, m%polish))
+                  end if
+               end if
+               call put_real(i, text)
             end do
+            if (card%form == form_length) then
+               place = drawn_place(m, m%lengths(card%subject)%point(2))
+               do i = 1, 2
+                  call put_real(i + 1, axis_words(i)//drawn_text(place(i)))
+               end do
+            end if
          end associate
       end subroutine add_card
+
+      !> Puts a text into field `i` of the reals of the last line.
+      subroutine put_real(i, text)
+         integer, intent(in) :: i
+         character(*), intent(in) :: text
+         integer :: column
+
+         column = real_column + (i - 1)*real_width
+         set%mechanism%echo(n)(column:column + real_width - 1) = text
+      end subroutine put_real
 
       !> Adds the line of a form that has no card in the set: its defaults.
       subroutine add_default(form, labels)
@@ -274,19 +301,23 @@ contains
    end subroutine build_echo
 
    !> Remarks on each pair of `set`, if it is a drawing, whose numbers or points contradict it, and on each guide whose
-   !> alpha is no direction of the drawing. The set has no errors.
+   !> alpha is no direction of the drawing, unless it counts from a bar. What lengths have moved contradicts nothing.
+   !> The set has no errors.
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
+      type(mechanism_t) :: m                        ! as it is drawn
       real(wp) :: length, opening, turn
       character(:), allocatable :: text
       integer :: i, k
 
       if (.not. has_drawing(set)) return
-      length = solver_length(set%mechanism)
+      m = set%mechanism
+      if (allocated(set%drawing)) m = set%drawing
+      length = solver_length(m)
       do i = 1, size(set%named(request_pair)%card)
          k = set%named(request_pair)%card(i)
          text = ''
-         associate (m => set%mechanism, pair => set%mechanism%pairs(i))
+         associate (pair => m%pairs(i), link => m%links(m%points(m%pairs(i)%point_i)%link))
             if (.not. has_guide(pair%kind)) then
                opening = norm2(drawn_way(m, pair))
             else
@@ -295,9 +326,9 @@ contains
                   turn = without_turns(phi(2) - phi(1) - pair%beta)
                end associate
                if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) text = angle_text(turn)
-               turn = without_turns(m%links(m%points(pair%point_i)%link)%position(3))
-               if (abs(turn) > same_direction .and. set%cards(k)%form /= form_cylinder) call add_remark(set%errors, &
-                  remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
+               turn = without_turns(link%position(3))
+               if (abs(turn) > same_direction .and. set%cards(k)%form /= form_cylinder .and. .not. link%along(3)) &
+                  call add_remark(set%errors, remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
                   angle_text(pair%alpha)//', '//angle_text(pair%alpha + turn))
             end if
             if (abs(opening) > drawn_digits*length) text = drawn_text(opening)//' '//trim(m%length_unit)

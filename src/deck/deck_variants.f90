@@ -24,9 +24,9 @@ module deck_variants
    character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
-      form_drive, form_add, form_rise, form_time]
+      form_drive, form_add, form_rise, form_time, form_length]
    integer, parameter :: number_kinds(*) = [number_link, number_link, number_point, number_pair, number_pair, &
-      number_joint, number_drive, number_drive, number_drive, number_time]
+      number_joint, number_drive, number_drive, number_drive, number_time, number_length]
 
    !> A number that varies.
    type :: varied_t

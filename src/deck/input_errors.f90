@@ -113,6 +113,22 @@ module input_errors
       table_range = error_code_t(83, 'HAS NO ROWS AROUND THE INSTANT'), &
       power_large = error_code_t(84, 'OVERFLOWS (R1 T**R2) AT THE INSTANT'), &
       rpm_unit = error_code_t(68, 'IS ONLY ALLOWED IF THE UNIT OF TIME IS S, MS, MIN OR H')
+   ! Drawings with lengths, and axes along bars.
+   type(error_code_t), parameter, public :: &
+      bar_drawing = error_code_t(72, 'NEEDS A DRAWING, THAT IS JOINT CARDS: AXES ALONG A BAR BEGIN AT A JOINT'), &
+      bar_joint = error_code_t(73, 'IS NOT A JOINT OF THIS LINK', own_layout), &
+      bar_place = error_code_t(76, 'IS DRAWN AT THE PLACE OF THE OTHER JOINT: THE AXES HAVE NO DIRECTION'), &
+      length_apart = &
+         error_code_t(90, 'IS ON NO LINK OF THE POINT BEFORE IT: NAME POINTS OF ONE LINK OR OF GROUND', own_layout), &
+      length_several = error_code_t(91, 'BOTH POINTS ARE ON SEVERAL LINKS: NAME ONE OF THESE LINKS', own_layout), &
+      length_off = error_code_t(92, 'IS NOT A LINK OF BOTH POINTS', own_layout), &
+      length_place = error_code_t(93, 'IS DRAWN AT THE PLACE OF THE OTHER POINT: DRAW THEM APART'), &
+      length_exact = error_code_t(94, 'HAS EXACT COORDINATES, COUNTED ALONG THE BAR OF ITS LINK: OMIT ITS LENGTH'), &
+      length_used = error_code_t(95, 'WOULD MOVE AFTER ITS USE: EXCHANGE THE TWO POINTS; IT WAS USED ON CARD'), &
+      length_third = error_code_t(97, 'HAS TWO LENGTHS ALREADY: REMOVE ONE OF THE THREE; FIRST ON CARD'), &
+      length_missing = error_code_t(99, 'DOES NOT MEET THE OTHER LENGTH OF THIS POINT; MISSING'), &
+      length_side = error_code_t(86, 'IS DRAWN IN LINE WITH BOTH OTHER POINTS: DRAW IT ON ITS SIDE OF THEM'), &
+      length_open = error_code_t(88, 'IS NOT KEPT WHEN ALL LENGTHS ARE PUT; THE POINTS ARE APART BY')
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'EQUALS T0: USE AN AT CARD FOR ONE INSTANT'), &

@@ -6,10 +6,11 @@ module card_numbers
    use kinds, only: wp, label_length
    use planar, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
-      number_drive, number_knot, number_time, term_harmonic, term_power, term_table, term_kinds
+      number_drive, number_knot, number_time, number_length, term_harmonic, term_power, term_table, term_kinds
    use scales, only: is_length
    use splines, only: new_spline
-   use drawn_values, only: take_drawn, drawn_drive
+   use drawn_values, only: follow_drawing
+   use drawn_lengths, only: put_lengths
    use names, only: drive_name
    use numerals, only: whole
    implicit none
@@ -55,7 +56,7 @@ contains
       select case (n%kind)
       case (number_link)
          if (m%links(n%subject)%ground) takes_tolerance = .not. any(m%points%link == n%subject .and. m%points%drawn)
-      case (number_point:number_pair)
+      case (number_point:number_pair, number_length)
          takes_tolerance = .true.
       case (number_drive)
          takes_tolerance = .true.
@@ -82,6 +83,12 @@ contains
             name = 'JOINT '//trim(m%points(k)%name)
          case (number_pair)
             name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
+         case (number_length)
+            associate (one => m%lengths(k))
+               name = trim('LENGTH '//trim(m%points(one%point(1))%name)//' '//trim(m%points(one%point(2))%name)//' ' &
+                  //one%link)
+            end associate
+            return
          case (number_time)
             name = 'TIME T'//whole(n%place - 1)
             return
@@ -113,7 +120,7 @@ contains
       select case (n%kind)
       case (number_link)
          unit = unit_of(n%place == 3)
-      case (number_point, number_joint)
+      case (number_point, number_joint, number_length)
          unit = unit_of(.false.)
       case (number_pair)
          unit = unit_of(n%place /= 2)
@@ -193,6 +200,8 @@ contains
             x => m%pairs(k)%alpha
             if (i == 2) x => m%pairs(k)%offset
             if (i == 3) x => m%pairs(k)%beta
+         case (number_length)
+            x => m%lengths(k)%length
          case (number_knot)
             x => m%drives(k)%terms(n%term)%table%x(i)
          case (number_time)
@@ -211,22 +220,19 @@ contains
    end function number_in
 
    !> Gives number `n` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
-   !> the links of `m` are where the cards put them.
+   !> the links of `m` are where the cards put them. Points follow a length; numbers as drawn do not.
    subroutine set_number(m, n, value)
       type(mechanism_t), intent(inout) :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
-      integer :: i
+      type(mechanism_t), allocatable :: before
 
+      if (allocated(m%lengths)) before = m
       call put_number(m, n, value)
+      if (n%kind == number_length) call put_lengths(m)
       if (any(n%kind == [number_drive, number_knot])) call put_table(m%drives(n%subject), n%term)
       if (n%kind > number_pair) return
-      do i = 1, size(m%pairs)
-         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call take_drawn(m, i)
-      end do
-      do i = 1, size(m%drives)
-         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
-      end do
+      call follow_drawing(m, before)
       ! It may have been as drawn itself.
       if (n%kind == number_pair) call put_number(m, n, value)
    end subroutine set_number

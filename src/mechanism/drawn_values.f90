@@ -7,7 +7,7 @@ module drawn_values
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
-   public :: take_drawn, drawn_drive, drawn_way, drawn_opening, coincides
+   public :: take_drawn, follow_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
 
    !> A coordinate passes through about ten operations, each with an error of half a rounding of the places involved;
    !> coordinates that another program has printed are off by one or two more. A difference below this is zero.
@@ -27,7 +27,7 @@ contains
 
       pair = m%pairs(i)
       if (pair%pin > 0) m%links(m%points(pair%point_j)%link)%position = &
-         [place(m, pair%pin), m%links(m%points(pair%point_i)%link)%position(3)]
+         [drawn_place(m, pair%pin), m%links(m%points(pair%point_i)%link)%position(3)]
       phi = m%links(pair_links(m, pair))%position(3)
       if (pair%drawn(2)) then
          pair%offset = 0.0_wp
@@ -42,6 +42,30 @@ contains
       if (pair%drawn(3)) pair%beta = without_rounding(phi(2) - phi(1), sum(abs(phi)))
       m%pairs(i) = pair
    end subroutine take_drawn
+
+   !> Gives all numbers of `m` that are as drawn the values of the drawing of `m`. Lengths have moved points since these
+   !> numbers were taken: they change by as much as in the drawing since `before`, which has no room without lengths.
+   pure recursive subroutine follow_drawing(m, before)
+      type(mechanism_t), intent(inout) :: m
+      type(mechanism_t), allocatable, intent(in) :: before
+      type(mechanism_t), allocatable :: taken, none
+      integer :: i
+
+      do i = 1, size(m%pairs)
+         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call take_drawn(m, i)
+      end do
+      do i = 1, size(m%drives)
+         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
+      end do
+      if (.not. allocated(before)) return
+      taken = before
+      call follow_drawing(taken, none)
+      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - taken%pairs%alpha)
+      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - taken%pairs%offset)
+      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - taken%pairs%beta)
+      where (m%drives%drawn) m%drives%polynomial(1) = before%drives%polynomial(1) &
+         + (m%drives%polynomial(1) - taken%drives%polynomial(1))
+   end subroutine follow_drawing
 
    !> By how much h of the prismatic `pair` is greater in the drawing of `m` than on its card: (P - Q) . n - h.
    pure real(wp) function drawn_opening(m, pair) result(opening)
@@ -68,7 +92,7 @@ contains
             value = m%links(drive%second)%position(3) - m%links(k)%position(3)
             value = without_rounding(value, abs(m%links(drive%second)%position(3)) + abs(m%links(k)%position(3)))
          case (drive_x, drive_y)
-            p = place(m, k)
+            p = drawn_place(m, k)
             value = without_rounding(merge(p(1), p(2), drive%kind == drive_x), size_of_point(m, k))
          case default
             associate (pair => m%pairs(k), links => pair_links(m, m%pairs(k)))
@@ -99,13 +123,13 @@ contains
    end function coincides
 
    !> The place (2) of point number `k` in the drawing of `m`.
-   pure function place(m, k) result(p)
+   pure function drawn_place(m, k) result(p)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       real(wp) :: p(2)
 
       p = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
-   end function place
+   end function drawn_place
 
    !> The length by which the roundings of the place of point number `k` go.
    pure real(wp) function size_of_point(m, k) result(length)

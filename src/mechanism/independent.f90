@@ -6,7 +6,7 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
-      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot
+      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot, number_length
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -90,6 +90,7 @@ contains
             m%requests(of_points)%subject]
          user = [link_part(m%points%link), pair_part, pair_part, pack(measuring, is_point), row_part(of_points)]
       end associate
+      call add_lengths()
       points = sorted_numbers(used, user, s%count)
       associate (is_link => measured%kind == request_link, &
                  others => pack([(i, i=1, size(m%requests))], m%requests%kind /= request_measure))
@@ -133,6 +134,19 @@ contains
 
          part_of = maxval([1, link_part(links)])
       end function part_of
+
+      !> Lets every part use the ground points of lengths, if a length has a tolerance: they move one another.
+      subroutine add_lengths()
+         integer :: i, k
+
+         if (.not. (allocated(m%lengths) .and. allocated(m%tolerances))) return
+         if (.not. any(m%tolerances%kind == number_length)) return
+         do i = 1, size(m%lengths)
+            if (.not. m%links(m%points(m%lengths(i)%point(1))%link)%ground) cycle
+            used = [used, (m%lengths(i)%point, k=1, s%count)]
+            user = [user, (k, k, k=1, s%count)]
+         end do
+      end subroutine add_lengths
 
       !> Finds each measure, with those of which it is made, and all their subjects. They belong to the part of its
       !> links, those of the ground to several parts.
@@ -179,6 +193,7 @@ contains
       integer, intent(in) :: rows(:), branches(:)
       type(numbering_t), intent(inout) :: place(:)
       type(mechanism_t), intent(out) :: own
+      logical, allocatable :: kept(:)        ! (lengths) it belongs to the part
       integer :: i, k, kind
 
       do kind = 1, size(part)
@@ -221,11 +236,25 @@ contains
          own%branch_requests%link = place(request_link)%of(own%branch_requests%link)
       end if
 
+      if (allocated(m%lengths)) then
+         associate (of => place(request_point)%of)
+            kept = of(m%lengths%point(1)) > 0 .and. of(m%lengths%point(2)) > 0
+            own%lengths = pack(m%lengths, kept)
+            own%lengths%point(1) = of(own%lengths%point(1))
+            own%lengths%point(2) = of(own%lengths%point(2))
+         end associate
+      end if
+      own%links%from = place(request_point)%of(own%links%from)
+      own%links%to = place(request_point)%of(own%links%to)
       if (allocated(m%tolerances)) then
          own%tolerances = m%tolerances
          do i = 1, size(own%tolerances)
             associate (one => own%tolerances(i))
-               one%subject = place(of_numbers(one%kind))%of(one%subject)
+               if (one%kind == number_length) then
+                  one%subject = merge(count(kept(:one%subject)), 0, kept(one%subject))
+               else
+                  one%subject = place(of_numbers(one%kind))%of(one%subject)
+               end if
             end associate
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)

@@ -79,6 +79,7 @@ module mechanism
    integer, parameter :: number_drive = 5    !< of drive `subject`, or of its term `term`
    integer, parameter :: number_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
    integer, parameter :: number_time = 7     !< T0 or T1 of TIME
+   integer, parameter :: number_length = 8   !< the length `subject`, in the order in which lengths are put
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
@@ -117,6 +118,8 @@ module mechanism
       logical :: ground = .false.            !< does not move
       real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or the estimate that selects the assembly
       logical :: hidden = .false.            !< the block of a SLOT card: it has no name, and no table shows it
+      integer :: from = 0, to = 0            !< the points at which its axes begin and to which they point; 0: none
+      logical :: along(3) = .false.          !< x, y, phi: its axes have them from these points, not from its card
    end type link_t
 
    type :: point_t
@@ -124,7 +127,18 @@ module mechanism
       integer :: link = 0                    !< the number of its link
       real(wp) :: offset(2) = 0.0_wp         !< its place xi, eta in the axes of the link
       logical :: drawn = .false.             !< one of the two of a JOINT card, which gives their place in the drawing
+      real(wp) :: place(2) = 0.0_wp          !< of a JOINT or a hole: its place in the drawing, before lengths move it
+      integer :: hole = 0                    !< a number of all points of its body that are one hole; 0: not asked for
+      logical :: moves = .false.             !< lengths have moved it
    end type point_t
+
+   !> A LENGTH card.
+   type :: length_t
+      integer :: point(2) = 0                !< the numbers of the points P and Q of its link or of the ground
+      integer :: hole(2) = 0                 !< their holes
+      real(wp) :: length = 0.0_wp            !< how far they are apart
+      character(label_length) :: link = ''   !< the link that its card names
+   end type length_t
 
    type :: pair_t
       integer :: kind = pair_revolute        !< pair_revolute or pair_prismatic
@@ -252,6 +266,7 @@ module mechanism
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
+      type(length_t), allocatable :: lengths(:)   !< in the order in which they are put; none: not allocated
       type(tolerance_t), allocatable :: tolerances(:)   !< none: not allocated
       character(120), allocatable :: echo(:) !< the cards as they were understood, for the listing
       type(remark_t), allocatable :: remarks(:)   !< about the cards; none: not allocated

@@ -111,8 +111,8 @@ contains
    end subroutine put_assembly
 
    !> The LINK cards of assembly `one` of `m`. Where JOINT cards give the dimensions, LINK cards are a part of them:
-   !> both stand there, as of a drawing of this assembly. A drive whose value at t = 0 was that of the old drawing has a
-   !> card with this value: it is another one in the new drawing.
+   !> both stand there, as of a drawing of this assembly, and points that lengths have moved. A drive whose value at
+   !> t = 0 was that of the old drawing has a card with this value: it is another one in the new drawing.
    subroutine put_cards(o, m, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -148,6 +148,8 @@ contains
             numbers(3) = number_text(angle, max(largest_angle, abs(angle)), &
                min(drawing_digits, digits + floor(log10(max(1.0_wp, abs(angle)/largest_angle)))))
          end associate
+         if (m%links(i)%from > 0) names(2:) = m%points([m%links(i)%from, m%links(i)%to])%name
+         where (m%links(i)%along) numbers = ''
          call put_card(o, 'LINK    ', names, numbers)
       end do
       do i = 1, size(m%pairs)
@@ -159,6 +161,16 @@ contains
                numbers(2) = number_text(place(2), largest, digits)
             end associate
             call put_card(o, 'JOINT   ', names, numbers(:2))
+         end associate
+      end do
+      do i = 1, size(m%points)
+         associate (p => m%points(i))
+            if (p%drawn .or. .not. (p%moves .and. any(is_joint))) cycle
+            names = [p%name, m%links(p%link)%name, '        ']
+            do k = 1, 2
+               numbers(k) = number_text(p%offset(k), largest, digits)
+            end do
+            call put_card(o, 'POINT   ', names, numbers(:2))
          end associate
       end do
       do i = 1, size(m%drives)
@@ -190,7 +202,7 @@ contains
          do k = 1, size(numbers)
             text = text//numbers(k)(star_width - number_width + 1:)
          end do
-         call put(o, text)
+         call put(o, trim(text))
       else
          stars = '*       '
          do k = 1, size(numbers)

@@ -1,0 +1,179 @@
+!> The LENGTH cards of a set: how far two points of a link, or of the ground, are apart that the drawing shows about
+!> there. Numbers as drawn are taken before.
+module deck_lengths
+   use kinds, only: wp
+   use mechanism
+   use card_sets, only: card_set_t, joint_points, look_up, add_card_error
+   use drawn_lengths, only: reach_t, body_of, is_movable, mark_hole, put_lengths, same_place_tolerance
+   use cards
+   use input_errors
+   use deck_remarks, only: drawn_text
+   use drawn_values, only: drawn_place
+   use numerals, only: whole
+   implicit none
+   private
+   public :: build_lengths
+
+contains
+
+   !> Builds `set`%mechanism%lengths from the LENGTH cards, and puts these lengths into the drawing; bodies and drives
+   !> are there. The lengths of one hole Q are put together, holes in the order in which they first appear. Errors: a
+   !> length that is not of two points of one body; what moves after its use; lengths that do not meet.
+   subroutine build_lengths(set)
+      type(card_set_t), intent(inout) :: set
+      type(length_t) :: lengths(set%number_of(form_length))
+      type(reach_t) :: reached(set%number_of(form_length))
+      integer, dimension(set%number_of(form_length)) :: card_of, order
+      integer :: k, n, i, j
+
+      if (set%number_of(form_length) == 0) return
+      n = 0
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_length .or. .not. set%cards(k)%valid) cycle
+         n = n + 1
+         card_of(n) = k
+         call read_length(k, lengths(n))
+      end do
+      if (set%errors%count > 0) return
+
+      set%drawing = set%mechanism
+      associate (m => set%mechanism)
+         do i = 1, n
+            do j = 1, 2
+               call mark_hole(m, lengths(i)%point(j))
+               lengths(i)%hole(j) = m%points(lengths(i)%point(j))%hole
+            end do
+         end do
+         k = 0
+         do i = 1, n
+            if (any(lengths(:i - 1)%hole(2) == lengths(i)%hole(2))) cycle
+            do j = i, n
+               if (lengths(j)%hole(2) /= lengths(i)%hole(2)) cycle
+               k = k + 1
+               order(k) = j
+            end do
+         end do
+         m%lengths = lengths(order)
+         card_of = card_of(order)
+         set%cards(card_of)%subject = [(i, i=1, n)]
+         do i = 1, n
+            call check_order(i)
+         end do
+         if (set%errors%count > 0) return
+
+         call put_lengths(m, reached)
+         do i = 1, n
+            if (reached(i)%has_no_side) then
+               call add_card_error(set, merge(length_side, length_place, reached(i)%has_two), card_of(i), label_b)
+            else if (reached(i)%missing > 0.0_wp) then
+               call add_card_error(set, length_missing, card_of(i + 1), real_1, amount(reached(i)%missing))
+            end if
+         end do
+         if (set%errors%count > 0) return
+         do i = 1, n
+            call check_length(i)
+         end do
+      end associate
+
+   contains
+
+      !> Reads the LENGTH card `k`: its points on one body, and its length.
+      subroutine read_length(k, one)
+         integer, intent(in) :: k
+         type(length_t), intent(inout) :: one
+         integer :: ends(2), link, i, label, common
+         integer, allocatable :: p(:), q(:)
+
+         associate (card => set%cards(k), m => set%mechanism)
+            do label = label_a, label_b
+               call look_up(set, request_point, k, label, ends(label - label_a + 1))
+            end do
+            link = 0
+            if (card%label(label_c) /= '') call look_up(set, request_link, k, label_c, link)
+            if (.not. card%given(1)) then
+               call add_card_error(set, field_blank, k, real_1)
+            else if (card%real(1) <= 0.0_wp) then
+               call add_card_error(set, number_range, k, real_1, 'ABOVE 0.0')
+            end if
+            one%length = card%real(1)
+            one%link = card%label(label_c)
+            if (any(ends == 0) .or. (link == 0 .and. one%link /= '')) return
+            if (ends(1) == ends(2)) then
+               call add_card_error(set, point_twice, k, label_b)
+               return
+            end if
+
+            p = joint_points(set, ends(1))
+            q = joint_points(set, ends(2))
+            if (any(m%points([p, q])%link == 0)) return
+            common = 0
+            do i = 1, size(p)
+               do label = 1, size(q)
+                  if (body_of(m, p(i)) /= body_of(m, q(label))) cycle
+                  if (link > 0) then
+                     if (body_of(m, p(i)) /= merge(0, link, m%links(link)%ground)) cycle
+                  end if
+                  common = common + 1
+                  one%point = [p(i), q(label)]
+               end do
+            end do
+            if (common == 0 .and. link > 0) then
+               call add_card_error(set, length_off, k, label_c)
+            else if (common == 0) then
+               call add_card_error(set, length_apart, k, label_b)
+            else if (common > 1) then
+               call add_card_error(set, length_several, k, label_c)
+            else
+               do i = 1, 2
+                  if (.not. is_movable(m, one%point(i))) call add_card_error(set, length_exact, k, label_a + i - 1)
+               end do
+            end if
+         end associate
+      end subroutine read_length
+
+      !> Checks, of length number `i` in its order, that its points are two holes, that no length has used Q before it
+      !> moves, that Q has two lengths at most, and these of two holes.
+      subroutine check_order(i)
+         integer, intent(in) :: i
+         integer :: used, one
+
+         associate (list => set%mechanism%lengths)
+            used = findloc(list(:i - 1)%hole(1), list(i)%hole(2), dim=1)
+            one = findloc(list(:i)%hole(2), list(i)%hole(2), dim=1)
+            if (list(i)%hole(1) == list(i)%hole(2)) then
+               call add_card_error(set, length_place, card_of(i), label_b)
+            else if (used > 0 .and. one == i) then
+               call add_card_error(set, length_used, card_of(i), label_b, whole(set%cards(card_of(used))%card%number))
+            else if (i - one == 2) then
+               call add_card_error(set, length_third, card_of(i), label_b, whole(set%cards(card_of(one))%card%number))
+            else if (i - one == 1 .and. list(one)%hole(1) == list(i)%hole(1)) then
+               call add_card_error(set, repeated, card_of(i), label_b, whole(set%cards(card_of(one))%card%number))
+            end if
+         end associate
+      end subroutine check_order
+
+      !> Checks that length number `i` holds after all have been put.
+      subroutine check_length(i)
+         integer, intent(in) :: i
+         real(wp) :: place(2, 2), apart
+         integer :: j
+
+         associate (m => set%mechanism, one => set%mechanism%lengths(i))
+            do j = 1, 2
+               place(:, j) = drawn_place(m, one%point(j))
+            end do
+            apart = norm2(place(:, 2) - place(:, 1))
+            if (abs(apart - one%length) > 4.0_wp*same_place_tolerance*(one%length + norm2(place))) &
+               call add_card_error(set, length_open, card_of(i), real_1, amount(apart))
+         end associate
+      end subroutine check_length
+
+      !> The length `x` with its unit.
+      function amount(x) result(text)
+         real(wp), intent(in) :: x
+         character(:), allocatable :: text
+
+         text = drawn_text(x)//' '//trim(set%mechanism%length_unit)
+      end function amount
+   end subroutine build_lengths
+end module deck_lengths

@@ -1,0 +1,160 @@
+!> A drawing with dimensions: LENGTH cards say how far points of a link are apart that the drawing shows about there,
+!> and axes of links begin at one of its joints and point to another one. All ground links are one body. The points that
+!> are drawn at one place of a body are one hole, which moves as one.
+module drawn_lengths
+   use kinds, only: wp
+   use planar, only: pi, direction, rotated, point_of, cross
+   use mechanism, only: mechanism_t
+   implicit none
+   private
+   public :: reach_t, body_of, mark_hole, is_movable, put_axes, put_lengths, same_place_tolerance
+
+   !> What LENGTH cards make of one hole.
+   type :: reach_t
+      logical :: has_two = .false.           !< it has two lengths
+      real(wp) :: missing = 0.0_wp           !< length by which the two circles do not meet; 0: they do
+      logical :: has_no_side = .false.       !< it is drawn in line with both other points, or at the place of one
+   end type reach_t
+
+   !> Places that other programs have printed, or that several sums give, differ by less, as a part of their distances.
+   real(wp), parameter :: same_place_tolerance = 64.0_wp*epsilon(1.0_wp)
+
+contains
+
+   !> Finds the body of a point: the number of its link; 0: of the ground.
+   pure integer function body_of(m, i) result(body)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i               !< the number of the point
+
+      body = m%points(i)%link
+      if (m%links(body)%ground) body = 0
+   end function body_of
+
+   !> Tells whether the drawing shows where a point is: not of a POINT card whose coordinates count from a bar.
+   pure logical function is_movable(m, i)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i               !< the number of the point
+
+      is_movable = m%points(i)%drawn .or. m%links(m%points(i)%link)%from == 0
+   end function is_movable
+
+   !> Gives the points that are drawn at the place of a point, on its body, the same number `hole`, and all of them
+   !> their places in the drawing.
+   pure subroutine mark_hole(m, i)
+      type(mechanism_t), intent(inout) :: m
+      integer, intent(in) :: i               !< the number of the point
+      integer :: j
+
+      if (m%points(i)%hole > 0) return
+      m%points(i)%place = place_on_card(m, i)
+      do j = 1, size(m%points)
+         if (m%points(j)%link == 0) cycle
+         if (body_of(m, j) /= body_of(m, i) .or. .not. is_movable(m, j)) cycle
+         associate (place => place_on_card(m, j), here => m%points(i)%place)
+            if (norm2(place - here) > same_place_tolerance*(norm2(place) + norm2(here))) cycle
+            m%points(j)%place = here
+            m%points(j)%hole = i
+         end associate
+      end do
+   end subroutine mark_hole
+
+   !> Finds the place (2) of a point in the drawing, if no length has moved it.
+   pure function place_on_card(m, i) result(place)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i               !< the number of the point
+      real(wp) :: place(2)
+
+      place = m%points(i)%place
+      if (.not. m%points(i)%drawn) place = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
+   end function place_on_card
+
+   !> Gives links whose axes begin at FROM and point to TO these axes, in (-pi, pi], and all points of JOINT cards and
+   !> of holes that lengths move their places in the axes of their links.
+   pure subroutine put_axes(m, place)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: place(:, :)    !< (2, points) places of these points in the drawing
+      real(wp) :: axes(3)
+      integer :: i
+
+      do i = 1, size(m%links)
+         associate (link => m%links(i))
+            if (link%from == 0) cycle
+            axes(:2) = place(:, link%to) - place(:, link%from)
+            axes = [place(:, link%from), atan2(axes(2), axes(1))]
+            if (axes(3) <= -pi) axes(3) = pi
+            where (link%along) link%position = axes
+         end associate
+      end do
+      do i = 1, size(m%points)
+         associate (point => m%points(i))
+            if (point%link == 0 .or. .not. (point%drawn .or. point%moves)) cycle
+            point%offset = rotated(place(:, i) - m%links(point%link)%position(:2), &
+               direction(-m%links(point%link)%position(3)))
+         end associate
+      end do
+   end subroutine put_axes
+
+   !> Puts the lengths of `m` into the drawing, in their order: moves the hole of point Q of each, along the line from P
+   !> or, if the next length has the same hole, to the intersection of two circles on the side on which it is drawn.
+   !> Axes and points follow. Numbers that are as drawn do not.
+   pure subroutine put_lengths(m, reached)
+      type(mechanism_t), intent(inout) :: m
+      type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
+      type(reach_t) :: reach
+      real(wp) :: place(2, size(m%points)), q(2), way(2)
+      integer :: i, k
+      logical :: is_one
+
+      do i = 1, size(m%points)
+         place(:, i) = m%points(i)%place
+      end do
+      k = 1
+      do while (k <= size(m%lengths))
+         associate (one => m%lengths(k), next => m%lengths(min(k + 1, size(m%lengths))))
+            is_one = k == size(m%lengths) .or. next%hole(2) /= one%hole(2)
+            reach = reach_t(has_two=.not. is_one)
+            q = m%points(one%point(2))%place
+            if (is_one) then
+               way = q - place(:, one%point(1))
+               reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(place(:, one%point(1))))
+               if (.not. reach%has_no_side) q = place(:, one%point(1)) + one%length*(way/norm2(way))
+            else
+               call find_intersection(place(:, [one%point(1), next%point(1)]), [one%length, next%length], q, reach)
+            end if
+            do i = 1, size(m%points)
+               if (m%points(i)%hole /= one%hole(2)) cycle
+               place(:, i) = q
+               m%points(i)%moves = .true.
+            end do
+            if (present(reached)) reached(k) = reach
+         end associate
+         k = k + merge(1, 2, is_one)
+      end do
+      call put_axes(m, place)
+   end subroutine put_lengths
+
+   !> Finds the intersection of two circles that is nearest to a place. If they do not meet, it is a place on the line
+   !> through their centres.
+   pure subroutine find_intersection(centre, radius, q, reach)
+      real(wp), intent(in) :: centre(2, 2)   !< (coordinates, circles)
+      real(wp), intent(in) :: radius(2)      !< length
+      real(wp), intent(inout) :: q(2)        !< the place; becomes the intersection
+      type(reach_t), intent(inout) :: reach
+      real(wp) :: way(2), e(2), d, along, square, side
+
+      way = centre(:, 2) - centre(:, 1)
+      d = norm2(way)
+      reach%missing = max(d - sum(radius), abs(radius(1) - radius(2)) - d)
+      if (reach%missing <= same_place_tolerance*(d + sum(radius))) reach%missing = 0.0_wp
+      if (.not. d > 0.0_wp) return
+      e = way/d
+      along = 0.5_wp*(d + (radius(1) - radius(2))*((radius(1) + radius(2))/d))
+      square = (radius(1) - along)*(radius(1) + along)
+      ! They touch but for rounding.
+      if (square <= same_place_tolerance*radius(1)**2) square = 0.0_wp
+      side = cross(e, q - centre(:, 1))
+      reach%has_no_side = square > 0.0_wp .and. &
+         abs(side) <= same_place_tolerance*(norm2(q) + norm2(centre(:, 1)) + norm2(centre(:, 2)))
+      q = centre(:, 1) + along*e + sign(sqrt(square), side)*[-e(2), e(1)]
+   end subroutine find_intersection
+end module drawn_lengths

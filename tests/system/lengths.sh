@@ -1,0 +1,115 @@
+#!/bin/sh
+# Cards LENGTH, and LINK with FROM and TO: drawings made by chance against closed forms, variants against decks with the numbers
+# typed, and what is rejected.
+. tests/counting.sh
+
+# Six-bars, their values and sensitivities, in real128: a check a row.
+"$BUILD/release/lengths_by_chance" deck 60 > "$w/chance.deck"
+"$kinmat" "$w/chance.deck" --no-listing --csv "$w/chance.csv" 2> "$w/chance.err"
+equal 'drawings made by chance: status' 0 $?
+"$BUILD/release/lengths_by_chance" check 60 < "$w/chance.csv" > "$w/chance.txt"
+equal 'drawings made by chance' '0 failed' "$(tail -n 1 "$w/chance.txt" | sed 's/.*, //')"
+
+# A book's four-bar: 12 cards of mechanism, three of them LENGTH between moving joints, and no arc tangent.
+book() {
+   card GROUND BASE; card LINK CRANK A0 A; card LINK COUPLER A B; card LINK ROCKER B0 B
+   card JOINT A0 BASE CRANK 0.0 0.0; card JOINT A CRANK COUPLER 20.0 20.0; card JOINT B COUPLER ROCKER 80.0 60.0
+   card JOINT B0 ROCKER BASE 90.0 0.0
+   card LENGTH A0 A '' "${1-30.0}"; echo "$5"; card LENGTH A B '' "${2-70.0}"; echo "$6"; card LENGTH B0 B '' "${3-65.0}"; echo "$7"
+   card DRIVE ANGLE CRANK '' 30.0 60.0
+}
+# made NAME: $w/NAME.deck of the cards on standard input; run NAME: its listing, CSV and messages
+made() { { card UNITS MM DEG S; cat; card END; } > "$w/$1.deck"; }
+run() { "$kinmat" "$w/$1.deck" -o "$w/$1.lst" --csv "$w/$1.csv" 2> "$w/$1.err"; status=$?; }
+hours=$(card TIME 6 '' '' 0.0 6.0)
+{ book; echo "$hours"; } | made book
+run book
+equal 'a four-bar of a book: status' 0 $status
+equal 'a four-bar of a book: cards' 12 "$(grep -cE '^(GROUND|LINK|JOINT|LENGTH|DRIVE)' "$w/book.deck")"
+# PHI are the directions of the bars: by Freudenstein's equations at 30 deg.
+equal 'a four-bar of a book: angles' "$(awk 'BEGIN { q = atan2(0, -1)/6; x = 90 - 30*cos(q); y = -30*sin(q); d = sqrt(x*x + y*y)
+   k = (70*70 + d*d - 65*65)/(2*70*d); t = atan2(y, x) + atan2(sqrt(1 - k*k), k); bx = 30*cos(q) + 70*cos(t); by = 30*sin(q) + 70*sin(t)
+   u = 180/atan2(0, -1); printf "30.000000 %.6f %.6f\n", t*u, atan2(by, bx - 90)*u }')" \
+   "$(awk '/^ INSTANT 0/ { on = 1 } /^ POINT/ { on = 0 } on && /^ (CRANK|COUPLER|ROCKER)/ { printf "%s%s", s, $4; s = " " } END { print "" }' "$w/book.lst")"
+
+# The echo has what the lengths make of each point Q, and the axes.
+echoed() { grep -E "^ $2 " "$w/$1.lst" | tr -s ' ' | sed 's/ $//'; }
+equal 'a four-bar of a book: echo of lengths' "$(awk 'BEGIN { a = 30/sqrt(2); d = sqrt(3600 + 1600); e = sqrt(100 + 3600)
+   printf " LENGTH A0 A 30.0 X = %.7f Y = %.7f\n", a, a; printf " LENGTH A B 70.0 X = %.7f Y = %.7f\n", 20 + 70*60/d, 20 + 70*40/d
+   printf " LENGTH B0 B 65.0 X = %.7f Y = %.6f\n", 90 - 650/e, 3900/e }')" "$(echoed book LENGTH)"
+equal 'a four-bar of a book: echo of axes' " LINK CRANK A0 A 0.0 (FROM TO) 0.0 (FROM TO) 45.0 (FROM TO)" "$(echoed book 'LINK     CRANK')"
+equal 'a four-bar of a book: no remark' '' "$(grep -e --- "$w/book.lst")"
+
+# The rows of a variant are those of the deck with its numbers, to the last digit; a length that is refused has its error.
+for a in 28.0 32.0; do for b in 69.0 71.5; do
+   { book $a $b; echo "$hours"; card PRINT LINKS; card PRINT POINTS; } | made one
+   run one
+   sed -n '2,$p' "$w/one.csv"
+done; done > "$w/single.rows"
+{ book 30.0 70.0 65.0 '' "$(card VARY R1 LIST '' 28.0 32.0)" "$(card VARY R1 2 '' 69.0 71.5)"; echo "$hours"; card PRINT LINKS; card PRINT POINTS; } |
+   made varied
+run varied
+sed -n '2,$p' "$w/varied.csv" | cut -d, -f1,3- > "$w/varied.rows"
+same 'variants of lengths' "$w/single.rows" "$w/varied.rows"
+{ book 30.0 70.0 65.0 '' '' '' "$(card VARY R1 LIST '' 65.0 -1.0)"; echo "$hours"; } | made negative
+run negative
+equal 'a length that is refused: status' 2 $status
+equal 'a length that is refused: its row' ' *** E036 CARD 14 COLUMN 33 FIELD REAL-1: "65.0" IS OUT OF RANGE; ALLOWED: ABOVE 0.0' "$(grep 'E036' "$w/negative.lst" | tr -s ' ')"
+
+# A plate of three joints: two lengths, the side on which C is drawn; its sensitivity to one of them, with the law of cosines.
+plate() {
+   card GROUND BASE; card LINK CRANK A0 A; card LINK PLATE A B; card LINK ROCKER B0 B; card LINK ROD C E; card LINK ARM D0 E
+   card JOINT A0 BASE CRANK 0.0 0.0; card JOINT A CRANK PLATE 20.0 20.0; card JOINT B PLATE ROCKER 80.0 60.0
+   card JOINT B0 ROCKER BASE 90.0 0.0; card JOINT C PLATE ROD 30.0 70.0; card JOINT E ROD ARM 0.0 100.0; card JOINT D0 ARM BASE -60.0 70.0
+   printf '%s\n' "$@"
+}
+turn=$(card DRIVE ANGLE CRANK '' '' 60.0)
+{ plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$turn" "$(card AT '' '' '' 0.0)" \
+   "$(card XI C PLATE C-XI)" "$(card ETA C PLATE C-ETA)" "$(card PRINT MEASURES)"; } | made plate
+run plate
+equal 'a plate: C in its axes' "$(awk 'BEGIN { x = (4900 + 2500 - 3025)/140; printf "%.4f %.4f", x, sqrt(2500 - x*x) }')" \
+   "$(awk '/^ C-XI/ { x = $2 } /^ C-ETA/ { printf "%.4f %.4f", x, $2 }' "$w/plate.lst")"
+
+# What is rejected.
+# error NAME MESSAGE: the first message of the deck on standard input
+error() {
+   made bad
+   run bad
+   equal "$1: status" 1 $status
+   equal "$1" "$2" "$(sed -n 's/^ \*\*\* //p' "$w/bad.err" | tr -s ' ' | head -n 1)"
+}
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 15.0)" "$turn" "$hours" |
+   error 'circles apart' 'E099 CARD 17 COLUMN 33 FIELD REAL-1: "15.0" DOES NOT MEET THE OTHER LENGTH OF THIS POINT; MISSING 5.0 MM'
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 150.0)" "$(card LENGTH B C '' 60.0)" "$turn" "$hours" |
+   error 'one circle in the other' 'E099 CARD 17 COLUMN 33 FIELD REAL-1: "60.0" DOES NOT MEET THE OTHER LENGTH OF THIS POINT; MISSING 20.0 MM'
+plate "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$(card LENGTH A B '' 70.0)" "$turn" "$hours" |
+   error 'Q was used as P' 'E095 CARD 17 COLUMN 17 FIELD LABEL-B: "B" WOULD MOVE AFTER ITS USE: EXCHANGE THE TWO POINTS; IT WAS USED ON CARD 16'
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$(card LENGTH A C '' 50.0)" "$turn" "$hours" |
+   error 'three lengths' 'E097 CARD 18 COLUMN 17 FIELD LABEL-B: "C" HAS TWO LENGTHS ALREADY: REMOVE ONE OF THE THREE; FIRST ON CARD 16'
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A B '' 70.0)" "$turn" "$hours" |
+   error 'a length twice' 'E096 CARD 16 COLUMN 17 FIELD LABEL-B: "B" IS REPEATED; FIRST ON CARD 15'
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH B A '' 70.0)" "$turn" "$hours" |
+   error 'a length back' 'E095 CARD 16 COLUMN 17 FIELD LABEL-B: "A" WOULD MOVE AFTER ITS USE: EXCHANGE THE TWO POINTS; IT WAS USED ON CARD 15'
+plate "$(card LENGTH A E '' 70.0)" "$turn" "$hours" |
+   error 'two links' 'E090 CARD 15 COLUMN 17 FIELD LABEL-B: "E" IS ON NO LINK OF THE POINT BEFORE IT: NAME POINTS OF ONE LINK OR OF GROUND'
+plate "$(card LENGTH A B CRANK 70.0)" "$turn" "$hours" |
+   error 'another link' 'E092 CARD 15 COLUMN 25 FIELD LABEL-C: "CRANK" IS NOT A LINK OF BOTH POINTS'
+plate "$(card LENGTH A A '' 70.0)" "$turn" "$hours" | error 'one point' 'E062 CARD 15 COLUMN 17 FIELD LABEL-B: "A" IS NAMED TWICE: NAME TWO POINTS'
+plate "$(card LENGTH A B)" "$turn" "$hours" | error 'no length' 'E034 CARD 15 COLUMN 33 FIELD REAL-1: THE FIELD IS BLANK: FILL IT IN'
+plate "$(card LENGTH A B '' 0.0)" "$turn" "$hours" | error 'length 0' 'E036 CARD 15 COLUMN 33 FIELD REAL-1: "0.0" IS OUT OF RANGE; ALLOWED: ABOVE 0.0'
+plate "$(card POINT T PLATE '' 10.0 5.0)" "$(card LENGTH A T '' 12.0)" "$turn" "$hours" |
+   error 'a point of a bar' 'E094 CARD 16 COLUMN 17 FIELD LABEL-B: "T" HAS EXACT COORDINATES, COUNTED ALONG THE BAR OF ITS LINK: OMIT ITS LENGTH'
+plate "$(card LENGTH A B '' 70.0)" "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$turn" "$hours" | sed 's/^JOINT   C .*/JOINT   C       PLATE   ROD     50.0            40.0/' |
+   error 'on no side' 'E086 CARD 16 COLUMN 17 FIELD LABEL-B: "C" IS DRAWN IN LINE WITH BOTH OTHER POINTS: DRAW IT ON ITS SIDE OF THEM'
+plate "$(card LENGTH A C '' 50.0)" "$turn" "$hours" | sed 's/^JOINT   C .*/JOINT   C       PLATE   ROD     20.0            20.0/' |
+   error 'at one place' 'E093 CARD 15 COLUMN 17 FIELD LABEL-B: "C" IS DRAWN AT THE PLACE OF THE OTHER POINT: DRAW THEM APART'
+{ card GROUND BASE; card LINK CRANK; card LINK ROD; card JOINT A0 BASE CRANK 0.0 0.0; card JOINT A CRANK ROD 1.0 0.0; card JOINT B CRANK ROD 2.0 0.0
+  card LENGTH A B '' 1.5; echo "$turn"; echo "$hours"; } | error 'several links' 'E091 CARD 8 COLUMN 25 FIELD LABEL-C: BOTH POINTS ARE ON SEVERAL LINKS: NAME ONE OF THESE LINKS'
+plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C       B/' | error 'TO on another link' 'E073 CARD 6 COLUMN 25 FIELD LABEL-C: "B" IS NOT A JOINT OF THIS LINK'
+plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C/' | error 'no TO' 'E034 CARD 6 COLUMN 25 FIELD LABEL-C: THE FIELD IS BLANK: FILL IT IN'
+plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C       EE/' | error 'TO unknown' 'E052 CARD 6 COLUMN 25 FIELD LABEL-C: "EE" IS NOT THE NAME OF A POINT (NEAREST NAME: E)'
+plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C       C/' |
+   error 'FROM is TO' 'E076 CARD 6 COLUMN 25 FIELD LABEL-C: "C" IS DRAWN AT THE PLACE OF THE OTHER JOINT: THE AXES HAVE NO DIRECTION'
+{ card GROUND BASE; card LINK CRANK O T; card POINT O BASE; card POINT O1 CRANK; card POINT T CRANK '' 1.0; card REVOLUTE O O1 PO; echo "$turn"; echo "$hours"; } |
+   error 'no drawing' 'E072 CARD 3 COLUMN 17 FIELD LABEL-B: "O" NEEDS A DRAWING, THAT IS JOINT CARDS: AXES ALONG A BAR BEGIN AT A JOINT'
+conclude
