@@ -5,7 +5,7 @@ module block_assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use blocks, only: blocks_t, own_unknowns
+   use blocks, only: blocks_t, geometry_t, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
@@ -47,12 +47,12 @@ module block_assemblies
 contains
 
    !> Finds all positions of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
-   !> change. `found`: of this search and those before. `tolerance`, `w`: as of `solve_block`; `largest_group`: more
+   !> change. `found`: of this search and those before. `largest_group`: more
    !> unknowns of a group are not solved, see `max_group`; `start`: of the paths, see `follow_paths`.
-   subroutine find_positions(b, i, tolerance, w, s, largest_group, start, found)
+   subroutine find_positions(b, x, i, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: tolerance
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       integer, intent(in) :: largest_group
@@ -68,13 +68,13 @@ contains
       found%sign_of = [integer ::]
       found%rates_open = [logical ::]
       if (b%list(i)%direct) then
-         call solve_block(b, i, tolerance, w, s, c)
+         call solve_block(b, x, i, .true., w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
          found%rates_open = [.false.]
          return
       end if
-      call make_form(b, i, s, f)
+      call make_form(b, x, i, s, f)
       found%is_wide = found%is_wide .or. f%system%p > largest_group
       found%moves = found%moves .or. f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
@@ -113,40 +113,40 @@ contains
       subroutine take_end(e)
          type(path_end_t), intent(in) :: e
          type(convergence_t) :: c
-         real(wp) :: x(size(f%turns)), residual
+         real(wp) :: place(size(f%turns)), residual
          logical :: is_real
          integer :: k
 
-         call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
+         call real_values(f, e, merge(singular_level, real_level, e%is_singular), place, is_real)
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
          if (.not. is_real) found%moves = found%moves .or. e%is_singular
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
-         x = anint(grid*x)/grid
-         call set_values(b, i, x, s)
-         call add_turns(b, i, s)
-         x = values_of(b, i, s)
+         place = anint(grid*place)/grid
+         call set_values(b, i, place, s)
+         call add_turns(b, x, i, s)
+         place = values_of(b, i, s)
          ! At a singular solution Newton's method would lose the way.
          do k = 1, merge(singular_steps, 0, e%is_singular)
-            call gauss_newton_step(b, i, s, residual)
+            call gauss_newton_step(b, x, i, s, residual)
          end do
-         call solve_block(b, i, tolerance, w, s, c)
+         call solve_block(b, x, i, .true., w, s, c)
          if (c%ended == ended_inconsistent) then
             call leave_out(found%partial)
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, e%is_singular)) then
             call leave_out(found%failed)
             return
          end if
-         x = values_of(b, i, s)
+         place = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(x, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
+            if (apart(place, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
          end do
-         found%x = reshape([found%x, x], [size(x), size(found%x, 2) + 1])
+         found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
          found%rates_open = [found%rates_open, c%rates_open]
-         if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
+         if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))
       end subroutine take_end
 
       !> The last of the finite ends belongs to those that `number` counts.

@@ -7,7 +7,7 @@ module block_bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: length_of
-   use blocks, only: blocks_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, geometry_t, loop_projection, loop_angles
    use block_state, only: state_t, given
    use block_equations, only: find_known_parts
    use bilinear, only: bilinear_t, path_end_t, find_null_space
@@ -53,15 +53,16 @@ module block_bilinear
 contains
 
    !> The form of block `i` of `b`, for the values that `s` has of earlier blocks and drives.
-   subroutine make_form(b, i, s, f)
+   subroutine make_form(b, x, i, s, f)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(block_form_t), intent(out) :: f
       type(draft_t) :: d
       integer :: m
 
-      call find_known_parts(b, i, s)
+      call find_known_parts(b, x, i, s)
       associate (block => b%list(i), rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
          f%turns = merge(-1, 0, b%unknown(block%first:block%last) <= b%orientations)
          do m = b%loops(block%first_loop)%first_slide, b%loops(block%last_loop)%last_slide
@@ -72,9 +73,9 @@ contains
          allocate (d%size_of(rows + n), source=1.0_wp)
          do m = block%first_loop, block%last_loop
             if (b%loops(m)%kind == loop_angles) then
-               call add_angles(b, i, m, s, f, d)
+               call add_angles(b, x, i, m, s, f, d)
             else
-               call add_loop(b, i, m, s, n, d)
+               call add_loop(b, x, i, m, s, n, d)
             end if
          end do
          call add_projections(d)
@@ -84,8 +85,9 @@ contains
    end subroutine make_form
 
    !> Adds what loop `m` of block `i` asks of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
-   pure subroutine add_angles(b, i, m, s, f, d)
+   pure subroutine add_angles(b, x, i, m, s, f, d)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, m
       type(state_t), intent(in) :: s
       type(block_form_t), intent(in) :: f
@@ -98,11 +100,11 @@ contains
          d%linear = d%linear + 1
          if (g%orientation <= b%orientations) then
             less = g%less_column
-            ratio = exp(i_unit*given(b, i, g%row_x, s))*direction_factor(less, g%less, s)
+            ratio = exp(i_unit*given(b, x, i, g%row_x, s))*direction_factor(less, g%less, s)
             d%a(g%orientation_column, d%linear) = direction_factor(g%orientation_column, g%orientation, s)
          else
             less = f%turns(g%orientation_column)
-            ratio = given(b, i, g%row_x, s) + s%u(g%less)%value
+            ratio = given(b, x, i, g%row_x, s) + s%u(g%less)%value
             d%a(g%orientation_column, d%linear) = 1.0_wp
          end if
          d%a(less, d%linear) = d%a(less, d%linear) - ratio
@@ -110,20 +112,21 @@ contains
    end subroutine add_angles
 
    !> Adds the equations of loop `m` of block `i`, of `n` unknowns: each a projection of the loop.
-   subroutine add_loop(b, i, m, s, n, d)
+   subroutine add_loop(b, x, i, m, s, n, d)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, m, n
       type(state_t), intent(in) :: s
       type(draft_t), intent(inout) :: d
       type(projection_t) :: one
 
       allocate (one%l(n + 1))
-      call find_form(b, m, s, one%l, one%size_of)
+      call find_form(b, x, m, s, one%l, one%size_of)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
             one%at = g%orientation_column
             one%factor = direction_factor(one%at, g%orientation, s) &
-               *cmplx(b%numbers%loops(m)%direction%x, b%numbers%loops(m)%direction%y, wp)
+               *cmplx(x%loops(m)%direction%x, x%loops(m)%direction%y, wp)
          end if
          if (g%row_x > 0) call add(g%row_x)
          one%factor = i_unit
@@ -136,7 +139,7 @@ contains
       subroutine add(row)
          integer, intent(in) :: row
 
-         one%value = given(b, i, row, s)
+         one%value = given(b, x, i, row, s)
          d%projections = [d%projections, one]
       end subroutine add
    end subroutine add_loop
@@ -153,8 +156,9 @@ contains
 
    !> Finds the linear form `l` (0:n) of loop `m` in 1 and the n unknowns of a group. `size_of`: the sum of the sizes of
    !> its terms that are known or of known length, in the loop's unit; rounding of the loop is measured by it.
-   pure subroutine find_form(b, m, s, l, size_of)
+   pure subroutine find_form(b, x, m, s, l, size_of)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: m
       type(state_t), intent(in) :: s
       complex(wp), intent(out) :: l(0:)
@@ -166,19 +170,19 @@ contains
       associate (g => b%loops(m))
          l = 0.0_wp
          l(0) = cmplx(s%loop(m)%known(0)%x, s%loop(m)%known(0)%y, wp)
-         size_of = length_of(b%numbers%loops(m)%ground)
+         size_of = length_of(x%loops(m)%ground)
          do k = g%first_vector, g%last_vector
-            size_of = size_of + length_of(b%numbers%d(k))
+            size_of = size_of + length_of(x%d(k))
             if (k < g%first_own) cycle
             associate (d => b%body_vectors(k))
                l(d%column) = l(d%column) + direction_factor(d%column, d%orientation, s) &
-                  *cmplx(b%numbers%d(k)%x, b%numbers%d(k)%y, wp)
+                  *cmplx(x%d(k)%x, x%d(k)%y, wp)
             end associate
          end do
          do k = g%first_slide, g%last_slide
             associate (e => b%slides(k))
                factor = direction_factor(e%orientation_column, e%orientation, s) &
-                  *cmplx(b%numbers%e(k)%x, b%numbers%e(k)%y, wp)
+                  *cmplx(x%e(k)%x, x%e(k)%y, wp)
                slide = 1.0_wp
                if (e%column > 0) then
                   l(e%column) = l(e%column) + factor
@@ -187,7 +191,7 @@ contains
                   l(e%orientation_column) = l(e%orientation_column) + factor*slide
                end if
             end associate
-            size_of = size_of + length_of(b%numbers%e(k))*abs(slide)
+            size_of = size_of + length_of(x%e(k))*abs(slide)
          end do
       end associate
    end subroutine find_form

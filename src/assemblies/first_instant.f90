@@ -87,7 +87,7 @@ contains
 
       ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
       turn = 0.0_wp
-      associate (class => e%orientation_of, offset => e%blocks%numbers%equations%axes%angle_offset)
+      associate (class => e%orientation_of, offset => e%geometry%equations%axes%angle_offset)
          do k = size(class), 1, -1
             if (class(k) > 0) turn(class(k)) = without_turns(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
          end do
@@ -293,16 +293,16 @@ contains
       allocate (found%x(size(start), 0), found%distance(0))
       start = e%estimated(own_unknowns(e%blocks, i))
       call set_values(e%blocks, i, start, e%state)
-      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, found%ending)
+      call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, found%ending)
       if (is_solved(found%ending)) call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
       if (e%blocks%list(i)%direct) return
       if (is_solved(found%ending)) then
-         found%beyond = separation_of(e%blocks, i, e%state, found%ending) - angles
+         found%beyond = separation_of(e%blocks, e%geometry, i, e%state, found%ending) - angles
          if (about_equal*found%beyond >= budget) return
          found%beyond = unbounded
       end if
 
-      call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i)%paths, every)
+      call find_positions(e%blocks, e%geometry, i, e%work, e%state, max_group, e%starts(i)%paths, every)
       do k = 1, size(every%sign_of)
          call note_position(every%x(:, k), every%sign_of(k) == 0)
       end do
@@ -311,14 +311,14 @@ contains
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
       call set_values(e%blocks, i, start, e%state)
-      call levenberg_marquardt_solve(e%blocks, i, e%state)
+      call levenberg_marquardt_solve(e%blocks, e%geometry, i, e%state)
       least = values_of(e%blocks, i, e%state)
-      call solve_block(e%blocks, i, e%tolerance, e%work, e%state, found%ending)
+      call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, found%ending)
       if (is_solved(found%ending)) then
          call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
       else
          call set_values(e%blocks, i, least, e%state)
-         call find_closure_error(e%blocks, i, e%state, found%ending)
+         call find_closure_error(e%blocks, e%geometry, i, e%state, found%ending)
       end if
 
    contains
@@ -341,7 +341,7 @@ contains
             y = merge(start + without_turns(x - start), x, is_angle)
          end associate
          call set_values(e%blocks, i, y, e%state)
-         call add_turns(e%blocks, i, e%state)
+         call add_turns(e%blocks, e%geometry, i, e%state)
          y = values_of(e%blocks, i, e%state)
          square = squares_of(e, guess)
          angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
@@ -395,7 +395,7 @@ contains
 
       q = new_motion(size(guess, 2))
       call move_links(e%chain, e%state, e%length, q, finite, .true.)
-      square = squared_distances(q%position, guess, e%blocks%numbers%span)
+      square = squared_distances(q%position, guess, e%geometry%span)
    end function squares_of
 
    !> The distance from `guess` (3, links) of the assembly that `e` has, of all links that a block moves: `places`.

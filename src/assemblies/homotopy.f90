@@ -21,6 +21,8 @@ module homotopy
    type :: paths_t
       integer :: p = 0
       complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p)
+      real(dp) :: t = -1.0_dp                               !< the last
+      complex(dp), allocatable :: h(:, :, :)                !< there
    end type paths_t
 
    !> The correction of a prediction that is aimed at, and the largest, in parts of z: paths that are further apart are
@@ -147,7 +149,7 @@ contains
       integer :: count_of, k, j
 
       h%p = f%p
-      allocate (h%f(0:f%p, 0:f%p, 2*f%p), h%more(0:f%p, 0:f%p, 2*f%p))
+      allocate (h%f(0:f%p, 0:f%p, 2*f%p), h%more(0:f%p, 0:f%p, 2*f%p), h%h(0:f%p, 0:f%p, 2*f%p))
       h%f(:, :, :) = f%c
       do k = 1, f%p
          h%f(k, :, :) = h%f(k, :, :) + start%chart(k, 1)*h%f(0, :, :)
@@ -188,7 +190,7 @@ contains
    !> Follows a path of `f` from `start` at t = near_end. `e`: its end; `is_done`: it was found.
    subroutine follow_to_end(f, h, chart, start, e, is_infinite, is_done)
       type(bilinear_t), intent(in) :: f
-      type(paths_t), intent(in) :: h
+      type(paths_t), intent(inout) :: h
       complex(dp), intent(in) :: chart(:, :), start(:)
       type(path_end_t), intent(inout) :: e
       logical, intent(out) :: is_infinite, is_done
@@ -251,7 +253,7 @@ contains
    !> Follows the path from `z` at `from` to `to`: the tangent by Runge and Kutta, Newton's correction; steps are
    !> divided down to the part `least` of the whole.
    subroutine follow(h, from, to, least, z, is_done)
-      type(paths_t), intent(in) :: h
+      type(paths_t), intent(inout) :: h
       real(dp), intent(in) :: from, to, least
       complex(dp), intent(inout) :: z(:)
       logical, intent(out) :: is_done
@@ -280,7 +282,7 @@ contains
 
    !> A step of length `step` in t along the tangent, by Runge and Kutta's rule of fourth order.
    subroutine predict(h, t, step, z, next, is_done)
-      type(paths_t), intent(in) :: h
+      type(paths_t), intent(inout) :: h
       real(dp), intent(in) :: t, step
       complex(dp), intent(in) :: z(:)
       complex(dp), intent(out) :: next(:)
@@ -307,7 +309,7 @@ contains
 
    !> Newton's method at `t`; `correction`: the first one, in parts of z. `is_done`: it was small, the others smaller.
    subroutine correct(h, t, z, correction, is_done)
-      type(paths_t), intent(in) :: h
+      type(paths_t), intent(inout) :: h
       real(dp), intent(in) :: t
       complex(dp), intent(inout) :: z(:)
       real(dp), intent(out) :: correction
@@ -343,25 +345,27 @@ contains
       end do
    end function size_of
 
-   !> The residual `r` of the homotopy, its derivatives `a` by z, and by t with the opposite sign.
+   !> The residual `r` of the homotopy, its derivatives `a` by z, and by t with the opposite sign. Most calls are at the
+   !> t of the call before.
    subroutine assemble(h, t, z, a, r, slope)
-      type(paths_t), intent(in) :: h
+      type(paths_t), intent(inout) :: h
       real(dp), intent(in) :: t
       complex(dp), intent(in) :: z(:)
       complex(dp), intent(out) :: a(:, :), r(:)
       complex(dp), intent(out), optional :: slope(:)
-      complex(dp) :: x(0:h%p), y(0:h%p), c(0:h%p, 0:h%p)
+      complex(dp) :: x(0:h%p), y(0:h%p)
       integer :: j, k
 
+      if (abs(t - h%t) > 0.0_dp) h%h(:, :, :) = h%f + t*h%more
+      h%t = t
       associate (p => h%p)
          x = [(1.0_dp, 0.0_dp), z(:p)]
          y = [(1.0_dp, 0.0_dp), z(p + 1:)]
          do j = 1, 2*p
-            c = h%f(:, :, j) + t*h%more(:, :, j)
-            a(j, :p) = matmul(c(1:, :), y)
-            r(j) = sum(c(0, :)*y) + sum(a(j, :p)*x(1:))
+            a(j, :p) = matmul(h%h(1:, :, j), y)
+            r(j) = sum(h%h(0, :, j)*y) + sum(a(j, :p)*x(1:))
             do k = 1, p
-               a(j, p + k) = sum(x*c(:, k))
+               a(j, p + k) = sum(x*h%h(:, k, j))
             end do
          end do
          if (.not. present(slope)) return

@@ -153,7 +153,7 @@ contains
       logical, dimension(size(e%moving)) :: crosses, is_short
 
       crosses = e%crossed(e%moving)
-      lipschitz = e%blocks%numbers%blocks(e%moving)%lipschitz
+      lipschitz = e%geometry%blocks(e%moving)%lipschitz
       is_short = e%change <= short_step &
          .or. e%followed(e%moving)%pivot + e%found(e%moving)%pivot <= short_pivots*lipschitz
       is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
@@ -180,9 +180,9 @@ contains
 
       crossed = e%crossed
       x = values_of(e%blocks, i, e%state)
-      v = decomposed(e%blocks, i, e%state)
+      v = decomposed(e%blocks, e%geometry, i, e%state)
       direction = v%right(v%n, :)
-      curvature = curvature_of(e%blocks, i, x, v%left(:, v%n), direction, e%state)
+      curvature = curvature_of(e%blocks, e%geometry, i, x, v%left(:, v%n), direction, e%state)
       found = abs(curvature)*furthest > 2.0_wp*v%s(v%n)
       if (.not. found) return
       away = -2.0_wp*v%s(v%n)/curvature

@@ -50,7 +50,7 @@ contains
       allocate (list(0))
       if (e%blocks%redundant > 0) then
          ! Each pair and drive with redundant equations, once, and how many it has.
-         rows = redundant_rows(e%blocks, 1, e%state)
+         rows = redundant_rows(e%blocks, e%geometry, 1, e%state)
          do k = size(rows), 1, -1
             r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
                drive=e%blocks%rows(rows(k))%drive)
@@ -85,7 +85,7 @@ contains
       logical, allocatable :: moves(:), moved(:)
       integer :: k
 
-      moves = moving_unknowns(e%blocks, i, e%state)
+      moves = moving_unknowns(e%blocks, e%geometry, i, e%state)
       if (.not. any(moves)) return
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
@@ -188,7 +188,7 @@ contains
          integer :: fastest
 
          left = 0.0_wp
-         if (e%followed(i)%pivot > near_pivot*e%blocks%numbers%blocks(i)%lipschitz) return
+         if (e%followed(i)%pivot > near_pivot*e%geometry%blocks(i)%lipschitz) return
          associate (past => e%history%past, step => t - e%history%t(0), &
                     u => own_unknowns(e%blocks, i))
             if (size(u) == 0) return
@@ -259,7 +259,7 @@ contains
       do k = 1, size(e%needed)
          associate (i => e%needed(k), b => e%blocks%list(e%needed(k)))
             before = largest_known(e%blocks, i, missing)
-            if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, i, e%state)
+            if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, e%geometry, i, e%state)
             missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
          end associate
       end do
@@ -308,7 +308,7 @@ contains
       do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
          do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
             angle = [angle, value(e%blocks%body_vectors(k)%orientation) &
-               + atan2(e%blocks%numbers%d(k)%y, e%blocks%numbers%d(k)%x)]
+               + atan2(e%geometry%d(k)%y, e%geometry%d(k)%x)]
          end do
       end do
       do k = 2, size(angle)

@@ -11,11 +11,11 @@ module block_engine
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_singular
    use bilinear, only: kept_start_t
    use predictor, only: history_t, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, numbers_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known, &
+   use blocks, only: blocks_t, geometry_t, moving_blocks, blocks_that_give, iterated_unknowns, largest_known, &
       own_unknowns
    use block_numbers, only: put_numbers
    use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
-   use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations, solve_rates
+   use block_solver, only: workspace_t, new_workspace, solve_block, solve_direct
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
@@ -60,8 +60,8 @@ module block_engine
    !> Lengths in units of `length`. What the structure and the deck give does not change; `work` is scratch.
    type, extends(engine_state_t) :: block_engine_t
       real(wp) :: length = 1.0_wp                       !< the unit of its lengths, a power of two in the deck's unit
-      real(wp) :: tolerance = 0.0_wp                    !< relative, of corrections; 0: the limit of rounding
       type(blocks_t), allocatable :: blocks
+      type(geometry_t), allocatable :: geometry
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
       type(drive_path_t) :: path                        !< of its drives
@@ -90,18 +90,19 @@ contains
 
       if (present(structure)) then
          call move_alloc(structure%blocks, e%blocks)
+         call move_alloc(structure%geometry, e%geometry)
       else
          call make_structure(m, own)
          call move_alloc(own%blocks, e%blocks)
+         call move_alloc(own%geometry, e%geometry)
       end if
-      e%length = e%blocks%numbers%equations%length
-      e%tolerance = m%tolerance
+      e%length = e%geometry%equations%length
       e%ratios = [integer ::]
       if (any(m%requests%drive > 0)) e%ratios = pack([(i, i=1, size(m%drives))], &
          [(any(m%requests%drive == i), i=1, size(m%drives))])
       if (.not. e%blocks%solvable) return
 
-      e%chain = new_chain(m, e%blocks, wanted_links(m))
+      e%chain = new_chain(m, e%blocks, e%geometry, wanted_links(m))
       ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
       allocate (need(0:e%blocks%unknowns), source=.false.)
       do i = 1, e%chain%wanted
@@ -131,13 +132,10 @@ contains
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: fits
-      type(numbers_t), allocatable :: x
 
-      call move_alloc(e%blocks%numbers, x)
-      call put_numbers(m, e%blocks, x, fits)
-      call move_alloc(x, e%blocks%numbers)
-      e%length = e%blocks%numbers%equations%length
-      call put_chain(m, e%blocks, e%chain)
+      call put_numbers(m, e%blocks, e%geometry, fits)
+      e%length = e%geometry%equations%length
+      call put_chain(m, e%blocks, e%geometry, e%chain)
       call put_laws(e, m)
    end subroutine put_mechanism
 
@@ -183,7 +181,7 @@ contains
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
       ! As a section: a function's result would bring its own lower bound.
-      e%estimated(:) = estimated_values(m, e%blocks)
+      e%estimated(:) = estimated_values(m, e%blocks, e%geometry)
    end subroutine put_estimate
 
    !> The laws of the drives of `m`, and the units of their values.
@@ -196,7 +194,7 @@ contains
       e%path%unit = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives))
       do i = 1, size(e%blocks%rows)
          associate (drive => e%blocks%rows(i)%drive)
-            if (drive > 0) e%path%unit(drive) = e%path%unit(drive)/e%blocks%numbers%rows(i)%unit
+            if (drive > 0) e%path%unit(drive) = e%path%unit(drive)/e%geometry%rows(i)%unit
          end associate
       end do
    end subroutine put_laws
@@ -226,7 +224,7 @@ contains
          ! Whole turns that a drive asks for close nothing, and would have to be travelled.
          e%state%u%value = e%estimated
          do k = 1, size(e%needed)
-            if (.not. e%blocks%list(e%needed(k))%direct) call add_turns(e%blocks, e%needed(k), e%state)
+            if (.not. e%blocks%list(e%needed(k))%direct) call add_turns(e%blocks, e%geometry, e%needed(k), e%state)
          end do
          e%estimated(:) = e%state%u%value
          e%choice = choice_t()
@@ -237,8 +235,9 @@ contains
    !> How far the angles of another position of block `i` are from those of the position in `s` that `c` is of: one of
    !> them by so many rad, at least, with the Jacobian J and its Lipschitz constant L by 2/(|J^-1| L). Of more than two
    !> unknowns |J^-1| may be estimated, too small by a part of their number; the slides make L larger.
-   pure real(wp) function separation_of(b, i, s, c) result(separation)
+   pure real(wp) function separation_of(b, x, i, s, c) result(separation)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       type(convergence_t), intent(in) :: c
@@ -253,7 +252,7 @@ contains
             bound = max(bound, 1.0_wp + 0.5_wp*abs(s%u(b%slides(k)%unknown)%value))
          end do
       end do
-      bound = bound*b%numbers%blocks(i)%lipschitz*c%inverse
+      bound = bound*x%blocks(i)%lipschitz*c%inverse
       if (b%list(i)%shape%n > 2) bound = bound*real(b%list(i)%shape%n, wp)
       separation = 2.0_wp/max(bound, tiny(bound))
    end function separation_of
@@ -283,29 +282,27 @@ contains
       do k = 1, size(list)
          i = list(k)
          associate (block => e%blocks%list(i))
-            if (block%direct) then
-               call solve_direct(e%blocks, i, e%state)
-               cycle
-            end if
-            call solve_equations(e%blocks, i, block, e%blocks%numbers%blocks(i), e%tolerance, e%work, e%state, one)
+            call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, one)
+            if (block%direct) cycle
             if (follows) then
                c%change = max(c%change, one%change)
                if (block%shape%rows > block%shape%n .and. is_solved(one)) &
-                  one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
+                  one%determinant = e%followed(i)%sign_of &
+                  *relative_sign(e%blocks, e%geometry, i, e%jacobian, e%state)
             else
-               e%choice(i)%separation = separation_of(e%blocks, i, e%state, one)
+               e%choice(i)%separation = separation_of(e%blocks, e%geometry, i, e%state, one)
             end if
             call gather(one, c)
             if (.not. is_solved(one)) return
             e%is_singular(i) = one%singular
             ! At a change point itself the sign is that of rounding.
             e%crossed(i) = follows .and. .not. one%singular .and. one%determinant /= e%followed(i)%sign_of
-            if (one%singular) call settle(e%blocks, i, e%state)
+            if (one%singular) call settle(e%blocks, e%geometry, i, e%state)
             if (one%singular) cycle
             if (e%crossed(i)) c%keeps_signs = .false.
             c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
             if (e%state%excursion > 0.0_wp) c%growth = max(c%growth, &
-               e%blocks%numbers%blocks(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
+               e%geometry%blocks(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
             e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
          end associate
       end do
@@ -321,10 +318,11 @@ contains
       uncertain = 0.0_wp
       do k = 1, size(e%moving)
          e%followed(e%moving(k)) = e%found(e%moving(k))
-         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state))
+         uncertain = max(uncertain, &
+            uncertain_part(e%blocks, e%geometry, e%moving(k), e%found(e%moving(k))%pivot, e%state))
       end do
       call remember(e%history, e%t, e%state%u, uncertain)
-      if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
+      if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, e%geometry, 1, e%state)
    end subroutine accept
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is known to be in
@@ -345,6 +343,7 @@ contains
       type(motion_t), intent(inout) :: found
       type(motion_t) :: unit
       type(state_t) :: s
+      type(convergence_t) :: c
       integer :: missing(0:e%blocks%unknowns), j, k
       logical :: has_rates, finite
 
@@ -360,7 +359,11 @@ contains
             associate (i => e%needed(k))
                has_rates = .not. is_lost(i)
                if (has_rates) has_rates = largest_known(e%blocks, i, missing) == missing_nothing
-               if (has_rates) call solve_rates(e%blocks, i, e%work, s, has_rates)
+               if (has_rates) then
+                  c = convergence_t()
+                  call solve_block(e%blocks, e%geometry, i, .false., e%work, s, c)
+                  has_rates = .not. (c%singular .or. c%rates_open)
+               end if
                if (.not. has_rates) call note_block(e, i, missing_rates, missing)
             end associate
          end do
@@ -411,7 +414,7 @@ contains
          call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
          if (.not. e%blocks%list(i)%direct) cycle
          if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
-            call solve_direct(e%blocks, i, e%state)
+            call solve_direct(e%blocks, e%geometry, i, e%state)
       end do
       s = e%state
       do k = 1, e%blocks%unknowns
@@ -447,7 +450,7 @@ contains
       do k = 1, size(e%needed)
          i = e%needed(k)
          if (e%blocks%list(i)%direct) then
-            call solve_direct(e%blocks, i, s)
+            call solve_direct(e%blocks, e%geometry, i, s)
          else if (e%history%filled == 0) then
             call set_values(e%blocks, i, e%estimated(own_unknowns(e%blocks, i)), s)
          end if
@@ -470,7 +473,7 @@ contains
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: k
 
-      unit = e%blocks%numbers%unit(k)
+      unit = e%geometry%unit(k)
       if (k > e%blocks%orientations) unit = unit*e%length
    end function slide_unit
 end module block_engine

@@ -19,48 +19,30 @@ module block_equations
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, geometry_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, &
+      loop_projection, loop_angles
    use block_state, only: state_t
    implicit none
    private
-   public :: find_known_parts, assemble_with_velocities, assemble_dense, right_hand_side
+   public :: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
+   public :: find_known_parts, assemble_dense, right_hand_side
 
 contains
 
    !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
-   pure subroutine find_known_parts(b, i, s)
+   pure subroutine find_known_parts(b, x, i, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
 
-      call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, b%numbers%loops, b%body_vectors, &
-         b%numbers%d, s%u, s%loop)
+      call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
    end subroutine find_known_parts
 
-   !> Jacobian `a`, stored as the shape of the block says, residual `r` (rows) of block `i` at the state, and the
-   !> right-hand side `v` (rows) for the velocities there. It is added to `v` in the row of a drive's own unknown, which
-   !> is in no loop.
-   pure subroutine assemble_with_velocities(b, i, s, a, r, v)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(*), r(*), v(*)
-      integer :: m
-
-      associate (block => b%list(i))
-         call set_to_zero(entries_of(block%shape), a)
-         do m = block%first_loop, block%last_loop
-            call add_loop(b%loops(m), b%numbers%loops(m)%direction, b%body_vectors, b%numbers%d, b%slides, &
-               b%numbers%e, s%u, s%own, s%guide, s%loop(m), a, r, v)
-         end do
-         if (b%numbers%blocks(i)%has_right_sides) &
-            call take_right_sides(block%first_row, block%last_row, b%rows, b%numbers%rows, s%drive_value, r, v)
-      end associate
-   end subroutine assemble_with_velocities
-
    !> All of the Jacobian of block `i` at the state, zeros as well, `a` (rows, n), and its residual `r` (rows).
-   pure subroutine assemble_dense(b, i, s, a, r)
+   pure subroutine assemble_dense(b, x, i, s, a, r)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), r(*)
@@ -69,13 +51,15 @@ contains
       integer :: c, k
 
       v = 0.0_wp
-      associate (shape => b%list(i)%shape)
+      associate (block => b%list(i), shape => b%list(i)%shape, right_sides => x%blocks(i)%has_right_sides)
          if (shape%pattern == 0) then
-            call assemble_with_velocities(b, i, s, a, r, v)
+            call assemble(block, right_sides, b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
+               s%drive_value, s%u, s%own, s%guide, s%loop, a, r, v)
             return
          end if
          allocate (entries(shape%entries))
-         call assemble_with_velocities(b, i, s, entries, r, v)
+         call assemble(block, right_sides, b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
+            s%drive_value, s%u, s%own, s%guide, s%loop, entries, r, v)
          a(:, :shape%n) = 0.0_wp
          associate (p => b%patterns(shape%pattern))
             do c = 1, shape%n
@@ -87,26 +71,24 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> Right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
-   !> block `i`: the derivatives of the drives less what is given. Closure errors, directions and rotated body vectors
-   !> are those of the last assembly.
-   pure subroutine right_hand_side(b, i, order, s, v)
+   !> Finds the right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations
+   !> (2) of block `i`: the derivatives of the drives less what is given. Closure errors, directions and rotated body
+   !> vectors are those of the last assembly.
+   pure subroutine right_hand_side(b, x, i, order, s, v)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
       real(wp), intent(inout) :: v(*)
       integer :: m
 
       associate (block => b%list(i))
-         if (order == 1) then
-            do m = block%first_loop, block%last_loop
-               call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), v)
-            end do
-         else
-            call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, s%u, s%own, &
-               s%guide, s%loop, v)
-         end if
-         if (b%numbers%blocks(i)%has_right_sides) &
+         do m = block%first_loop, block%last_loop
+            if (order == 1) call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), v)
+            if (order == 2) &
+               call acceleration_rows(b%loops(m), b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
+         end do
+         if (x%blocks(i)%has_right_sides) &
             call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
       end associate
    end subroutine right_hand_side

@@ -4,7 +4,7 @@
 module block_rank
    use kinds, only: wp
    use lapack, only: geqrf, getrf, gesvd, ormqr
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: assemble_dense
    implicit none
@@ -39,8 +39,9 @@ contains
    !> The rows of block `i`, counted in b%rows, that could be spared at the position of `s`: of those that depend on one
    !> another the last ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left
    !> null vectors, its rows taken in that order.
-   pure function redundant_rows(b, i, s) result(list)
+   pure function redundant_rows(b, x, i, s) result(list)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       integer, allocatable :: list(:)
@@ -50,7 +51,7 @@ contains
 
       allocate (list(0), order(0))
       if (b%list(i)%shape%rows > max_rows) return
-      v = decomposed(b, i, s)
+      v = decomposed(b, x, i, s)
       associate (rows => b%rows(b%list(i)%first_row:b%list(i)%last_row))
          do n = max(maxval(rows%pair), 0), 1, -1
             order = [order, pack([(k, k=1, size(rows))], rows%pair == n)]
@@ -78,8 +79,9 @@ contains
    !> Tells of which of so many `drives` one may be too many, where the equations of all blocks are one block, redundant
    !> and inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations
    !> y J = 0 between the rows of the Jacobian J.
-   pure function surplus_drives(b, drives, s) result(are)
+   pure function surplus_drives(b, x, drives, s) result(are)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: drives
       type(state_t), intent(in) :: s
       !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
@@ -90,7 +92,7 @@ contains
 
       are = .false.
       if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
-      v = decomposed(b, 1, s)
+      v = decomposed(b, x, 1, s)
       do k = 1, v%rows
          associate (row => b%rows(b%list(1)%first_row + k - 1))
             if (row%pair == 0 .and. row%drive > 0) are(row%drive) = norm2(v%left(k, v%rank + 1:)) > least_part
@@ -100,22 +102,24 @@ contains
 
    !> (unknowns of block `i`) Those that can move although everything the block builds on stands still, by
    !> `try_to_move`.
-   pure function moving_unknowns(b, i, s) result(moves)
+   pure function moving_unknowns(b, x, i, s) result(moves)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(state_t) :: trial_state
 
       trial_state = s
-      call try_to_move(b, i, trial_state, moves)
+      call try_to_move(b, x, i, trial_state, moves)
    end function moving_unknowns
 
    !> Finds which unknowns of block `i` can move (unknowns) although everything the block builds on stands still. The
    !> block is moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a
    !> dead point they lead back to where it was, and none can move. `s` becomes the state they lead to.
-   pure subroutine try_to_move(b, i, s, moves)
+   pure subroutine try_to_move(b, x, i, s, moves)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       logical, intent(out) :: moves(b%list(i)%last - b%list(i)%first + 1)
@@ -125,13 +129,13 @@ contains
 
       moves = .false.
       if (b%list(i)%shape%rows > max_rows .or. size(moves) == 0) return
-      v = decomposed(b, i, s)
+      v = decomposed(b, x, i, s)
       if (v%rank == v%n) return
       start = values_of(b, i, s)
       direction = v%right(v%n, :)
       call set_values(b, i, start + trial*direction, s)
       do k = 1, 20
-         call gauss_newton_step(b, i, s, residual)
+         call gauss_newton_step(b, x, i, s, residual)
          if (residual <= closed) exit
       end do
       direction = values_of(b, i, s) - start
@@ -140,23 +144,25 @@ contains
    end subroutine try_to_move
 
    !> (rows*n) The Jacobian of block `i`, column by column.
-   pure function jacobian_of(b, i, s) result(a)
+   pure function jacobian_of(b, x, i, s) result(a)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       real(wp) :: a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows)
       type(state_t) :: there
 
       there = s
-      call assemble_dense(b, i, there, a, r)
+      call assemble_dense(b, x, i, there, a, r)
    end function jacobian_of
 
    !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
    !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. It is -1 also where
    !> columns or ranges of the two have turned so far that this alone could have changed the sign. With both Jacobians
    !> factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the ranges.
-   pure integer function relative_sign(b, i, before, s) result(side)
+   pure integer function relative_sign(b, x, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: before(:)
       type(state_t), intent(in) :: s
@@ -165,7 +171,7 @@ contains
       integer :: pivots(size(old, 2)), info, k
 
       old = reshape(before, shape(old))
-      new = reshape(jacobian_of(b, i, s), shape(new))
+      new = reshape(jacobian_of(b, x, i, s), shape(new))
       side = -1
       if (any(sum(new*old, dim=1) < min_cosine*norm2(new, dim=1)*norm2(old, dim=1))) return
       both = new
@@ -184,58 +190,62 @@ contains
       if (.not. cosines >= min_cosine) side = -1
    end function relative_sign
 
-   !> (rows) The residual of the equations of block `i` with the values `x` (n) in the place of those of `s`.
-   pure function residual_of(b, i, x, s) result(r)
+   !> (rows) The residual of the equations of block `i` with the `values` (n) in the place of those of `s`.
+   pure function residual_of(b, x, i, values, s) result(r)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: x(:)
+      real(wp), intent(in) :: values(:)
       type(state_t), intent(in) :: s
       real(wp) :: r(b%list(i)%shape%rows), a(b%list(i)%shape%rows*b%list(i)%shape%n)
       type(state_t) :: there
 
       there = s
-      call set_values(b, i, x, there)
-      call assemble_dense(b, i, there, a, r)
+      call set_values(b, i, values, there)
+      call assemble_dense(b, x, i, there, a, r)
    end function residual_of
 
-   !> w . r''[k, k] of the equations r of block `i` at the values `x` (n), by a second difference; w = `left` (rows),
+   !> w . r''[k, k] of the equations r of block `i` at the `values` (n), by a second difference; w = `left` (rows),
    !> k = `right` (n).
-   pure real(wp) function curvature_of(b, i, x, left, right, s) result(curvature)
+   pure real(wp) function curvature_of(b, x, i, values, left, right, s) result(curvature)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: x(:), left(:), right(:)
+      real(wp), intent(in) :: values(:), left(:), right(:)
       type(state_t), intent(in) :: s
       real(wp) :: ahead, behind, here
 
-      ahead = dot_product(left, residual_of(b, i, x + difference*right, s))
-      behind = dot_product(left, residual_of(b, i, x - difference*right, s))
-      here = dot_product(left, residual_of(b, i, x, s))
+      ahead = dot_product(left, residual_of(b, x, i, values + difference*right, s))
+      behind = dot_product(left, residual_of(b, x, i, values - difference*right, s))
+      here = dot_product(left, residual_of(b, x, i, values, s))
       curvature = (ahead - here + (behind - here))/difference**2
    end function curvature_of
 
    !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
    !> Jacobian leaves open; `residual`: the largest before it.
-   pure subroutine gauss_newton_step(b, i, s, residual)
+   pure subroutine gauss_newton_step(b, x, i, s, residual)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: residual
       type(values_t) :: v
-      real(wp), allocatable :: x(:)
+      real(wp), allocatable :: values(:)
       integer :: k
 
-      v = decomposed(b, i, s)
+      v = decomposed(b, x, i, s)
       residual = maxval(abs(v%r))
-      x = values_of(b, i, s)
+      values = values_of(b, i, s)
       do k = 1, v%rank
-         x = x - v%right(k, :)*(dot_product(v%left(:, k), v%r)/v%s(k))
+         values = values - v%right(k, :)*(dot_product(v%left(:, k), v%r)/v%s(k))
       end do
-      call set_values(b, i, x, s)
+      call set_values(b, i, values, s)
    end subroutine gauss_newton_step
 
    !> The singular values of the Jacobian of block `i`.
-   pure function decomposed(b, i, s) result(v)
+   pure function decomposed(b, x, i, s) result(v)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       type(values_t) :: v
@@ -255,10 +265,10 @@ contains
          return
       end if
       there = s
-      call assemble_dense(b, i, there, a, v%r)
+      call assemble_dense(b, x, i, there, a, v%r)
       allocate (v%s(min(v%rows, v%n)), v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       ! A block of one unknown has nothing but its own body vectors to be compared with.
-      v%rank = count(v%s > zero_level*max(v%s(1), b%numbers%blocks(i)%lipschitz, tiny(1.0_wp)))
+      v%rank = count(v%s > zero_level*max(v%s(1), x%blocks(i)%lipschitz, tiny(1.0_wp)))
    end function decomposed
 end module block_rank

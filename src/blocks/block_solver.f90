@@ -13,16 +13,18 @@
 module block_solver
    use kinds, only: wp
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
-      entries_of, work_length, nearby_t, solve_nearby, stay_near
+      entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
+   use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
    use planar, only: length_of
-   use blocks, only: blocks_t, block_t, block_numbers_t, known_to, loop_projection
+   use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
+      slide_t, known_to, loop_projection
    use block_state, only: state_t, set_direction
-   use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
+   use block_equations, only: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations, solve_rates, second_order_bounds
+   public :: workspace_t, new_workspace, solve_block, solve_direct, second_order_bounds
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -47,10 +49,12 @@ module block_solver
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
    !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
-   !> and first values; room for the widest block. Nothing in it outlives the solution of a block.
+   !> first values, and the residual of equations that are too many; room for the widest block. Nothing in it outlives
+   !> the solution of a block.
    type :: workspace_t
-      real(wp), allocatable :: a(:), r(:), start(:), work(:)
+      real(wp), allocatable :: a(:), r(:), start(:), gap(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
+      type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
    end type workspace_t
 
@@ -65,96 +69,119 @@ contains
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
-      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
+      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%gap(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
-   !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
-   !> `c`: how it ended.
-   subroutine solve_block(b, i, tolerance, w, s, c)
+   !> Solves block `i` for rate and acceleration of its unknowns and, if it `moves`, first for their values, which start
+   !> from those of `s`. If its Jacobian there has no inverse, c%singular says so, and rates and accelerations stay.
+   subroutine solve_block(b, x, i, moves, w, s, c)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: tolerance
+      logical, intent(in) :: moves
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: c    !< how it ended
 
-      if (b%list(i)%direct) then
-         call solve_direct(b, i, s)
-         c%ended = ended_converged
-      else
-         call solve_equations(b, i, b%list(i), b%numbers%blocks(i), tolerance, w, s, c)
-      end if
+      associate (block => b%list(i))
+         if (block%direct) then
+            call solve_direct(b, x, i, s)
+            c%ended = ended_converged
+            return
+         end if
+         call solve_arrays(b, x, i, block, block%shape, block%shape%rows, block%shape%n, x%blocks(i), moves, &
+            b%unknown(block%first:block%last), b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
+            s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, w%a, w%r, w%start, w%gap, w%pivots, w%work, &
+            w%iwork, w%near, w%sparse, c)
+         if (block%shape%pattern > 0) call release(w%sparse)
+      end associate
    end subroutine solve_block
 
-   !> A drive's own unknown: nothing to iterate.
-   pure subroutine solve_direct(b, i, s)
+   !> Solves block `i`, a drive's own unknown: nothing to iterate.
+   pure subroutine solve_direct(b, x, i, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      integer :: d
 
-      associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row), &
-                 numbers => b%numbers%rows(b%list(i)%first_row))
-         associate (other => s%u(row%other))
-            d = row%drive
-            u%value = other%value + row%sign_of*(numbers%constant + s%drive_value(0, d))
-            u%rate = other%rate + row%sign_of*s%drive_value(1, d)
-            u%acceleration = other%acceleration + row%sign_of*s%drive_value(2, d)
-         end associate
+      associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
+         call find_direct(row, x%rows(b%list(i)%first_row), s%drive_value, s%u(row%other), s%u(u))
+         call set_direction(b, u, s)
       end associate
-      call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> Solves `block`, number `i`, with its `numbers`, which is not direct, by Newton's method. Where it ends with a
-   !> position, `w` holds the velocities, in the second half of `r`, and the factors of the Jacobian there or of one
-   !> beside it. Where that Jacobian has no inverse, c%singular says so.
-   subroutine solve_equations(b, i, block, numbers, tolerance, w, s, c)
+   !> Solves `block`, number `i`, which is not direct, by Newton's method: on plain arrays, whose descriptors are read
+   !> once. `solve_block` shows what they are of.
+   subroutine solve_arrays(b, x, i, block, shape, rows, n, numbers, moves, unknown, loops, loop_numbers, vectors, d, &
+      slides, e, equations, constants, values, excursion, u, own, guide, now, a, r, start, gap, pivots, work, iwork, &
+      near, sparse, c)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      type(geometry_t), intent(in) :: x
+      integer, intent(in) :: i, rows, n
       type(block_t), intent(in) :: block
+      type(shape_t), intent(in) :: shape
       type(block_numbers_t), intent(in) :: numbers
-      real(wp), intent(in) :: tolerance
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
+      logical, intent(in) :: moves
+      integer, intent(in) :: unknown(n)
+      type(block_loop_t), intent(in) :: loops(*)
+      type(loop_numbers_t), intent(in) :: loop_numbers(*)
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(vector_t), intent(in) :: d(*), e(*)
+      type(equation_row_t), intent(in) :: equations(*)
+      type(row_numbers_t), intent(in) :: constants(*)
+      real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
+      type(unknown_t), intent(inout) :: u(0:*)
+      type(vector_t), intent(inout) :: own(*), guide(*)
+      type(loop_state_t), intent(inout) :: now(*)
+      real(wp), intent(inout) :: a(*), r(rows, 2), start(*), gap(*), work(*)
+      integer, intent(inout) :: pivots(*), iwork(*)
+      type(nearby_t), intent(inout) :: near
+      type(sparse_factors_t), intent(inout) :: sparse
       type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of, rates(2)
-      integer :: info, iteration, second, side, k
+      real(wp) :: before, size_of, own_size, cosine
+      integer :: info, iteration, side, k
       logical :: is_closed, is_right
 
-      second = block%shape%rows + 1
       size_of = 1.0_wp
-      do k = block%first, block%last
-         associate (f => s%u(b%unknown(k)))
-            w%start(k - block%first + 1) = f%value
-            size_of = max(size_of, abs(f%value))
-         end associate
-         call set_direction(b, b%unknown(k), s)
-      end do
-      call find_known_parts(b, i, s)
+      if (moves) then
+         do k = 1, n
+            associate (f => u(unknown(k)))
+               start(k) = f%value
+               size_of = max(size_of, abs(f%value))
+               if (unknown(k) <= b%orientations) then
+                  f%c = cos(f%value)
+                  f%s = sin(f%value)
+               end if
+            end associate
+         end do
+      end if
+      call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, d, u, now)
       before = huge(before)
-      w%near%distance = 0.0_wp
+      near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
             c%ended = ended_diverged
-            return
+            exit
          end if
          c%iterations = iteration
-         call assemble_with_velocities(b, i, s, w%a, w%r, w%r(second))
-         if (w%near%distance > 0.0_wp) then
-            w%near%a = w%a(:4)
-            w%a(:4) = w%near%factors
+         call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, d, slides, e, equations, &
+            constants, values, u, own, guide, now, a, r, r(1, 2))
+         if (near%distance > 0.0_wp) then
+            near%a = a(:4)
+            a(:4) = near%factors
          end if
-         c%residual = largest_size(block%shape%rows, w%r)
-         if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
-         is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
-         side = merge(second, 1, is_closed)
+         c%residual = largest_size(rows, r)
+         if (rows > n) gap(:rows) = r(:, 1)
+         is_closed = c%residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
+         side = merge(2, 1, is_closed)
          info = 0
-         if (w%near%distance > 0.0_wp) then
-            call solve_nearby(w%near, w%r(side))
+         if (near%distance > 0.0_wp) then
+            call solve_nearby(near, r(1, side))
          else
-            call solve_first(block%shape, w%a, w%pivots, w%work, w%r(side), info, b%patterns)
+            call solve_first(shape, a, pivots, work, r(1, side), info, b%patterns, sparse)
          end if
          if (is_closed) then
             c%step = 0.0_wp
@@ -163,143 +190,133 @@ contains
             exit
          end if
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level*max(size_of, numbers%coarse), tolerance)
+            c%singular = c%residual <= max(rounding_level*max(size_of, numbers%coarse), x%tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
-         c%step = largest_size(block%shape%n, w%r)
+         c%step = largest_size(n, r)
          ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
          ! it is their gap. A step so small that no longer falls is rounding, whatever sums have left it.
          if (c%step > 0.5_wp*before .and. (c%step <= small_turn .or. &
             c%residual <= rounding_level*max(size_of, numbers%coarse))) then
             c%ended = ended_stalled
          else
-            call move(b, block, numbers, w%r, s, c%step, tolerance, size_of, is_right)
+            ! The correction was right if it was at the rounding level of each value, or within the tolerance: beside a
+            ! long slide an angle is not.
+            size_of = 1.0_wp
+            is_right = .true.
+            do k = 1, n
+               associate (f => u(unknown(k)), step => r(k, 1))
+                  f%value = f%value - step
+                  own_size = max(1.0_wp, abs(f%value))
+                  size_of = max(size_of, own_size)
+                  is_right = is_right .and. &
+                     abs(step) <= max(step_tolerance*max(own_size, numbers%coarse), x%tolerance)
+                  if (unknown(k) > b%orientations) cycle
+                  if (c%step > small_turn) then
+                     f%c = cos(f%value)
+                     f%s = sin(f%value)
+                  else
+                     cosine = f%c
+                     f%c = cosine + step*f%s
+                     f%s = f%s - step*cosine
+                  end if
+               end associate
+            end do
             if (is_right) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(block%shape, w%a, w%pivots, numbers%lipschitz*c%step, w%near)
+            call stay_near(shape, a, pivots, numbers%lipschitz*c%step, near)
             cycle
          end if
-         call right_hand_side(b, i, 1, s, w%r(second))
-         call solve_next_side(block%shape, w, w%r(second))
+         do k = block%first_loop, block%last_loop
+            call velocity_rows(loops(k), slides, u, guide, now(k), r(1, 2))
+         end do
+         if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 1, values, r(1, 2))
+         call solve_next_side(shape, a, pivots, work, near, sparse, r(1, 2))
          exit
       end do
-      if (c%iterations > 1 .or. c%step > 0.0_wp) then
-         do k = 1, block%shape%n
-            c%change = max(c%change, abs(s%u(b%unknown(block%first + k - 1))%value - w%start(k)))
+      if ((c%iterations > 1 .or. c%step > 0.0_wp) .and. c%ended /= ended_diverged) then
+         do k = 1, n
+            c%change = max(c%change, abs(u(unknown(k))%value - start(k)))
          end do
+      end if
+      if (rows > n .and. moves) then
+         if (c%iterations > 0) call note_closure_error(b, x, i, gap, c)
+         if (is_solved(c) .and. c%open%value > inconsistent_level*c%open%level) c%ended = ended_inconsistent
       end if
       if (.not. is_solved(c)) return
-
-      ! Velocities and accelerations, unless equations contradict one another or the Jacobian is near to having no
-      ! inverse.
-      if (block%shape%rows > block%shape%n .and. c%open%value > inconsistent_level*c%open%level) then
-         c%ended = ended_inconsistent
-         return
-      end if
-      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
+      if (moves .and. .not. c%singular) call judge()
       if (c%singular) return
-      do k = 1, block%shape%n
-         s%u(b%unknown(block%first + k - 1))%rate = w%r(block%shape%rows + k)
-      end do
-      call right_hand_side(b, i, 2, s, w%r)
-      call solve_next_side(block%shape, w, w%r)
-      do k = 1, block%shape%n
-         s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
-      end do
-      if (block%shape%rows == block%shape%n) return
-      associate (rows => block%shape%rows, n => block%shape%n)
-         rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
-      end associate
-   end subroutine solve_equations
 
-   !> Solves block `i` for the rates and accelerations of its unknowns alone, at the position of `s`, with the rates of
-   !> drives and of known unknowns in `s`.
-   subroutine solve_rates(b, i, w, s, has_rates)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      logical, intent(out) :: has_rates      !< they are unique, and redundant equations do not contradict them
-      real(wp) :: rates(2)
-      integer :: info, k
+      do k = 1, n
+         u(unknown(k))%rate = r(k, 2)
+      end do
+      do k = block%first_loop, block%last_loop
+         call acceleration_rows(loops(k), vectors, slides, u, own, guide, now(k), r)
+      end do
+      if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 2, values, r)
+      call solve_next_side(shape, a, pivots, work, near, sparse, r)
+      do k = 1, n
+         u(unknown(k))%acceleration = r(k, 1)
+      end do
+      if (rows > n) c%rates_open = contradict_rates(b, i, values, u, r, numbers%coarse)
 
-      has_rates = .true.
-      if (b%list(i)%direct) then
-         call solve_direct(b, i, s)
-         return
-      end if
-      associate (block => b%list(i), shape => b%list(i)%shape, rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
-         w%near%distance = 0.0_wp
-         call find_known_parts(b, i, s)
-         call assemble_with_velocities(b, i, s, w%a, w%r, w%r(rows + 1))
-         call solve_first(shape, w%a, w%pivots, w%work, w%r(rows + 1), info, b%patterns)
-         has_rates = info == 0
-         if (.not. has_rates) return
-         do k = 1, n
-            s%u(b%unknown(block%first + k - 1))%rate = w%r(rows + k)
-         end do
-         call right_hand_side(b, i, 2, s, w%r)
-         call solve_next_side(shape, w, w%r)
-         do k = 1, n
-            s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
-         end do
-         if (rows == n) return
-         rates = largest_rates(b, i, s)
-         has_rates = .not. (contradict(w%r(rows + n + 1:2*rows), rates(1), b%numbers%blocks(i)%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), b%numbers%blocks(i)%coarse))
-      end associate
-   end subroutine solve_rates
+   contains
+
+      !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
+      !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
+      !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one
+      !> root only where B L change is below 1/2.
+      subroutine judge()
+         real(wp) :: least, largest, inverse
+         logical :: suspicious
+
+         call pivot_range(shape, a, pivots, least, largest, c%determinant, sparse)
+         if (shape%pattern > 0) then
+            ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
+            inverse = inverse_norm(shape, a, pivots, work, iwork, sparse)
+            least = 1.0_wp/inverse
+         end if
+         c%min_pivot = 1.0_wp
+         if (n == 0) return
+         c%min_pivot = least
+         if (n == 1) largest = numbers%lipschitz
+         ! All pivots may be small, where links are much shorter than the mechanism.
+         suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
+         if (n > 2) then
+            c%inverse = 1.0_wp/max(least, min_inverse)
+            c%kantorovich_ratio = c%change*numbers%lipschitz*c%inverse
+            if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
+               excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
+         end if
+         if (shape%pattern == 0) inverse = inverse_norm(shape, a, pivots, work, iwork, sparse)
+         c%inverse = min(inverse, 1.0_wp/min_inverse)
+         c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
+         if (.not. suspicious) return
+         size_of = max(numbers%coarse, maxval(abs(u(unknown)%value)))
+         c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
+         if (c%singular) c%singular = is_beyond_linear(b, x, i, n, u, now, a, pivots, work, sparse)
+      end subroutine judge
+   end subroutine solve_arrays
 
    !> Solves for another right-hand side `v` (rows), from the factors.
-   subroutine solve_next_side(shape, w, v)
+   subroutine solve_next_side(shape, a, pivots, work, near, sparse, v)
       type(shape_t), intent(in) :: shape
-      type(workspace_t), intent(inout) :: w
+      real(wp), intent(in) :: a(*)
+      integer, intent(in) :: pivots(*)
+      real(wp), intent(inout) :: work(*)
+      type(nearby_t), intent(in) :: near
+      type(sparse_factors_t), intent(inout) :: sparse
       real(wp), intent(inout) :: v(*)
 
-      if (w%near%distance > 0.0_wp) then
-         call solve_nearby(w%near, v)
+      if (near%distance > 0.0_wp) then
+         call solve_nearby(near, v)
       else
-         call solve_again(shape, w%a, w%pivots, w%work, v)
+         call solve_again(shape, a, pivots, work, v, sparse)
       end if
    end subroutine solve_next_side
-
-   !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
-   !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.
-   subroutine move(b, block, numbers, d, s, step, tolerance, size_of, is_right)
-      type(blocks_t), intent(in) :: b
-      type(block_t), intent(in) :: block
-      type(block_numbers_t), intent(in) :: numbers
-      real(wp), intent(in) :: d(*)
-      type(state_t), intent(inout) :: s
-      real(wp), intent(in) :: step, tolerance
-      real(wp), intent(out) :: size_of
-      logical, intent(out) :: is_right
-      real(wp) :: own, c
-      integer :: k
-
-      size_of = 1.0_wp
-      is_right = .true.
-      do k = 1, block%shape%n
-         associate (u => b%unknown(block%first + k - 1))
-            s%u(u)%value = s%u(u)%value - d(k)
-            own = max(1.0_wp, abs(s%u(u)%value))
-            size_of = max(size_of, own)
-            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, numbers%coarse), tolerance)
-            if (step > small_turn) then
-               call set_direction(b, u, s)
-            else if (u <= b%orientations) then
-               c = s%u(u)%c
-               s%u(u)%c = c + d(k)*s%u(u)%s
-               s%u(u)%s = s%u(u)%s - d(k)*c
-            end if
-         end associate
-      end do
-   end subroutine move
 
    !> The largest of the sizes of `n` numbers `x`; no number where the last of them is none.
    pure real(wp) function largest_size(n, x) result(largest)
@@ -313,105 +330,68 @@ contains
       end do
    end function largest_size
 
-   !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
-   !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
-   !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
-   !> only where B L change is below 1/2.
-   subroutine judge(b, i, block, numbers, w, s, c)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(block_t), intent(in) :: block
-      type(block_numbers_t), intent(in) :: numbers
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(in) :: s
-      type(convergence_t), intent(inout) :: c
-      real(wp) :: least, largest, inverse, size_of
-      integer :: k, n
-      logical :: suspicious
-
-      n = block%shape%n
-      call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant)
-      if (block%shape%pattern > 0) then
-         ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-         inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
-         least = 1.0_wp/inverse
-      end if
-      c%min_pivot = 1.0_wp
-      if (n == 0) return
-      c%min_pivot = least
-      if (n == 1) largest = numbers%lipschitz
-      ! All pivots may be small, where links are much shorter than the mechanism.
-      suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
-      if (n > 2) then
-         c%inverse = 1.0_wp/max(least, min_inverse)
-         c%kantorovich_ratio = c%change*numbers%lipschitz*c%inverse
-         if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
-            s%excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
-      end if
-      if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, w%a, w%pivots, w%work, w%iwork)
-      c%inverse = min(inverse, 1.0_wp/min_inverse)
-      c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
-      if (.not. suspicious) return
-      size_of = numbers%coarse
-      do k = block%first, block%last
-         size_of = max(size_of, abs(s%u(b%unknown(k))%value))
-      end do
-      c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
-   end subroutine judge
-
    !> Tells the same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the
    !> rows hold beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
-   logical function is_beyond_linear(b, i, n, w, s) result(is)
+   logical function is_beyond_linear(b, x, i, n, u, now, a, pivots, work, sparse) result(is)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(in) :: s
+      type(geometry_t), intent(in) :: x
+      integer, intent(in) :: i, n, pivots(*)
+      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      type(loop_state_t), intent(in) :: now(*)
+      real(wp), intent(in) :: a(*)
+      real(wp), intent(inout) :: work(*)
+      type(sparse_factors_t), intent(inout) :: sparse
       real(wp) :: off(n), more(n)
 
       associate (shape => b%list(i)%shape)
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off)
-         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more)
+         call spread_by_inverse(shape, a, pivots, work, rounding_level*rounded_sizes(b, x, i, u), off, sparse)
+         call spread_by_inverse(shape, a, pivots, work, second_order_bounds(b, x, i, u, now, off), more, sparse)
       end associate
       is = .not. all(more < largest_error*off)
    end function is_beyond_linear
 
-   !> Finds the largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides,
-   !> drives, known or not.
-   pure function largest_rates(b, i, s) result(largest)
+   !> Tells whether the redundant equations of block `i` contradict its rates or accelerations, by what both columns of
+   !> `r` leave of them; beside the largest rate and acceleration of anything that goes into the equations: angles,
+   !> slides, drives, known or not.
+   pure logical function contradict_rates(b, i, values, u, r, coarse) result(do)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: values(0:2, 0:*)
+      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      real(wp), intent(in) :: r(b%list(i)%shape%rows, 2), coarse
       real(wp) :: largest(2)
       integer :: k
 
       largest = 0.0_wp
       do k = b%list(i)%first_row, b%list(i)%last_row
-         largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
+         largest = max(largest, abs(values(1:2, b%rows(k)%drive)))
       end do
-      associate (u => s%u(known_to(b, i)))
-         largest = max(largest, [maxval(abs(u%rate)), maxval(abs(u%acceleration))])
+      associate (known => u(known_to(b, i)), n => b%list(i)%shape%n)
+         largest = max(largest, [maxval(abs(known%rate)), maxval(abs(known%acceleration))])
+         do = contradict(r(n + 1:, 2), largest(1), coarse) &
+            .or. contradict(r(n + 1:, 1), max(largest(2), largest(1)**2), coarse)
       end associate
-   end function largest_rates
+   end function contradict_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
-   pure function rounded_sizes(b, i, s) result(sizes)
+   pure function rounded_sizes(b, x, i, u) result(sizes)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      type(state_t), intent(in) :: s
+      type(unknown_t), intent(in) :: u(0:b%unknowns)
       real(wp) :: sizes(b%list(i)%shape%rows), size_of
       integer :: m, k
 
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            size_of = max(b%numbers%loops(m)%coarse, abs(s%u(g%orientation)%value), abs(s%u(g%less)%value))
+            size_of = max(x%loops(m)%coarse, abs(u(g%orientation)%value), abs(u(g%less)%value))
             do k = g%first_own, g%last_vector
-               size_of = max(size_of, abs(s%u(b%body_vectors(k)%orientation)%value))
+               size_of = max(size_of, abs(u(b%body_vectors(k)%orientation)%value))
             end do
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k))
-                  size_of = max(size_of, abs(s%u(slide%unknown)%value)*length_of(b%numbers%e(k)), &
-                     abs(s%u(slide%orientation)%value))
+                  size_of = max(size_of, abs(u(slide%unknown)%value)*length_of(x%e(k)), &
+                     abs(u(slide%orientation)%value))
                end associate
             end do
             if (g%row_x > 0) sizes(g%row_x) = size_of
@@ -420,12 +400,15 @@ contains
       end do
    end function rounded_sizes
 
-   !> (rows) Bounds of d . r'' d for changes `d` (n, none negative) of the unknowns of block `i` from the state: twice
-   !> what the rows r hold beyond their linear part. A projection that turns with an angle of the block turns its loop.
-   pure function second_order_bounds(b, i, s, d) result(bounds)
+   !> (rows) Bounds of d . r'' d for changes `d` (n, none negative) of the unknowns of block `i` from the
+   !> values of `u`, whose loops are `now`: twice what the rows r hold beyond their linear part. A projection that turns
+   !> with an angle of the block turns its loop.
+   pure function second_order_bounds(b, x, i, u, now, d) result(bounds)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      type(state_t), intent(in) :: s
+      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      type(loop_state_t), intent(in) :: now(*)
       real(wp), intent(in) :: d(:)
       real(wp) :: bounds(b%list(i)%shape%rows), change(0:size(d)), first, second
       integer :: m, k
@@ -436,7 +419,7 @@ contains
             first = 0.0_wp
             second = 0.0_wp
             do k = g%first_own, g%last_vector
-               associate (length => hypot(b%numbers%d(k)%x, b%numbers%d(k)%y), &
+               associate (length => hypot(x%d(k)%x, x%d(k)%y), &
                   turn => change(b%body_vectors(k)%column))
                   first = first + length*turn
                   second = second + length*turn**2
@@ -444,14 +427,14 @@ contains
             end do
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k), turn => change(b%slides(k)%orientation_column), &
-                  length => abs(s%u(b%slides(k)%unknown)%value))
-                  first = first + length_of(b%numbers%e(k))*(change(slide%column) + length*turn)
-                  second = second + length_of(b%numbers%e(k))*turn*(2.0_wp*change(slide%column) + length*turn)
+                  length => abs(u(b%slides(k)%unknown)%value))
+                  first = first + length_of(x%e(k))*(change(slide%column) + length*turn)
+                  second = second + length_of(x%e(k))*turn*(2.0_wp*change(slide%column) + length*turn)
                end associate
             end do
             if (g%kind == loop_projection) then
                associate (turn => change(g%orientation_column))
-                  second = second + turn*(2.0_wp*first + length_of(s%loop(m)%closure_error)*turn)
+                  second = second + turn*(2.0_wp*first + length_of(now(m)%closure_error)*turn)
                end associate
             end if
             if (g%row_x > 0) bounds(g%row_x) = second

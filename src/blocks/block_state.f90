@@ -3,7 +3,7 @@ module block_state
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, loop_state_t
    use planar, only: without_turns
-   use blocks, only: blocks_t, loop_angles
+   use blocks, only: blocks_t, geometry_t, loop_angles
    implicit none
    private
    public :: unknown_t, loop_state_t, state_t, new_state, set_direction, set_values, &
@@ -67,20 +67,22 @@ contains
    end function values_of
 
    !> The value that row `row` of block `i` requires: its constant and its drive's value.
-   pure real(wp) function given(b, i, row, s)
+   pure real(wp) function given(b, x, i, row, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, row
       type(state_t), intent(in) :: s
 
       associate (k => b%list(i)%first_row + row - 1)
-         given = b%numbers%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
+         given = x%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
       end associate
    end function given
 
    !> Adds to the angles of block `i` the whole turns that its drives ask for between two of them. Angles that are
    !> joined by such drives turn together.
-   pure subroutine add_turns(b, i, s)
+   pure subroutine add_turns(b, x, i, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp) :: turns(0:b%list(i)%shape%n), off
@@ -92,7 +94,7 @@ contains
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
             if (g%kind /= loop_angles .or. g%orientation > b%orientations) cycle
-            off = given(b, i, g%row_x, s) - s%u(g%orientation)%value - turns(g%orientation_column) &
+            off = given(b, x, i, g%row_x, s) - s%u(g%orientation)%value - turns(g%orientation_column) &
                + s%u(g%less)%value + turns(g%less_column)
             joins = group(g%orientation_column)
             to = group(g%less_column)

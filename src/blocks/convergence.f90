@@ -2,7 +2,7 @@
 !> redundant block contradict one another, in position and in its derivatives.
 module convergence
    use kinds, only: wp
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    implicit none
    private
    public :: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
@@ -99,8 +99,9 @@ contains
 
    !> The pair or drive that is open the most by the residuals `r`: a revolute pair by the distance of its points. Of
    !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
-   pure subroutine note_closure_error(b, i, r, c)
+   pure subroutine note_closure_error(b, x, i, r, c)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: r(*)
       type(convergence_t), intent(inout) :: c
@@ -113,7 +114,7 @@ contains
          associate (g => b%loops(m))
             if (g%row_x > 0) opening(m) = abs(r(g%row_x))
             if (g%row_y > 0) opening(m) = hypot(opening(m), r(g%row_y))
-            level(m) = max(1.0_wp, b%numbers%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
+            level(m) = max(1.0_wp, x%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
          end associate
       end do
       largest = maxval(opening/level)
@@ -124,7 +125,7 @@ contains
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
             if (opening(m)/level(m) < (1.0_wp - alike)*largest) cycle
             if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
-            c%open = closure_error_t(opening(m), row%angular, b%numbers%loops(m)%unit, level(m), row%pair, row%drive)
+            c%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
    end subroutine note_closure_error

@@ -14,7 +14,7 @@ module initial_estimate
    use pair_geometry, only: way_of, opening_of, slide_of
    use mechanism, only: mechanism_t, has_guide
    use links_tree, only: tree_t, axes_t
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    implicit none
    private
    public :: estimated_values, estimated_directions
@@ -36,16 +36,17 @@ module initial_estimate
 contains
 
    !> Values (0:unknowns) of angles and slides of `m`, in the units of its blocks `b`.
-   function estimated_values(m, b) result(value)
+   function estimated_values(m, b, x) result(value)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       real(wp) :: value(0:b%unknowns)
       real(wp) :: phi(size(m%links))
       integer :: i, u
 
       value = 0.0_wp
-      associate (t => b%tree, a => b%numbers%equations%axes, length => b%numbers%equations%length)
-         phi = estimated_directions(m, t, a, b%numbers%span)
+      associate (t => b%tree, a => x%equations%axes, length => x%equations%length)
+         phi = estimated_directions(m, t, a, x%span)
          do i = size(m%links), 1, -1
             if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - a%angle_offset(i)
             if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
@@ -59,7 +60,7 @@ contains
             end associate
          end do
       end associate
-      value = value/b%numbers%unit
+      value = value/x%unit
    end function estimated_values
 
    !> Finds where link number `i` is at the deck's place with its angle of `phi` (links).

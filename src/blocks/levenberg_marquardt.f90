@@ -5,7 +5,7 @@ module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, work_length, solve_first
    use convergence, only: convergence_t, note_closure_error
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense
    use block_rank, only: residual_of
@@ -38,8 +38,9 @@ module levenberg_marquardt
 contains
 
    !> Brings block `i` from the values of `s` to where the sum of the squares of its residuals is least.
-   subroutine levenberg_marquardt_solve(b, i, s)
+   subroutine levenberg_marquardt_solve(b, x, i, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), dimension(b%list(i)%shape%n) :: start, best
@@ -47,14 +48,14 @@ contains
       integer :: k
 
       if (size(start) == 0 .or. size(start) > max_unknowns) return
-      call find_known_parts(b, i, s)
+      call find_known_parts(b, x, i, s)
       start = values_of(b, i, s)
       best = start
       least = huge(least)
       do k = 0, starts - 1
          call set_values(b, i, around(start, k), s)
-         call descend(b, i, spread(1.0_wp, 1, b%list(i)%shape%rows), s)
-         square = sum(residual_of(b, i, values_of(b, i, s), s)**2)
+         call descend(b, x, i, spread(1.0_wp, 1, b%list(i)%shape%rows), s)
+         square = sum(residual_of(b, x, i, values_of(b, i, s), s)**2)
          if (square < least) best = values_of(b, i, s)
          least = min(least, square)
          if (least <= near**2) exit
@@ -65,8 +66,9 @@ contains
    !> Puts into `c` the pair or drive of block `i` that is open the most where the sum of squares is least, as in `s`,
    !> and by how much that one is open at least while all others are closed; 0: no such position is found. Of equations
    !> that are too many: its part of the least sum, since they share what is lacking.
-   subroutine find_closure_error(b, i, s, c)
+   subroutine find_closure_error(b, x, i, s, c)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
@@ -77,7 +79,7 @@ contains
 
       if (size(best) == 0 .or. size(best) > max_unknowns) return
       best = values_of(b, i, s)
-      call note_closure_error(b, i, residual_of(b, i, best, s), c)
+      call note_closure_error(b, x, i, residual_of(b, x, i, best, s), c)
       if (size(r) > size(best)) return
 
       c%open%value = 0.0_wp
@@ -92,10 +94,10 @@ contains
       do k = 0, starts - 1
          call set_values(b, i, around(best, k), s)
          do m = 1, size(stiff)
-            call descend(b, i, merge(1.0_wp, stiff(m), own(1:)), s)
+            call descend(b, x, i, merge(1.0_wp, stiff(m), own(1:)), s)
          end do
-         r = residual_of(b, i, values_of(b, i, s), s)
-         call note_closure_error(b, i, r, one)
+         r = residual_of(b, x, i, values_of(b, i, s), s)
+         call note_closure_error(b, x, i, r, one)
          if (any(.not. own(1:) .and. .not. stiff(2)*abs(r) <= one%open%value)) cycle
          if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
       end do
@@ -113,48 +115,49 @@ contains
    end function around
 
    !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`.
-   subroutine descend(b, i, weights, s)
+   subroutine descend(b, x, i, weights, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: weights(:)
       type(state_t), intent(inout) :: s
       type(shape_t) :: damped                     ! the Jacobian with a row more for each unknown
-      real(wp) :: x(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(x)), d(size(r) + size(x)), &
-         a(size(d), size(x)), damping, square, step, largest
+      real(wp) :: values(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(values)), &
+         d(size(r) + size(values)), a(size(d), size(values)), damping, square, step, largest
       real(wp), allocatable :: work(:)
-      integer :: pivots(size(x)), iteration, k, info
+      integer :: pivots(size(values)), iteration, k, info
 
-      damped = shape_t(rows=size(d), n=size(x))
+      damped = shape_t(rows=size(d), n=size(values))
       allocate (work(work_length(damped)))
       damping = first_damping
-      call assemble_dense(b, i, s, jacobian, r)
+      call assemble_dense(b, x, i, s, jacobian, r)
       do iteration = 1, max_iterations
          largest = maxval(weights*abs(r))
          if (largest <= closed .or. damping > max_damping .or. .not. largest <= bound) exit
          square = sum((weights*r)**2)
-         x = values_of(b, i, s)
+         values = values_of(b, i, s)
 
          ! Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
          a = 0.0_wp
-         do k = 1, size(x)
+         do k = 1, size(values)
             a(:size(r), k) = weights*jacobian(:, k)
             a(size(r) + k, k) = sqrt(damping)
          end do
          d(:size(r)) = weights*r
          d(size(r) + 1:) = 0.0_wp
          call solve_first(damped, a, pivots, work, d, info)
-         step = maxval(abs(d(:size(x))))
-         if (step > longest_step) d(:size(x)) = d(:size(x))*(longest_step/step)
+         step = maxval(abs(d(:size(values))))
+         if (step > longest_step) d(:size(values)) = d(:size(values))*(longest_step/step)
 
-         call set_values(b, i, x - d(:size(x)), s)
-         call assemble_dense(b, i, s, jacobian, r)
+         call set_values(b, i, values - d(:size(values)), s)
+         call assemble_dense(b, x, i, s, jacobian, r)
          if (sum((weights*r)**2) < square) then
             damping = max(0.2_wp*damping, min_damping)
             if (step <= min_step) exit
          else
             damping = 5.0_wp*damping
-            call set_values(b, i, x, s)
-            call assemble_dense(b, i, s, jacobian, r)
+            call set_values(b, i, values, s)
+            call assemble_dense(b, x, i, s, jacobian, r)
          end if
       end do
    end subroutine descend

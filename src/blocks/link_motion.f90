@@ -9,7 +9,7 @@ module link_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use links_tree, only: link_offset_t, place_on_tree
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    use block_state, only: unknown_t, state_t
    implicit none
    private
@@ -44,9 +44,10 @@ contains
 
    !> The chain of the links of `m`, whose blocks are `b`, in the deck's unit of length; first those `wanted` (links),
    !> and their parents.
-   function new_chain(m, b, wanted) result(c)
+   function new_chain(m, b, x, wanted) result(c)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       logical, intent(in) :: wanted(:)
       type(chain_t) :: c
       logical :: needed(size(wanted))
@@ -65,23 +66,24 @@ contains
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
-      call put_chain(m, b, c)
+      call put_chain(m, b, x, c)
    end function new_chain
 
    !> Gives the chain `c` the numbers of `m`, whose blocks are `b`.
-   subroutine put_chain(m, b, c)
+   subroutine put_chain(m, b, x, c)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       type(chain_t), intent(inout) :: c
       integer :: i
 
       do i = 1, size(c%links)
-         associate (h => c%links(i), link => c%links(i)%link, t => b%tree, a => b%numbers%equations%axes)
+         associate (h => c%links(i), link => c%links(i)%link, t => b%tree, a => x%equations%axes)
             h%orientation = t%orientation(link)
             h%angle_offset = a%angle_offset(link)
             if (t%parent(link) == 0) then
                h%root = t%orientations + t%slides + 2*t%root(link) - 1
-               h%root_unit = b%numbers%unit(h%root:h%root + 1)
+               h%root_unit = x%unit(h%root:h%root + 1)
                cycle
             end if
             h%place = place_on_tree(m, t, a, link)
@@ -89,15 +91,15 @@ contains
             h%parent_orientation = t%orientation(t%parent(link))
             if (h%place%slide > 0) then
                h%slide = t%orientations + h%place%slide
-               h%place%slide_body_vector = b%numbers%unit(h%slide)*h%place%slide_body_vector
+               h%place%slide_body_vector = x%unit(h%slide)*h%place%slide_body_vector
             end if
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
          end associate
       end do
       do i = 1, size(c%ground)
-         c%ground_position(:, i) = m%links(c%ground(i))%position - [b%numbers%equations%axes%origin, 0.0_wp]
+         c%ground_position(:, i) = m%links(c%ground(i))%position - [x%equations%axes%origin, 0.0_wp]
       end do
-      c%origin = b%numbers%equations%axes%origin
+      c%origin = x%equations%axes%origin
    end subroutine put_chain
 
    !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the

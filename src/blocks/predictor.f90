@@ -16,7 +16,7 @@
 module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, geometry_t
    use block_state, only: unknown_t, state_t, largest_drive_rate
    implicit none
    private
@@ -135,8 +135,9 @@ contains
    !> branch is about p/L away: the velocities are uncertain by the quotient of the two, in parts of v, and the
    !> accelerations by that over p/L, in parts of v^2; v is the largest velocity, of the block or of a drive. At dead
    !> points the accelerations grow as the velocities do, and are known.
-   pure real(wp) function uncertain_part(b, i, pivot, s) result(part)
+   pure real(wp) function uncertain_part(b, x, i, pivot, s) result(part)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: pivot
       type(state_t), intent(in) :: s
@@ -149,7 +150,7 @@ contains
          fastest = max(v, largest_drive_rate(s))
          v = max(v, epsilon(1.0_wp)*fastest)
          if (.not. v > 0.0_wp) return
-         part = epsilon(1.0_wp)*b%numbers%blocks(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
+         part = epsilon(1.0_wp)*x%blocks(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
          if (.not. part*v > known_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
       end associate
    end function uncertain_part

@@ -14,7 +14,7 @@
 module singular_place
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
-   use blocks, only: blocks_t, blocks_below, own_unknowns
+   use blocks, only: blocks_t, geometry_t, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    use block_rank, only: values_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step, &
@@ -47,36 +47,37 @@ contains
 
    !> Moves block `i` from the singular position of `s`, where it has just been solved, to the place where its Jacobian
    !> has no inverse, or to the root of its equations beside that.
-   subroutine settle(b, i, s)
+   subroutine settle(b, x, i, s)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(values_t) :: v
-      real(wp) :: x(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed
-      real(wp) :: jacobian(size(r)*size(x))
+      real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed
+      real(wp) :: jacobian(size(r)*size(first))
 
-      if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
-      x = values_of(b, i, s)
-      v = decomposed(b, i, s)
-      level = max(sum_size, maxval(abs(x)), b%numbers%blocks(i)%coarse)
+      if (b%list(i)%shape%rows > max_rows .or. size(first) == 0) return
+      first = values_of(b, i, s)
+      v = decomposed(b, x, i, s)
+      level = max(sum_size, maxval(abs(first)), x%blocks(i)%coarse)
       ! A rounding of an angle that drives and earlier blocks give counts along w: at a dead point in full, at a change
       ! point, which such an angle leaves as it is to the first order, not at all.
       speed = driving_speed(b, i, s)
       if (speed > 0.0_wp) then
-         call assemble_dense(b, i, s, jacobian, r)
-         call right_hand_side(b, i, 1, s, r)
+         call assemble_dense(b, x, i, s, jacobian, r)
+         call right_hand_side(b, x, i, 1, s, r)
          level = max(level, maxval(abs(s%u%value))*abs(dot_product(v%left(:, v%n), r))/speed)
       end if
-      q = curvature_of(b, i, x, v%left(:, v%n), v%right(v%n, :), s)
-      if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%numbers%blocks(i)%lipschitz) return
+      q = curvature_of(b, x, i, first, v%left(:, v%n), v%right(v%n, :), s)
+      if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*x%blocks(i)%lipschitz) return
       associate (left => v%left(:, v%n), k => v%right(v%n, :))
-         call go_to(x - (v%s(v%n)/q)*k)
-         left_open = dot_product(left, residual_of(b, i, y, s))
+         call go_to(first - (v%s(v%n)/q)*k)
+         left_open = dot_product(left, residual_of(b, x, i, y, s))
          if (abs(left_open) > closed*level .and. left_open*q < 0.0_wp) &
-            call go_to(y + sign(sqrt(-2.0_wp*left_open/q), dot_product(x - y, k))*k)
+            call go_to(y + sign(sqrt(-2.0_wp*left_open/q), dot_product(first - y, k))*k)
       end associate
-      if (maxval(abs(y - x)) > furthest/sqrt(min(1.0_wp, abs(q))) .or. &
-         maxval(abs(residual_of(b, i, y, s))) > near*level) call set_values(b, i, x, s)
+      if (maxval(abs(y - first)) > furthest/sqrt(min(1.0_wp, abs(q))) .or. &
+         maxval(abs(residual_of(b, x, i, y, s))) > near*level) call set_values(b, i, first, s)
 
    contains
 
@@ -86,7 +87,7 @@ contains
          real(wp) :: before
 
          call set_values(b, i, place, s)
-         call gauss_newton_step(b, i, s, before)
+         call gauss_newton_step(b, x, i, s, before)
          y = values_of(b, i, s)
       end subroutine go_to
    end subroutine settle
@@ -114,8 +115,9 @@ contains
 
    !> Tells which singular position `s` is for block `i`. Unclear if all that moves the block is at rest, or if the
    !> judgement is equal at a place nearby to which its links can move: a drive moves nothing, or adds nothing.
-   integer function block_singularity(b, i, s) result(found)
+   integer function block_singularity(b, x, i, s) result(found)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       type(state_t) :: aside
@@ -127,12 +129,12 @@ contains
       speed = driving_speed(b, i, s)
       if (speed <= 0.0_wp) return
       aside = s
-      call judge(b, i, speed, aside, agrees, crosses)
+      call judge(b, x, i, speed, aside, agrees, crosses)
       if (agrees .and. .not. crosses) return
       aside = s
-      call try_to_move(b, i, aside, moves)
+      call try_to_move(b, x, i, aside, moves)
       if (any(moves)) then
-         call judge(b, i, speed, aside, agrees_aside, crosses)
+         call judge(b, x, i, speed, aside, agrees_aside, crosses)
          if (agrees_aside .eqv. agrees) return
       end if
       found = merge(singular_change, singular_dead, agrees)
@@ -141,8 +143,9 @@ contains
    !> `agrees`: the equations of block `i` for the velocities have solutions at `s`, whose Jacobian has no inverse;
    !> `crosses`: two of them are those of branches. Of several null vectors that is not asked: they are taken to cross.
    !> `speed`: see `driving_speed`. The rates of the block in `s` are overwritten.
-   subroutine judge(b, i, speed, s, agrees, crosses)
+   subroutine judge(b, x, i, speed, s, agrees, crosses)
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: speed
       type(state_t), intent(inout) :: s
@@ -152,10 +155,10 @@ contains
       real(wp) :: jacobian(size(r)*size(p))
       integer :: j
 
-      call find_known_parts(b, i, s)
-      v = decomposed(b, i, s)
-      call assemble_dense(b, i, s, jacobian, r)
-      call right_hand_side(b, i, 1, s, r)
+      call find_known_parts(b, x, i, s)
+      v = decomposed(b, x, i, s)
+      call assemble_dense(b, x, i, s, jacobian, r)
+      call right_hand_side(b, x, i, 1, s, r)
       ! A position that rounding makes singular may have its least singular value above the zero level.
       agrees = norm2(matmul(r, v%left(:, min(v%rank, v%n - 1) + 1:))) <= agreement*speed
       crosses = agrees
@@ -169,13 +172,13 @@ contains
       unit = max(speed, norm2(p))
       do j = -1, 1
          s%u(own_unknowns(b, i))%rate = p + j*unit*v%right(v%n, :)
-         call right_hand_side(b, i, 2, s, r)
+         call right_hand_side(b, x, i, 2, s, r)
          q(j) = dot_product(v%left(:, v%n), r)/unit**2
       end do
       ! Two real roots, one of which may be infinite; none where all coefficients are zero beside the Lipschitz
       ! constant, as they are where a drive adds nothing to the others.
       c = [q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)]
-      crosses = maxval(abs(c)) > agreement*b%numbers%blocks(i)%lipschitz .and. &
+      crosses = maxval(abs(c)) > agreement*x%blocks(i)%lipschitz .and. &
          c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*maxval(abs(c))**2
    end subroutine judge
 end module singular_place

@@ -157,7 +157,7 @@ contains
       integer :: k
 
       off = abs(d%pose%q - there)
-      off(:2, :) = off(:2, :)*(d%system%length/e%blocks%numbers%span)
+      off(:2, :) = off(:2, :)*(d%system%length/e%geometry%span)
       largest = maxval(off)
       is = .true.
       do k = 1, size(e%needed)
@@ -165,7 +165,7 @@ contains
             if (e%is_singular(i)) then
                is = is .and. largest <= same_place
             else
-               is = is .and. largest*e%blocks%numbers%blocks(i)%lipschitz*e%found(i)%inverse <= certain
+               is = is .and. largest*e%geometry%blocks(i)%lipschitz*e%found(i)%inverse <= certain
             end if
          end associate
       end do

@@ -9,12 +9,13 @@
 #define TWO 2.0_wp
 module lane_equations
    use kinds, only: wp
-   use blocks, only: equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use block_matrix, only: entries_of
+   use blocks, only: block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
    use lane_sines, only: width, sines
    use lane_state, only: lanes_t, vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    implicit none
    private
-   public :: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
+   public :: set_lane_direction, find_lane_direct, find_lane_known, assemble_lanes, lane_accelerations
 
 contains
 
@@ -25,6 +26,19 @@ contains
 
       if (i <= l%blocks%orientations) call sines(l%u(i)%value, l%u(i)%c, l%u(i)%s)
    end subroutine set_lane_direction
+
+   !> Solves block `i`, a drive's own unknown.
+   pure subroutine find_lane_direct(l, i)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+
+      associate (b => l%blocks, first_row => l%blocks%list(i)%first_row)
+         associate (u => b%unknown(b%list(i)%first))
+            call find_direct(b%rows(first_row), l%rows(first_row), l%drive, l%u(b%rows(first_row)%other), l%u(u))
+            call set_lane_direction(l, u)
+         end associate
+      end associate
+   end subroutine find_lane_direct
 
    !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
    pure subroutine find_lane_known(l, i)
@@ -42,16 +56,10 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(inout) :: a(width, n*n), r(width, n), v(width, n)
-      integer :: m
 
-      associate (b => l%blocks, block => l%blocks%list(i))
-         call set_to_zero(n*n, a)
-         do m = block%first_loop, block%last_loop
-            call add_loop(b%loops(m), l%numbers(m)%direction, b%body_vectors, l%d, b%slides, l%e, l%u, l%own, l%guide, &
-               l%loop(m), a, r, v)
-         end do
-         if (l%block(i)%has_right_sides) &
-            call take_right_sides(block%first_row, block%last_row, b%rows, l%rows, l%drive, r, v)
+      associate (b => l%blocks)
+         call assemble(b%list(i), l%block(i)%has_right_sides, b%loops, l%numbers, b%body_vectors, l%d, b%slides, l%e, &
+            b%rows, l%rows, l%drive, l%u, l%own, l%guide, l%loop, a, r, v)
       end associate
    end subroutine assemble_lanes
 
@@ -61,11 +69,14 @@ contains
       type(lanes_t), intent(in) :: l
       integer, intent(in) :: i, n
       real(wp), intent(inout) :: v(width, n)
+      integer :: m
 
-      associate (b => l%blocks, block => l%blocks%list(i))
-         call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, l%u, l%own, &
-            l%guide, l%loop, v)
-         if (l%block(i)%has_right_sides) call add_drives(block%first_row, block%last_row, b%rows, 2, l%drive, v)
+      associate (b => l%blocks)
+         do m = b%list(i)%first_loop, b%list(i)%last_loop
+            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, l%u, l%own, l%guide, l%loop(m), v)
+         end do
+         if (l%block(i)%has_right_sides) &
+            call add_drives(b%list(i)%first_row, b%list(i)%last_row, b%rows, 2, l%drive, v)
       end associate
    end subroutine lane_accelerations
 

@@ -46,7 +46,7 @@ module lane_state
       !> (lanes, value and rate and acceleration, slots, unknowns) that are remembered
       real(wp), allocatable :: past(:, :, :, :)
       type(lane_block_t), allocatable :: block(:)
-      ! Numbers and state, as in `numbers_t` and `state_t`.
+      ! Numbers and state, as in `geometry_t` and `state_t`.
       type(row_numbers_t), allocatable :: rows(:)
       type(loop_numbers_t), allocatable :: numbers(:)   !< (loops)
       type(vector_t), allocatable :: d(:), e(:)         !< (body vectors), (slides) in their axes
@@ -64,7 +64,8 @@ contains
 
       is_covered = digits(1.0_wp) == 53 .and. e%blocks%redundant == 0 .and. size(e%history%predicted) > 0
       if (.not. is_covered) return
-      is_covered = e%history%filled == 3 .and. e%history%order == own_predictor .and. .not. e%tolerance > 0.0_wp
+      is_covered = e%history%filled == 3 .and. e%history%order == own_predictor &
+         .and. .not. e%geometry%tolerance > 0.0_wp
       do k = 1, size(e%moving)
          associate (shape => e%blocks%list(e%moving(k))%shape)
             is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
@@ -121,7 +122,7 @@ contains
          end associate
          l%unit(lane, i) = e%path%unit(i)
       end do
-      associate (b => e%blocks, x => e%blocks%numbers)
+      associate (b => e%blocks, x => e%geometry)
          do i = 1, size(b%list)
             l%block(i)%lipschitz(lane) = x%blocks(i)%lipschitz
             l%block(i)%coarse(lane) = max(1.0_wp, x%blocks(i)%coarse)

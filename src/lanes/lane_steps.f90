@@ -12,7 +12,7 @@ module lane_steps
    use lane_sines, only: width, max_angle
    use lane_elimination, only: max_order, make_room, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, unknown_t, depth
-   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
+   use lane_equations, only: set_lane_direction, find_lane_direct, find_lane_known, assemble_lanes, lane_accelerations
    implicit none
    private
    public :: judgement_t, solve_lanes, accept_lanes, keep_lane
@@ -41,7 +41,7 @@ contains
       do k = 1, size(l%moving)
          i = l%moving(k)
          if (l%blocks%list(i)%direct) then
-            call solve_direct(l, i)
+            call find_lane_direct(l, i)
          else
             call solve_block(l, i, l%blocks%list(i)%shape%n, j)
          end if
@@ -104,24 +104,6 @@ contains
             + merge(0.0_wp, 1.0_wp, abs(p(l, 1) + d) <= max_angle)
       end do
    end subroutine predict_one
-
-   !> A drive's own unknown: u = other + sign_of (constant + drive), and its derivatives.
-   subroutine solve_direct(l, i)
-      type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i
-      real(wp) :: sign_of
-      integer :: u
-
-      u = l%blocks%unknown(l%blocks%list(i)%first)
-      associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
-         sign_of = real(row%sign_of, wp)
-         l%u(u)%value = l%u(row%other)%value + sign_of*(l%rows(l%blocks%list(i)%first_row)%constant &
-            + l%drive(:, 0, row%drive))
-         l%u(u)%rate = l%u(row%other)%rate + sign_of*l%drive(:, 1, row%drive)
-         l%u(u)%acceleration = l%u(row%other)%acceleration + sign_of*l%drive(:, 2, row%drive)
-      end associate
-      call set_lane_direction(l, u)
-   end subroutine solve_direct
 
    !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
    subroutine solve_block(l, i, n, j)

@@ -5,11 +5,11 @@
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, geqrf, ormqr, trtrs, lacn2
-   use klu, only: pattern_t, klu_serves, factor, solve, determinant_sign
+   use klu, only: pattern_t, sparse_factors_t, klu_serves, factor, solve, determinant_sign, release
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
-   public :: spread_by_inverse, nearby_t, stay_near, solve_nearby
+   public :: spread_by_inverse, nearby_t, stay_near, solve_nearby, sparse_factors_t, release
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -62,21 +62,22 @@ contains
    end function work_length
 
    !> Solves `a` x = `b` (rows); the first n of `b` become x, `a` its factors where it is dense. `info` > 0: exactly
-   !> singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. Of sparse matrices, each of
-   !> one of the `patterns`, only the factors of the last one are kept.
-   subroutine solve_first(s, a, pivots, work, b, info, patterns)
+   !> singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. A sparse matrix is one of the
+   !> `patterns`; its factors are kept in `sparse`, until `release`.
+   subroutine solve_first(s, a, pivots, work, b, info, patterns, sparse)
       type(shape_t), intent(in) :: s
       real(wp), intent(inout) :: a(*), work(*), b(*)
       integer, intent(out) :: pivots(*), info
       type(pattern_t), intent(in), optional :: patterns(:)
+      type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: i
 
       info = 0
       if (s%pattern == 0 .and. s%rows == s%n .and. s%n > 1) then
          call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       else if (s%pattern > 0) then
-         call factor(patterns(s%pattern), a, info)
-         if (info == 0) call solve(b, .false.)
+         call factor(patterns(s%pattern), a, sparse, info)
+         if (info == 0) call solve(sparse, b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
@@ -93,11 +94,12 @@ contains
    end subroutine solve_first
 
    !> Solves for another right-hand side, from the factors.
-   subroutine solve_again(s, a, pivots, work, b)
+   subroutine solve_again(s, a, pivots, work, b, sparse)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*), b(*)
+      type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: info
 
       if (s%n == 2 .and. s%rows == 2) then
@@ -109,7 +111,7 @@ contains
          b(1) = b(1) - b(2)*a(3)
          if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
       else if (s%pattern > 0) then
-         call solve(b, .false.)
+         call solve(sparse, b, .false.)
       else if (s%rows > s%n .and. s%n > 0) then
          call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
          call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
@@ -122,12 +124,13 @@ contains
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
    !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
-   subroutine pivot_range(s, a, pivots, least, largest, sign_of)
+   subroutine pivot_range(s, a, pivots, least, largest, sign_of, sparse)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(out) :: least, largest
       integer, intent(out) :: sign_of
+      type(sparse_factors_t), intent(in), optional :: sparse
       real(wp) :: pivot
       integer :: i
 
@@ -135,7 +138,7 @@ contains
       if (s%pattern > 0) then
          least = 0.0_wp
          largest = maxval(abs(a(:s%entries)))
-         sign_of = determinant_sign()
+         sign_of = determinant_sign(sparse)
          return
       end if
       least = huge(least)
@@ -151,12 +154,13 @@ contains
 
    !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2); `iwork` (n).
    !> `work` keeps what the next solve_again needs.
-   real(wp) function inverse_norm(s, a, pivots, work, iwork) result(norm)
+   real(wp) function inverse_norm(s, a, pivots, work, iwork, sparse) result(norm)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       integer, intent(inout) :: iwork(*)
+      type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: asks, state(3), info
 
       if (s%rows == 1) then
@@ -181,7 +185,7 @@ contains
                else if (s%pattern == 0) then
                   call getrs(side, s%n, 1, a, s%n, pivots, x, s%n, info)
                else
-                  call solve(x, transposed=asks == 1)
+                  call solve(sparse, x, transposed=asks == 1)
                end if
             end associate
          end associate
@@ -190,13 +194,14 @@ contains
    end function inverse_norm
 
    !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
-   subroutine spread_by_inverse(s, a, pivots, work, h, spread)
+   subroutine spread_by_inverse(s, a, pivots, work, h, spread, sparse)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       real(wp), intent(in) :: h(:)
       real(wp), intent(out) :: spread(:)
+      type(sparse_factors_t), intent(inout), optional :: sparse
       real(wp) :: column(s%rows)
       integer :: j
 
@@ -204,7 +209,7 @@ contains
       do j = 1, s%rows
          column = 0.0_wp
          column(j) = h(j)
-         call solve_again(s, a, pivots, work, column)
+         call solve_again(s, a, pivots, work, column, sparse)
          spread = spread + abs(column(:s%n))
       end do
    end subroutine spread_by_inverse

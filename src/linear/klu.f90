@@ -10,7 +10,7 @@ module klu
    implicit none
    private
    public :: pattern_t, common_t, klu_defaults, klu_serves
-   public :: order_columns, factor, solve, determinant_sign
+   public :: sparse_factors_t, order_columns, factor, solve, determinant_sign, release
 
    !> KLU knows double precision only.
    logical, parameter :: klu_serves = kind(1.0_wp) == c_double
@@ -50,13 +50,18 @@ module klu
       type(c_ptr) :: pnum, pinv, lip, uip, llen, ulen, lubx, lusize, udiag
    end type numeric_t
 
-   !> The matrix factored last: its order of columns, and its factors, whose memory is KLU's until the next.
-   type(common_t) :: common
-   type(symbolic_t), target :: symbolic
-   type(c_ptr) :: numeric = c_null_ptr
-   integer(c_int), allocatable, target :: order(:)
-   integer(c_int), target :: ends(2)
-   real(c_double), target :: unknown(1) = -1
+   !> The factors of a matrix, in memory of KLU's until `release`.
+   type :: sparse_factors_t
+      private
+      type(common_t) :: common
+      type(symbolic_t) :: symbolic
+      type(c_ptr) :: numeric = c_null_ptr
+      !> (n + 2) The columns in the order of their elimination, then the ends of the one block, 0 and n.
+      integer(c_int), allocatable :: order(:)
+   end type sparse_factors_t
+
+   !> The sizes of factors before they are found; never written.
+   real(c_double), target, save :: unknown(1) = -1
 
    integer(c_int), parameter :: colamd = 1, unscaled = -1
 
@@ -134,48 +139,62 @@ contains
    !> Factors the matrix `a` (entries of the pattern `p`, column by column). `info` > 0: exactly singular, no factors.
    !> Rejected: to take the pivots of the matrix before while they serve. It halves the time of large matrices, but
    !> digits then depend on the way there.
-   subroutine factor(p, a, info)
+   subroutine factor(p, a, f, info)
       type(pattern_t), intent(in) :: p
       real(wp), intent(in), target :: a(*)
+      type(sparse_factors_t), intent(inout), target :: f
       integer, intent(out) :: info
-      integer(c_int) :: done
+      integer(c_int) :: n
 
-      if (c_associated(numeric)) done = klu_free_numeric(numeric, common)
-      call set_common(common)
-      order = p%order
+      call release(f)
+      call set_common(f%common)
+      n = size(p%order, kind=c_int)
+      f%order = [p%order, 0_c_int, n]
+      f%symbolic%n = n
+      f%symbolic%maxblock = n
+      f%symbolic%nz = size(p%row, kind=c_int)
+      f%symbolic%lnz_of = c_loc(unknown)
       ! Of one block nothing is off its diagonal.
-      ends = [0_c_int, size(order, kind=c_int)]
-      symbolic%n = size(order, kind=c_int)
-      symbolic%maxblock = symbolic%n
-      symbolic%nz = size(p%row, kind=c_int)
-      symbolic%lnz_of = c_loc(unknown)
-      symbolic%p = c_loc(order)
-      symbolic%q = symbolic%p
-      symbolic%r = c_loc(ends)
-      numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(symbolic), common)
-      info = merge(0, 1, c_associated(numeric))
+      f%symbolic%p = c_loc(f%order)
+      f%symbolic%q = f%symbolic%p
+      f%symbolic%r = c_loc(f%order(n + 1))
+      f%numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(f%symbolic), f%common)
+      info = merge(0, 1, c_associated(f%numeric))
    end subroutine factor
 
+   !> Frees the factors, if there are any.
+   subroutine release(f)
+      type(sparse_factors_t), intent(inout) :: f
+      integer(c_int) :: done
+
+      if (c_associated(f%numeric)) done = klu_free_numeric(f%numeric, f%common)
+      f%numeric = c_null_ptr
+   end subroutine release
+
    !> `b` (n): the right-hand side, then the solution, from the factors; with the matrix `transposed` or not.
-   subroutine solve(b, transposed)
+   subroutine solve(f, b, transposed)
+      type(sparse_factors_t), intent(inout), target :: f
       real(wp), intent(inout), target :: b(*)
       logical, intent(in) :: transposed
       integer(c_int) :: done
 
-      if (transposed) done = klu_tsolve(c_loc(symbolic), numeric, symbolic%n, 1_c_int, c_loc(b), common)
-      if (.not. transposed) done = klu_solve(c_loc(symbolic), numeric, symbolic%n, 1_c_int, c_loc(b), common)
+      associate (symbolic => c_loc(f%symbolic), n => f%symbolic%n)
+         if (transposed) done = klu_tsolve(symbolic, f%numeric, n, 1_c_int, c_loc(b), f%common)
+         if (.not. transposed) done = klu_solve(symbolic, f%numeric, n, 1_c_int, c_loc(b), f%common)
+      end associate
    end subroutine solve
 
    !> Finds the sign of the determinant, from the factors.
-   integer function determinant_sign() result(sign_of)
+   integer function determinant_sign(f) result(sign_of)
+      type(sparse_factors_t), intent(in) :: f
       type(numeric_t), pointer :: factors
       integer(c_int), pointer :: pivot_row(:)
       real(c_double), pointer :: pivots(:)
 
-      call c_f_pointer(numeric, factors)
-      call c_f_pointer(factors%pnum, pivot_row, [symbolic%n])
-      call c_f_pointer(factors%udiag, pivots, [symbolic%n])
-      sign_of = sign_of_permutation(pivot_row)*sign_of_permutation(order)
+      call c_f_pointer(f%numeric, factors)
+      call c_f_pointer(factors%pnum, pivot_row, [f%symbolic%n])
+      call c_f_pointer(factors%udiag, pivots, [f%symbolic%n])
+      sign_of = sign_of_permutation(pivot_row)*sign_of_permutation(f%order(:f%symbolic%n))
       if (mod(count(pivots < 0.0_c_double), 2) == 1) sign_of = -sign_of
    end function determinant_sign
 

@@ -94,6 +94,7 @@ contains
          p%m = m
          if (allocated(p%engine%blocks)) return
          structure%blocks = e%blocks
+         structure%geometry = e%geometry
          call make_block_engine(p%engine, m, structure)
          p%q = new_motion(size(m%links))
          p%q%known = 2
@@ -106,6 +107,7 @@ contains
       type(perturbed_t), intent(inout) :: p
       logical, intent(in) :: by_roundings
 
+      p%m%tolerance = 0.0_wp
       call put_mechanism(p%engine, p%m, p%fits)
       p%fits = p%fits .or. by_roundings
    end subroutine put_changes
@@ -169,7 +171,7 @@ contains
             if (place%only_driven .and. .not. block%direct) lack = missing_all
             if (lack < missing_all) then
                c = convergence_t()
-               call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
+               call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, c)
                place%ratio = max(place%ratio, c%kantorovich_ratio)
                place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open
                if (c%singular) lack = missing_rates
@@ -207,12 +209,12 @@ contains
 
       associate (shape => e%blocks%list(i)%shape, w => e%work, &
          own => own_unknowns(e%blocks, i))
-         call assemble_dense(e%blocks, i, e%state, w%a, w%r)
+         call assemble_dense(e%blocks, e%geometry, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)
          if (info > 0) return
          do order = 1, 2
-            call right_hand_side(e%blocks, i, order, e%state, w%r)
+            call right_hand_side(e%blocks, e%geometry, i, order, e%state, w%r)
             w%r(:shape%rows) = w%r(:shape%rows) &
                - matmul(jacobian, merge(e%state%u(own)%rate, e%state%u(own)%acceleration, order == 1))
             call solve_again(shape, w%a, w%pivots, w%work, w%r)

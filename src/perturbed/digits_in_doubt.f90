@@ -95,7 +95,7 @@ contains
       growth = 0.0_wp
       of_angles = 1.0_wp
       do k = 1, size(e%needed)
-         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+         associate (block => e%geometry%blocks(e%needed(k)))
             if (e%blocks%list(e%needed(k))%direct) cycle
             inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
             associate (turned => block%lipschitz*inverse)

@@ -110,8 +110,8 @@ contains
          call make_ready(s%perturbed, k, m, engine, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
-               associate (blocks => engine%blocks)
-                  call put_off(m, blocks%tree, blocks%numbers%equations%axes, k, roundings, p%m, p%time_off)
+               associate (axes => engine%geometry%equations%axes)
+                  call put_off(m, engine%blocks%tree, axes, k, roundings, p%m, p%time_off)
                end associate
                call put_changes(p, by_roundings=.true.)
                p%direction = k

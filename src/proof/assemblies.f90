@@ -107,7 +107,7 @@ contains
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
          do i = 1, size(a%list)
-            apart = maxval(separation(a%list(i)%position, q%position, e%blocks%numbers%span))
+            apart = maxval(separation(a%list(i)%position, q%position, e%geometry%span))
             if (apart > nearest) cycle
             nearest = apart
             a%chosen = i
@@ -155,7 +155,7 @@ contains
       integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
-      p = new_ball_numbers(m, e%blocks, e%length)
+      p = new_ball_numbers(m, e%blocks, e%geometry)
       q = new_placed(e%blocks, size(m%drives))
       e%needed = [(k, k=1, size(found))]
       chosen = 0
@@ -174,7 +174,7 @@ contains
             cycle
          end if
          if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
-            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, max_group, e%starts(i)%paths, found(i))
+            call find_positions(e%blocks, e%geometry, i, e%work, e%state, max_group, e%starts(i)%paths, found(i))
             seen(i) = choice
          end if
          chosen(i) = chosen(i) + 1
@@ -211,7 +211,7 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved
-      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%blocks%numbers%span)))
+      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%geometry%span)))
       k = count(a%list%distance <= one%distance*(1.0_wp + alike))
       a%list = [a%list(:k), one, a%list(k + 1:)]
    end subroutine note_assembly

@@ -12,16 +12,17 @@
 module ball_equations
    use kinds, only: wp
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, &
+      loop_angles
    use balls, only: ball_t, rounding, up, operator(+), operator(-), operator(*)
    implicit none
    private
    public :: vector_t, unknown_t, ball_numbers_t, ball_state_t, new_ball_state, set_ball, set_radius, set_direction
-   public :: assemble_balls, ball_accelerations, add_rotating
+   public :: assemble_balls, ball_accelerations, find_direct, add_rotating
 
 #include "number_types.inc"
 
-   !> As in `numbers_t`.
+   !> As in `geometry_t`.
    type :: ball_numbers_t
       type(row_numbers_t), allocatable :: rows(:)
       type(loop_numbers_t), allocatable :: loops(:)
@@ -101,16 +102,11 @@ contains
       integer, intent(in) :: i
       type(ball_state_t), intent(inout) :: s
       type(ball_t), intent(inout) :: a(*), r(*), v(*)
-      integer :: m
 
       associate (block => b%list(i))
          call find_known(block%first_loop, block%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
-         call set_to_zero(entries_of(block%shape), a)
-         do m = block%first_loop, block%last_loop
-            call add_loop(b%loops(m), x%loops(m)%direction, b%body_vectors, x%d, b%slides, x%e, s%u, s%own, s%guide, &
-               s%loop(m), a, r, v)
-         end do
-         call take_right_sides(block%first_row, block%last_row, b%rows, x%rows, s%drive, r, v)
+         call assemble(block, .true., b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, s%drive, &
+            s%u, s%own, s%guide, s%loop, a, r, v)
       end associate
    end subroutine assemble_balls
 
@@ -120,10 +116,12 @@ contains
       integer, intent(in) :: i
       type(ball_state_t), intent(in) :: s
       type(ball_t), intent(inout) :: v(*)
+      integer :: m
 
       associate (block => b%list(i))
-         call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, s%u, s%own, &
-            s%guide, s%loop, v)
+         do m = block%first_loop, block%last_loop
+            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
+         end do
          call add_drives(block%first_row, block%last_row, b%rows, 2, s%drive, v)
       end associate
    end subroutine ball_accelerations

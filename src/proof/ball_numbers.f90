@@ -9,7 +9,7 @@ module ball_numbers
    use kinds, only: wp
    use planar, only: length_of, real_vector_t => vector_t
    use mechanism, only: mechanism_t, has_guide, plane_origin
-   use blocks, only: blocks_t, loop_angles
+   use blocks, only: blocks_t, geometry_t, loop_angles
    use balls, only: ball_t, rounding, room
    use ball_equations, only: vector_t, ball_numbers_t
    implicit none
@@ -23,20 +23,20 @@ module ball_numbers
 
 contains
 
-   !> Makes the ball numbers of the blocks `b` of `m`, whose unit of length is `length`.
-   function new_ball_numbers(m, b, length) result(x)
+   !> Makes the ball numbers of `m`, of which the blocks `b` and their geometry `x` are made.
+   function new_ball_numbers(m, b, x) result(p)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
-      real(wp), intent(in) :: length
-      type(ball_numbers_t) :: x
+      type(geometry_t), intent(in) :: x
+      type(ball_numbers_t) :: p
       real(wp) :: angle, of_direction, lengths(0:b%tree%orientations)
       integer :: i, k
 
       angle = angle_error(m)
       of_direction = 2.0_wp*of_vector + angle
-      allocate (x%rows(size(b%rows)), x%loops(size(b%loops)), x%d(size(b%body_vectors)), x%e(size(b%slides)))
+      allocate (p%rows(size(b%rows)), p%loops(size(b%loops)), p%d(size(b%body_vectors)), p%e(size(b%slides)))
       do i = 1, size(b%loops)
-         associate (g => b%loops(i), own => b%numbers%loops(i), v => b%equations%vector_loops)
+         associate (g => b%loops(i), own => x%loops(i), v => b%equations%vector_loops)
             if (g%kind == loop_angles) cycle
             ! Of all vectors of the loop that turn with each orientation.
             lengths = 0.0_wp
@@ -47,20 +47,20 @@ contains
                end associate
             end do
             associate (terms => v%first_term(g%vector_loop + 1) - v%first_term(g%vector_loop))
-               lengths = lengths*(of_number + of_vector + angle + terms*rounding)/(length*own%unit)*room
+               lengths = lengths*(of_number + of_vector + angle + terms*rounding)/(x%equations%length*own%unit)*room
             end associate
-            x%loops(i)%ground = around(own%ground, lengths(0))
-            x%loops(i)%direction = around(own%direction, of_direction*length_of(own%direction))
+            p%loops(i)%ground = around(own%ground, lengths(0))
+            p%loops(i)%direction = around(own%direction, of_direction*length_of(own%direction))
             do k = g%first_vector, g%last_vector
-               x%d(k) = around(b%numbers%d(k), lengths(b%body_vectors(k)%orientation))
+               p%d(k) = around(x%d(k), lengths(b%body_vectors(k)%orientation))
             end do
             do k = g%first_slide, g%last_slide
-               x%e(k) = around(b%numbers%e(k), of_direction*length_of(b%numbers%e(k)))
+               p%e(k) = around(x%e(k), of_direction*length_of(x%e(k)))
             end do
          end associate
       end do
-      x%rows%constant%mid = b%numbers%rows%constant
-      x%rows%constant%radius = (2.0_wp*of_number*abs(b%numbers%rows%constant) &
+      p%rows%constant%mid = x%rows%constant
+      p%rows%constant%radius = (2.0_wp*of_number*abs(x%rows%constant) &
          + merge(2.0_wp*angle, 0.0_wp, b%rows%angular))*room
    end function new_ball_numbers
 

@@ -73,7 +73,7 @@ contains
       found%has_step = .false.
       found%step = step_proof_t()
       if (.not. allocated(found%links)) then
-         p%numbers = new_ball_numbers(m, e%blocks, e%length)
+         p%numbers = new_ball_numbers(m, e%blocks, e%geometry)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
          allocate (found%links(3, 0:2, size(m%links)))

@@ -25,7 +25,7 @@ module position_proof
    use block_engine, only: block_engine_t
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
-      assemble_balls, ball_accelerations
+      assemble_balls, ball_accelerations, find_direct
    implicit none
    private
    public :: placed_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
@@ -119,7 +119,7 @@ contains
       type(placed_t), intent(inout) :: q
       logical, intent(out) :: is_proved
       type(block_work_t) :: w
-      type(ball_t) :: x(0:2), sign_of
+      type(unknown_t) :: exact
       real(wp) :: radius, largest
       integer :: k
 
@@ -131,16 +131,11 @@ contains
          end do
          is_proved = block%direct
          if (block%direct) then
-            ! The unknown is another one and a drive.
             associate (row => b%rows(block%first_row), direct => q%u(own(1)))
-               sign_of = ball_t(real(row%sign_of, wp), 0.0_wp)
-               x = sign_of*q%drive(:, row%drive)
-               x(0) = q%u(row%other)%value + (sign_of*p%rows(block%first_row)%constant + x(0))
-               x(1) = q%u(row%other)%rate + x(1)
-               x(2) = q%u(row%other)%acceleration + x(2)
-               call set_radius(b, own(1), distance(x(0), direct%value%mid), q%ball_state_t)
-               direct%rate%radius = distance(x(1), direct%rate%mid)
-               direct%acceleration%radius = distance(x(2), direct%acceleration%mid)
+               call find_direct(row, p%rows(block%first_row), q%drive, q%u(row%other), exact)
+               call set_radius(b, own(1), distance(exact%value, direct%value%mid), q%ball_state_t)
+               direct%rate%radius = distance(exact%rate, direct%rate%mid)
+               direct%acceleration%radius = distance(exact%acceleration, direct%acceleration%mid)
                q%open(0, block%first_row) = direct%value%radius
                q%open(1, block%first_row) = direct%rate%radius
             end associate

@@ -251,7 +251,7 @@ contains
 
       if (s%told_drives(c)) return
       s%told_drives(c) = .true.
-      are = surplus_drives(s%list(c)%engine%blocks, size(are), s%list(c)%engine%state)
+      are = surplus_drives(s%list(c)%engine%blocks, s%list(c)%engine%geometry, size(are), s%list(c)%engine%state)
       if (.not. any(are)) return
       associate (q => s%now%motions(c))
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))

@@ -7,7 +7,7 @@ module set_motion
    use independent, only: set_t, divide, request_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: findings_t, structure_t, make_structure
-   use blocks, only: blocks_t, largest_known
+   use blocks, only: blocks_t, geometry_t, largest_known
    use block_state, only: state_t, new_state, set_direction
    use block_solver, only: solve_direct
    use link_motion, only: chain_t, new_chain, move_links
@@ -54,10 +54,11 @@ contains
          s%motions(c) = new_motion(size(s%parts(c)%links))
          if (all(s%parts(c)%requests%drive == 0)) cycle
          if (present(findings)) then
-            call leave_out_unmoved(s%parts(c), findings%structures(c)%blocks)
+            call leave_out_unmoved(s%parts(c), findings%structures(c)%blocks, &
+               findings%structures(c)%geometry)
          else
             call make_structure(s%parts(c), structure)
-            call leave_out_unmoved(s%parts(c), structure%blocks)
+            call leave_out_unmoved(s%parts(c), structure%blocks, structure%geometry)
          end if
       end do
       if (allocated(s%columns)) s%columns = pack(s%columns, [(has_row(request_of(s, s%columns(c)%request)), &
@@ -74,9 +75,10 @@ contains
    !> Takes their rows from the requests for ratios of what the drive cannot move. That is asked at positions that close
    !> nothing, where the unknowns that depend on the drive have rates of their own: a drive that moves something there
    !> can move it anywhere but at single positions.
-   subroutine leave_out_unmoved(m, b)
+   subroutine leave_out_unmoved(m, b, x)
       type(mechanism_t), intent(inout) :: m
       type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       type(chain_t) :: chain
       type(state_t) :: state
       type(motion_t) :: q
@@ -89,7 +91,7 @@ contains
       real(wp), parameter :: rounded_part = sqrt(epsilon(1.0_wp))
 
       if (.not. b%solvable) return
-      chain = new_chain(m, b, wanted_links(m))
+      chain = new_chain(m, b, x, wanted_links(m))
       do d = 1, size(m%drives)
          if (all(m%requests%drive /= d)) cycle
          state = new_state(b, size(m%drives))
@@ -105,7 +107,7 @@ contains
                if (any(b%rows(b%list(i)%first_row:b%list(i)%last_row)%drive == d) .or. largest_known(b, i, moves) > 0) &
                   moves(own) = 1
                if (b%list(i)%direct) then
-                  call solve_direct(b, i, state)
+                  call solve_direct(b, x, i, state)
                else
                   state%u(own)%rate = moves(own)*arbitrary(own + b%unknowns)
                end if

@@ -14,7 +14,7 @@ module block_numbers
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes
    use loop_equations, only: put_equation_numbers, find_unknowns
-   use blocks, only: blocks_t, block_t, block_loop_t, numbers_t, loop_numbers_t, loop_angles, loop_components, &
+   use blocks, only: blocks_t, block_t, block_loop_t, geometry_t, loop_numbers_t, loop_angles, loop_components, &
       loop_projection
    implicit none
    private
@@ -30,10 +30,11 @@ contains
    subroutine put_numbers(m, b, x, fits)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
-      type(numbers_t), intent(inout) :: x
+      type(geometry_t), intent(inout) :: x
       logical, intent(out) :: fits
       logical, allocatable :: has_vector(:), counts(:, :)
 
+      x%tolerance = m%tolerance
       x%span = solver_length(m)
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
@@ -49,7 +50,7 @@ contains
    !> Fills `x` from the numbers of its equations, in their unit of length. Allocates the lists of `x` if they are not.
    pure subroutine fill_numbers(b, x)
       type(blocks_t), intent(in) :: b
-      type(numbers_t), intent(inout) :: x
+      type(geometry_t), intent(inout) :: x
       integer :: i, m, k
 
       if (.not. allocated(x%unit)) allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), &
@@ -87,7 +88,7 @@ contains
    !> those of its slides.
    subroutine find_units(b, x)
       type(blocks_t), intent(in) :: b
-      type(numbers_t), intent(inout) :: x
+      type(geometry_t), intent(inout) :: x
       logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
       real(wp) :: longest
       integer :: i, m, k
@@ -192,7 +193,7 @@ contains
    !> with the length of their unit; a projection turns once more with its own orientation.
    pure real(wp) function lipschitz_of(b, x, block) result(lipschitz)
       type(blocks_t), intent(in) :: b
-      type(numbers_t), intent(in) :: x
+      type(geometry_t), intent(in) :: x
       type(block_t), intent(in) :: block
       real(wp) :: row
       integer :: m

@@ -11,15 +11,17 @@ module block_structure
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
       incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
-   use blocks, only: blocks_t, numbers_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, loop_angles
+   use blocks, only: blocks_t, geometry_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, &
+      loop_angles
    use block_numbers, only: fill_numbers, find_units
    implicit none
    private
    public :: structure_t, make_structure, new_blocks
 
-   !> Made once, and handed to the engine, which takes the blocks over.
+   !> Made once, and handed to the engine, which takes both over.
    type :: structure_t
       type(blocks_t), allocatable :: blocks
+      type(geometry_t), allocatable :: geometry      !< the first
    end type structure_t
 
 contains
@@ -31,19 +33,19 @@ contains
       type(structure_t), intent(out) :: s
       type(tree_t) :: t
       type(equations_t) :: e
-      type(numbers_t), allocatable :: x
 
-      allocate (s%blocks, x)
-      x%span = solver_length(m)
-      t = new_tree(m)
-      e = new_equations(m, t)
-      x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)
-      s%blocks = new_blocks(t, e)
-      if (s%blocks%solvable) then
+      allocate (s%blocks, s%geometry)
+      associate (x => s%geometry)
+         x%tolerance = m%tolerance
+         x%span = solver_length(m)
+         t = new_tree(m)
+         e = new_equations(m, t)
+         x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)
+         s%blocks = new_blocks(t, e)
+         if (.not. s%blocks%solvable) return
          call fill_numbers(s%blocks, x)
          call find_units(s%blocks, x)
-      end if
-      call move_alloc(x, s%blocks%numbers)
+      end associate
    end subroutine make_structure
 
    !> The blocks of the equations `e` on the tree `t`, without numbers.

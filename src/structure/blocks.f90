@@ -1,6 +1,6 @@
 !> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the vector loops it
 !> closes, split into what earlier blocks have found and what it solves for. What the numbers of the cards make of them
-!> are `numbers_t`: a variant has the same blocks with other numbers, see `block_numbers`.
+!> is `geometry_t`: a variant has the same blocks with other numbers, see `block_numbers`.
 !>
 !> Unknowns: 1 to `orientations` the angles of the orientations, then the slides. A block is one drive alone, or what
 !> the tree leaves of one or more Assur groups with their drives. Contract: a block needs unknowns of earlier blocks
@@ -18,7 +18,7 @@ module blocks
    implicit none
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
-      loop_projection, loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
+      loop_projection, loop_angles, geometry_t, block_numbers_t, row_numbers_t, loop_numbers_t
    public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to, &
       own_unknowns
 
@@ -78,7 +78,8 @@ module blocks
    end type block_numbers_t
 
    !> What the numbers of the cards make of the blocks.
-   type :: numbers_t
+   type :: geometry_t
+      real(wp) :: tolerance = 0.0_wp              !< relative, of corrections; 0: the limit of rounding
       real(wp) :: span = 1.0_wp                   !< the characteristic length, in the deck's unit
       type(equation_numbers_t) :: equations       !< their unit of length: the power of two next to `span`
       type(block_numbers_t), allocatable :: blocks(:)
@@ -87,7 +88,7 @@ module blocks
       type(vector_t), allocatable :: d(:)         !< (body vectors) in the axes of the orientation, unit of the loop
       type(vector_t), allocatable :: e(:)         !< (slides) along the guide, with its sign in the loop
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
-   end type numbers_t
+   end type geometry_t
 
    type :: blocks_t
       integer :: orientations = 0, unknowns = 0   !< angles; angles, slides and places of roots together
@@ -105,7 +106,6 @@ module blocks
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
       type(tree_t) :: tree
       type(equations_t) :: equations              !< of which they were made
-      type(numbers_t), allocatable :: numbers     !< those that they have now
    end type blocks_t
 
 contains

@@ -160,7 +160,7 @@ contains
 
       call set_drive_values(e, t)
       do k = 1, size(e%blocks%list)
-         if (e%blocks%list(k)%direct) call solve_block(e%blocks, k, e%tolerance, e%work, e%state, c)
+         if (e%blocks%list(k)%direct) call solve_block(e%blocks, e%geometry, k, .true., e%work, e%state, c)
       end do
       h = small/max(1.0_wp, f%frequency)
       do k = -1, 1

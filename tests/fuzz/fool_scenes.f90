@@ -125,7 +125,7 @@ contains
       end select
       if (f%slide == 0) return
       f%unknowns(f%slide) = e%blocks%orientations + 1
-      f%unit = e%length*e%blocks%numbers%unit(f%unknowns(f%slide))
+      f%unit = e%length*e%geometry%unit(f%unknowns(f%slide))
    end subroutine find_unknowns
 
    !> The driven number at `t`.
