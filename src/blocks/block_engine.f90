@@ -97,6 +97,7 @@ contains
          call move_alloc(own%geometry, e%geometry)
       end if
       e%length = e%geometry%equations%length
+      e%geometry%tolerance = m%tolerance
       e%ratios = [integer ::]
       if (any(m%requests%drive > 0)) e%ratios = pack([(i, i=1, size(m%drives))], &
          [(any(m%requests%drive == i), i=1, size(m%drives))])
@@ -134,6 +135,7 @@ contains
       logical, intent(out) :: fits
 
       call put_numbers(m, e%blocks, e%geometry, fits)
+      e%geometry%tolerance = m%tolerance
       e%length = e%geometry%equations%length
       call put_chain(m, e%blocks, e%geometry, e%chain)
       call put_laws(e, m)

@@ -51,11 +51,14 @@ module block_solver
    !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
    !> first values, and the residual of equations that are too many; room for the widest block. Nothing in it outlives
    !> the solution of a block.
-   type :: workspace_t
-      real(wp), allocatable :: a(:), r(:), start(:), gap(:), work(:)
+   type :: scratch_t
+      real(wp), allocatable :: start(:), gap(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
-      type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
+      type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
+   end type scratch_t
+   type, extends(scratch_t) :: workspace_t
+      real(wp), allocatable :: a(:), r(:)
    end type workspace_t
 
 contains
@@ -90,10 +93,9 @@ contains
             c%ended = ended_converged
             return
          end if
-         call solve_arrays(b, x, i, block, block%shape, block%shape%rows, block%shape%n, x%blocks(i), moves, &
-            b%unknown(block%first:block%last), b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
-            s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, w%a, w%r, w%start, w%gap, w%pivots, w%work, &
-            w%iwork, w%near, w%sparse, c)
+         call solve_arrays(b, x, i, block, x%blocks(i), moves, b%unknown(block%first:block%last), b%loops, x%loops, &
+            b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, &
+            s%loop, w%a, w%r, w%scratch_t, c)
          if (block%shape%pattern > 0) call release(w%sparse)
       end associate
    end subroutine solve_block
@@ -113,17 +115,15 @@ contains
 
    !> Solves `block`, number `i`, which is not direct, by Newton's method: on plain arrays, whose descriptors are read
    !> once. `solve_block` shows what they are of.
-   subroutine solve_arrays(b, x, i, block, shape, rows, n, numbers, moves, unknown, loops, loop_numbers, vectors, d, &
-      slides, e, equations, constants, values, excursion, u, own, guide, now, a, r, start, gap, pivots, work, iwork, &
-      near, sparse, c)
+   subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, d, slides, e, &
+      equations, constants, values, excursion, u, own, guide, now, a, r, w, c)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, rows, n
+      integer, intent(in) :: i
       type(block_t), intent(in) :: block
-      type(shape_t), intent(in) :: shape
       type(block_numbers_t), intent(in) :: numbers
       logical, intent(in) :: moves
-      integer, intent(in) :: unknown(n)
+      integer, intent(in) :: unknown(*)
       type(block_loop_t), intent(in) :: loops(*)
       type(loop_numbers_t), intent(in) :: loop_numbers(*)
       type(body_vector_t), intent(in) :: vectors(*)
@@ -135,20 +135,20 @@ contains
       type(unknown_t), intent(inout) :: u(0:*)
       type(vector_t), intent(inout) :: own(*), guide(*)
       type(loop_state_t), intent(inout) :: now(*)
-      real(wp), intent(inout) :: a(*), r(rows, 2), start(*), gap(*), work(*)
-      integer, intent(inout) :: pivots(*), iwork(*)
-      type(nearby_t), intent(inout) :: near
-      type(sparse_factors_t), intent(inout) :: sparse
+      real(wp), intent(inout) :: a(*), r(block%shape%rows, 2)
+      type(scratch_t), intent(inout) :: w
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of, own_size, cosine
-      integer :: info, iteration, side, k
+      integer :: rows, n, info, iteration, side, k
       logical :: is_closed, is_right
 
+      rows = block%shape%rows
+      n = block%shape%n
       size_of = 1.0_wp
       if (moves) then
          do k = 1, n
             associate (f => u(unknown(k)))
-               start(k) = f%value
+               w%start(k) = f%value
                size_of = max(size_of, abs(f%value))
                if (unknown(k) <= b%orientations) then
                   f%c = cos(f%value)
@@ -159,7 +159,7 @@ contains
       end if
       call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, d, u, now)
       before = huge(before)
-      near%distance = 0.0_wp
+      w%near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
@@ -169,19 +169,19 @@ contains
          c%iterations = iteration
          call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, d, slides, e, equations, &
             constants, values, u, own, guide, now, a, r, r(1, 2))
-         if (near%distance > 0.0_wp) then
-            near%a = a(:4)
-            a(:4) = near%factors
+         if (w%near%distance > 0.0_wp) then
+            w%near%a = a(:4)
+            a(:4) = w%near%factors
          end if
          c%residual = largest_size(rows, r)
-         if (rows > n) gap(:rows) = r(:, 1)
+         if (rows > n) w%gap(:rows) = r(:, 1)
          is_closed = c%residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
          side = merge(2, 1, is_closed)
          info = 0
-         if (near%distance > 0.0_wp) then
-            call solve_nearby(near, r(1, side))
+         if (w%near%distance > 0.0_wp) then
+            call solve_nearby(w%near, r(1, side))
          else
-            call solve_first(shape, a, pivots, work, r(1, side), info, b%patterns, sparse)
+            call solve_first(block%shape, a, w%pivots, w%work, r(1, side), info, b%patterns, w%sparse)
          end if
          if (is_closed) then
             c%step = 0.0_wp
@@ -227,23 +227,23 @@ contains
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(shape, a, pivots, numbers%lipschitz*c%step, near)
+            call stay_near(block%shape, a, w%pivots, numbers%lipschitz*c%step, w%near)
             cycle
          end if
          do k = block%first_loop, block%last_loop
             call velocity_rows(loops(k), slides, u, guide, now(k), r(1, 2))
          end do
          if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 1, values, r(1, 2))
-         call solve_next_side(shape, a, pivots, work, near, sparse, r(1, 2))
+         call solve_next_side(block%shape, a, w%pivots, w%work, w%near, w%sparse, r(1, 2))
          exit
       end do
       if ((c%iterations > 1 .or. c%step > 0.0_wp) .and. c%ended /= ended_diverged) then
          do k = 1, n
-            c%change = max(c%change, abs(u(unknown(k))%value - start(k)))
+            c%change = max(c%change, abs(u(unknown(k))%value - w%start(k)))
          end do
       end if
       if (rows > n .and. moves) then
-         if (c%iterations > 0) call note_closure_error(b, x, i, gap, c)
+         if (c%iterations > 0) call note_closure_error(b, x, i, w%gap, c)
          if (is_solved(c) .and. c%open%value > inconsistent_level*c%open%level) c%ended = ended_inconsistent
       end if
       if (.not. is_solved(c)) return
@@ -257,7 +257,7 @@ contains
          call acceleration_rows(loops(k), vectors, slides, u, own, guide, now(k), r)
       end do
       if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 2, values, r)
-      call solve_next_side(shape, a, pivots, work, near, sparse, r)
+      call solve_next_side(block%shape, a, w%pivots, w%work, w%near, w%sparse, r)
       do k = 1, n
          u(unknown(k))%acceleration = r(k, 1)
       end do
@@ -273,10 +273,10 @@ contains
          real(wp) :: least, largest, inverse
          logical :: suspicious
 
-         call pivot_range(shape, a, pivots, least, largest, c%determinant, sparse)
-         if (shape%pattern > 0) then
+         call pivot_range(block%shape, a, w%pivots, least, largest, c%determinant, w%sparse)
+         if (block%shape%pattern > 0) then
             ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-            inverse = inverse_norm(shape, a, pivots, work, iwork, sparse)
+            inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
             least = 1.0_wp/inverse
          end if
          c%min_pivot = 1.0_wp
@@ -291,13 +291,13 @@ contains
             if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
                excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
          end if
-         if (shape%pattern == 0) inverse = inverse_norm(shape, a, pivots, work, iwork, sparse)
+         if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
          c%inverse = min(inverse, 1.0_wp/min_inverse)
          c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
          if (.not. suspicious) return
-         size_of = max(numbers%coarse, maxval(abs(u(unknown)%value)))
+         size_of = max(numbers%coarse, maxval(abs(u(unknown(:n))%value)))
          c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-         if (c%singular) c%singular = is_beyond_linear(b, x, i, n, u, now, a, pivots, work, sparse)
+         if (c%singular) c%singular = is_beyond_linear(b, x, i, n, u, now, a, w%pivots, w%work, w%sparse)
       end subroutine judge
    end subroutine solve_arrays
 

@@ -34,7 +34,6 @@ contains
       logical, intent(out) :: fits
       logical, allocatable :: has_vector(:), counts(:, :)
 
-      x%tolerance = m%tolerance
       x%span = solver_length(m)
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable

@@ -36,7 +36,6 @@ contains
 
       allocate (s%blocks, s%geometry)
       associate (x => s%geometry)
-         x%tolerance = m%tolerance
          x%span = solver_length(m)
          t = new_tree(m)
          e = new_equations(m, t)
