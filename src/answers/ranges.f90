@@ -9,6 +9,7 @@ module ranges
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
    use separations, only: motions_apart, closes
    use drives, only: drive_motion
+   use drive_path, only: lead
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
@@ -45,22 +46,16 @@ contains
       integer, intent(in) :: drive
       type(range_t), intent(out) :: r
       type(mechanism_t) :: d
-      real(wp) :: value, unit
+      real(wp) :: unit
       integer :: side
 
       r%drive = drive
       d = held_at(m, start%t)
       call put_estimate(d, start%position)
-      d%steps = 1
-      d%t0 = 0.0_wp
-      d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
-      d%at = [real(wp) ::]
-      value = d%drives(drive)%polynomial(1)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
-         d%drives(drive)%polynomial(2) = merge(-unit, unit, side == low)
-         call follow(d, value, merge(-unit, unit, side == low), side, r)
+         call follow(d, merge(-unit, unit, side == low), side, r)
          if (r%is_all) return
       end do
    end subroutine find_range
@@ -96,15 +91,16 @@ contains
       end do
    end subroutine put_estimate
 
-   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`.
-   subroutine follow(d, value, rate, side, r)
+   !> Follows the motion of `d`, in which all drives rest, by the value of its drive to its end on one `side`: at the
+   !> parameter t the drive has gone `rate` times t.
+   subroutine follow(d, rate, side, r)
       type(mechanism_t), intent(in) :: d
-      real(wp), intent(in) :: value, rate
+      real(wp), intent(in) :: rate
       integer, intent(in) :: side
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step, part, apart(3)
+      real(wp) :: value, t, step, part, apart(3)
       integer :: i, k, steps_a_turn, begin
       logical :: is_angle, grows
 
@@ -114,12 +110,14 @@ contains
       first = new_motion(size(d%links))
       now = first
       call make_analysis(a, d)
+      value = d%drives(r%drive)%polynomial(1)
+      call lead(a%engine%path, r%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
       call advance(a, 0.0_wp, first)
       r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return
       ! A position without velocities, as at a change point, is passed by more than one motion: the next one counts.
       begin = merge(0, -1, first%known == 2)
-      do k = 1, nint(d%t1/step)
+      do k = 1, nint(merge(2.0_wp*pi*max_turns, max_lengths, is_angle)/step)
          if (signal_received() > 0) return
          t = step*k
          call advance(a, t, now)
@@ -142,13 +140,7 @@ contains
             r%has_limit(side) = .true.
             r%limit(side)%value = value + rate*t
             i = last_of(now, diagnostic_limit)
-            if (i == 0) return
-            associate (found => r%limit(side), told => now%diagnostics(i))
-               found%links = told%links
-               found%more = told%more
-               found%in_line = told%in_line
-               found%value = value + rate*told%t
-            end associate
+            if (i > 0) r%limit(side) = now%diagnostics(i)
             return
          end if
          if (.not. is_angle .or. now%known < 2) cycle

@@ -286,7 +286,7 @@ contains
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
       integer :: was
-      logical :: had_missed, goes_on
+      logical :: had_missed, crosses, goes_on
 
       was = min(a%state, on_motion)
       had_missed = a%has_missed
@@ -299,8 +299,12 @@ contains
       end if
       call take_motion(a, found)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
-      if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-      if (allocated(list)) call add_diagnostics(list, found)
+      crosses = passed_of(step) > 0
+      if (crosses) call add_diagnostics(step%passed, found)
+      if (allocated(list)) then
+         call add_diagnostics(list, found)
+         crosses = crosses .or. any(list%other)
+      end if
       if (a%has_missed) then
          call cut(found, -1, mark_not_converged)
          call get_driven_links(a%engine, found%t, found)
@@ -309,8 +313,8 @@ contains
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
             other=a%convergence%ended == ended_elsewhere)], found)
       else
-         call certify()
-         if (was /= on_motion) call tell_first()
+         call certify(a, was, step, crosses)
+         if (was /= on_motion) call tell_first(a, was, found)
       end if
 
       goes_on = found%known == 2 .and. .not. found%rests
@@ -327,39 +331,43 @@ contains
       else if (.not. a%has_missed) then
          a%state = at_start
       end if
-
-   contains
-
-      !> Notes what is verified of the position.
-      subroutine certify()
-         logical :: crosses
-
-         if (step%ending == step_rests) then
-            a%branch = branch_t(kind=min(a%branch%kind, branch_same))
-         else
-            crosses = passed_of(step) > 0
-            if (allocated(list)) crosses = crosses .or. any(list%other)
-            a%branch = step%branch
-            a%branch%kind = merge(branch_crossed, branch_same, crosses)
-            if (a%convergence%singular .and. step%ending == step_there) a%branch%kind = branch_none
-         end if
-         if (was /= on_motion) a%branch%kind = branch_first
-         associate (counts => a%certificate_counts)
-            if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
-            if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
-         end associate
-      end subroutine certify
-
-      !> Says what there is to say of the first position, or of the first motion after such positions. A motion that
-      !> began beside a singular position is no longer near the deck's estimate.
-      subroutine tell_first()
-         if (was == at_start) then
-            if (found%known < 2) return
-            call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
-         end if
-         if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
-      end subroutine tell_first
    end subroutine arrive
+
+   !> Notes what is verified of the position at the end of `step`, from the state `was`; `crosses`: change points lie
+   !> before it.
+   subroutine certify(a, was, step, crosses)
+      type(analysis_t), intent(inout) :: a
+      integer, intent(in) :: was
+      type(step_record_t), intent(in) :: step
+      logical, intent(in) :: crosses
+
+      if (step%ending == step_rests) then
+         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
+      else
+         a%branch = step%branch
+         a%branch%kind = merge(branch_crossed, branch_same, crosses)
+         if (a%convergence%singular .and. step%ending == step_there) a%branch%kind = branch_none
+      end if
+      if (was /= on_motion) a%branch%kind = branch_first
+      associate (counts => a%certificate_counts)
+         if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
+         if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
+      end associate
+   end subroutine certify
+
+   !> Says what there is to say of the first position, or of the first motion after such positions: `was`. A motion that
+   !> began beside a singular position is no longer near the deck's estimate.
+   subroutine tell_first(a, was, found)
+      type(analysis_t), intent(inout) :: a
+      integer, intent(in) :: was
+      type(motion_t), intent(inout) :: found
+
+      if (was == at_start) then
+         if (found%known < 2) return
+         call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
+      end if
+      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
+   end subroutine tell_first
 
    !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
    !> that is said once. The motion is followed from where it was. `t` lies beyond a limit if no substep could be made

@@ -14,7 +14,7 @@ module drive_excursion
    use drive_path, only: drive_path_t, drive_at, drive_bounds
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, limit_substep, excursion, judge_step
+   public :: drive_excursion_t, new_drive_excursion, limit_substep, judge_step, examine
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -64,7 +64,7 @@ contains
    end function new_drive_excursion
 
    !> Finds the part `allowed` of the `substep` from the parameter `t` on that the drives allow at once. `away`: how far
-   !> they leave their chords in it, in radians or characteristic lengths, at most; see `excursion`.
+   !> they leave their chords in it, in radians or characteristic lengths, at most; see `examine`.
    pure subroutine limit_substep(p, path, t, substep, allowed, away)
       type(drive_excursion_t), intent(in) :: p
       type(drive_path_t), intent(in) :: path
@@ -106,16 +106,6 @@ contains
       away = 0.125_wp*step**2*p%curve
       is_plain = away <= largest_excursion
    end subroutine judge_step
-
-   !> How far the drives leave their chords between the parameters `t1` and `t2`, in radians or characteristic lengths.
-   pure real(wp) function excursion(p, path, t1, t2) result(away)
-      type(drive_excursion_t), intent(in) :: p
-      type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2
-      real(wp) :: change
-
-      call examine(p, path, t1, t2, change, away)
-   end function excursion
 
    !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
    !> a chord being off its curve by h^2/8 times the second derivative at most.

@@ -10,7 +10,7 @@ module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
-   use drive_excursion, only: drive_excursion_t, new_drive_excursion, limit_substep, excursion
+   use drive_excursion, only: drive_excursion_t, new_drive_excursion, limit_substep, examine
    use drive_path, only: drive_at
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use block_engine, only: block_engine_t, engine_state_t, accept
@@ -196,13 +196,13 @@ contains
    subroutine add_excursion(f, t)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
-      real(wp) :: ratio, away, off, h, first(3), last(3)
+      real(wp) :: ratio, change, away, off, h, first(3), last(3)
       integer :: i
 
       associate (c => f%convergence, path => f%engine%path)
          ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
          if (ratio > max_kantorovich_ratio) then
-            away = excursion(f%drives, path, f%t, t)
+            call examine(f%drives, path, f%t, t, change, away)
             h = t - f%t
             do i = 1, size(f%drives%unit)
                first = drive_at(path, i, f%t)

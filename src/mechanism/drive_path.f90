@@ -18,16 +18,12 @@ module drive_path
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
 
-   !> A leg: at the parameter p the drives have the values line(1, :) + line(2, :) p.
-   type :: leg_t
-      real(wp) :: span(2) = 0.0_wp                !< times of its ends
-      real(wp), allocatable :: line(:, :)         !< (2, drives)
-   end type leg_t
-
    type :: drive_path_t
       type(drive_t), allocatable :: laws(:)       !< (drives) functions of time
       real(wp), allocatable :: unit(:)            !< (drives) factor of their values in the solver's equations
-      type(leg_t), allocatable :: leg             !< not allocated: the parameter is the time
+      !> (2, drives) On a leg the values at the parameter p are leg(1, :) + leg(2, :) p; otherwise not allocated.
+      real(wp), allocatable :: leg(:, :)
+      real(wp) :: span(2) = 0.0_wp                !< times of the ends of the leg
    end type drive_path_t
 
 contains
@@ -41,11 +37,24 @@ contains
       real(wp) :: f(3)
 
       if (allocated(path%leg)) then
-         f = [path%leg%line(1, i) + p*path%leg%line(2, i), path%leg%line(2, i), 0.0_wp]
+         f = [path%leg(1, i) + p*path%leg(2, i), path%leg(2, i), 0.0_wp]
       else
          f = drive_motion(path%laws(i), p)
       end if
    end function drive_at
+
+   !> The values (drives) at the parameter `p`, in the drives' units (length or rad).
+   pure function values_at(path, p) result(values)
+      type(drive_path_t), intent(in) :: path
+      real(wp), intent(in) :: p
+      real(wp) :: values(size(path%laws)), f(3)
+      integer :: i
+
+      do i = 1, size(values)
+         f = drive_at(path, i, p)
+         values(i) = f(1)
+      end do
+   end function values_at
 
    !> The bounds of drive number `i` between the parameters `p1` and `p2`, in either order.
    pure type(bounds_t) function drive_bounds(path, i, p1, p2) result(b)
@@ -54,7 +63,7 @@ contains
       real(wp), intent(in) :: p1, p2
 
       if (allocated(path%leg)) then
-         b = bounds_of(drive_t(polynomial=[path%leg%line(:, i), 0.0_wp]), p1, p2)
+         b = bounds_of(drive_t(polynomial=[path%leg(:, i), 0.0_wp]), p1, p2)
       else
          b = bounds_of(path%laws(i), p1, p2)
       end if
@@ -78,7 +87,7 @@ contains
       logical :: moves(size(path%laws))
 
       if (allocated(path%leg)) then
-         moves = abs(path%leg%line(2, :)) > 0.0_wp
+         moves = abs(path%leg(2, :)) > 0.0_wp
       else
          moves = .not. is_at_rest(path%laws, p1, p2)
       end if
@@ -108,15 +117,13 @@ contains
       type(drive_path_t), intent(inout) :: path
       integer, intent(in) :: leader
       real(wp), intent(in) :: p, rate, span(2)
-      real(wp) :: f(3), line(2, size(path%laws))
-      integer :: i
+      real(wp) :: leg(2, size(path%laws))
 
-      do i = 1, size(path%laws)
-         f = drive_at(path, i, p)
-         line(:, i) = [f(1), 0.0_wp]
-      end do
-      line(:, leader) = [line(1, leader) - rate*span(1), rate]
-      path%leg = leg_t(span, line)
+      leg(1, :) = values_at(path, p)
+      leg(2, :) = 0.0_wp
+      leg(:, leader) = [leg(1, leader) - rate*span(1), rate]
+      path%leg = leg
+      path%span = span
    end subroutine lead
 
    !> The first time after `from`, up to `t`, at which drive number `i` turns back, or rests before it does; else `t`.
@@ -137,10 +144,8 @@ contains
          if (abs(way) <= 0.0_wp) way = f(2)
          if (f(2)*way < 0.0_wp) exit
       end do
-      if (k > value_steps) then
-         turn = t
-         return
-      end if
+      if (k > value_steps) turn = t
+      if (k > value_steps) return
       do k = 1, digits(1.0_wp)
          f = drive_motion(path%laws(i), middle_of(low, turn))
          call halve(f(2)*way > 0.0_wp, low, turn)
@@ -153,13 +158,13 @@ contains
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: last, t, distance
       real(wp) :: high
-      integer :: i, k
+      integer :: k
 
       beside = last
       high = t
       do k = 1, digits(1.0_wp)
-         call halve(all([(abs(value_at(path, i, middle_of(beside, high)) - value_at(path, i, last))*path%unit(i), &
-            i=1, size(path%laws))] <= distance), beside, high)
+         call halve(all(abs(values_at(path, middle_of(beside, high)) - values_at(path, last))*path%unit <= distance), &
+            beside, high)
       end do
       if (abs(t - high) <= 0.0_wp) beside = t
    end function time_beside
@@ -169,18 +174,15 @@ contains
    pure real(wp) function time_at_part(path, p1, p2, part) result(at)
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: p1, p2, part
-      real(wp) :: span(2), f(3), start(size(path%laws)), way(size(path%laws)), low, high
+      real(wp), dimension(size(path%laws)) :: start, way
+      real(wp) :: span(2), low, high
       integer :: i, k
 
-      do i = 1, size(path%laws)
-         f = drive_at(path, i, p1)
-         start(i) = f(1)
-         f = drive_at(path, i, p2)
-         way(i) = f(1) - start(i)
-      end do
+      start = values_at(path, p1)
+      way = values_at(path, p2) - start
       i = maxloc(abs(path%unit*way), dim=1)
       span = [p1, p2]
-      if (allocated(path%leg)) span = path%leg%span
+      if (allocated(path%leg)) span = path%span
       at = time_of(part)
       low = time_of(part - not_told)
       high = time_of(part + not_told)
