@@ -195,7 +195,8 @@ contains
 
       ! Velocities and accelerations, unless equations contradict one another or the Jacobian is near to having no
       ! inverse.
-      if (block%shape%rows > block%shape%n .and. c%open%value > inconsistent_level*c%open%level) then
+      if (block%shape%rows > block%shape%n .and. c%open%value > max(inconsistent_level*c%open%level, &
+         b%numbers%closing)) then
          c%ended = ended_inconsistent
          return
       end if
@@ -212,8 +213,8 @@ contains
       if (block%shape%rows == block%shape%n) return
       associate (rows => block%shape%rows, n => block%shape%n)
          rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse, b%numbers%closing) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse, b%numbers%closing)
       end associate
    end subroutine solve_equations
 
@@ -250,8 +251,9 @@ contains
          end do
          if (rows == n) return
          rates = largest_rates(b, i, s)
-         has_rates = .not. (contradict(w%r(rows + n + 1:2*rows), rates(1), b%numbers%blocks(i)%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), b%numbers%blocks(i)%coarse))
+         has_rates = .not. (contradict(w%r(rows + n + 1:2*rows), rates(1), b%numbers%blocks(i)%coarse, &
+            b%numbers%closing) .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), &
+            b%numbers%blocks(i)%coarse, b%numbers%closing))
       end associate
    end subroutine solve_rates
 

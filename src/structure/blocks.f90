@@ -80,6 +80,7 @@ module blocks
    !> What the numbers of the cards make of the blocks.
    type :: numbers_t
       real(wp) :: span = 1.0_wp                   !< the characteristic length, in the deck's unit
+      real(wp) :: closing = 0.0_wp                !< closing tolerance of redundant equations (unit of the loop, rad)
       type(equation_numbers_t) :: equations       !< their unit of length: the power of two next to `span`
       type(block_numbers_t), allocatable :: blocks(:)
       type(row_numbers_t), allocatable :: rows(:)
