@@ -58,7 +58,7 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example shared pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
+.PHONY: all assembly-peers example shared pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants coverage drawings sizes expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 # The paper's example at two instants.
@@ -296,6 +296,14 @@ tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 mutants: $(BUILD)/release/print_expected
 	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
 
+# How many lines of src/ the tests run, file by file.
+coverage:
+	BUILD=$(BUILD) FC='$(FC)' MAKE='$(MAKE)' tests/coverage.sh
+
+# Drawings of PMKS+ and Linkage in the directory DIR, with positions from elsewhere: make drawings DIR=...
+drawings: $(BUILD)/libkinmat.so.2
+	LIBKINMAT=$(abspath $<) python3 -B tests/import/drawings.py '$(DIR)'
+
 # Lines of code, types, thresholds and names of src/, with their limits.
 sizes:
 	@awk -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $(sources) $(included)
@@ -310,7 +318,7 @@ include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
 checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance random_blocks
-test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
+test: $(addprefix $(BUILD)/,kinmat libkinmat.so.2 example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh
 
@@ -324,7 +332,7 @@ $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
 documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib/pkgconfig share/kinmat share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
-	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
+	install -m 755 $(BUILD)/kinmat contrib/kinmat-import $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 755 $(BUILD)/libkinmat.so.2 $(DESTDIR)$(PREFIX)/lib

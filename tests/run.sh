@@ -19,6 +19,7 @@ parts() {
    the command|480|tests/system/command.sh
    what is installed|22|tests/system/install.sh
    the library for C and Python|120|tests/system/library.sh
+   drawings of other programs|66|tests/system/import.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|255|tests/system/output.sh
    unit tests|500|"$MAKE" --no-print-directory unit
@@ -55,6 +56,9 @@ parts() {
    the tool of mutants|8|tests/mutants/self_test.sh
 END
 }
+
+# run.sh --list: the parts, for tests/coverage.sh
+if [ "$1" = --list ]; then parts; exit 0; fi
 
 w=$BUILD/parts
 # run.sh --part K: part K alone

@@ -8,17 +8,23 @@
 #    ```listing [DECK]        what the deck above, or the file DECK, prints; a line ... stands for lines left out
 #    ```refusal FILE SED      what the command says of FILE's first deck after it is changed by the sed expression
 #    ```sh [STATUS]           commands, run in a directory with the decks of the document; many_sets.sh runs those of many_sets.md
-#    ```python                a program, run in that directory if python3 has pandas
+#    ```python [MODULE...]    a program, run in that directory if python3 has the modules, pandas unless given
 #    ```output                what the commands or the program above print, as a listing
 . tests/counting.sh
 
 documents=$(find README.md docs -name '*.md' | LC_ALL=C sort)
 names=$(cd "${kinmat%/*}" && pwd)
-PATH=$names:$PATH
-export PATH
+PATH=$names:$PWD/contrib:$PATH
+PYTHONPATH=$PWD/bindings
+LIBKINMAT=$names/libkinmat.so.2
+PYTHONDONTWRITEBYTECODE=1
+export PATH PYTHONPATH LIBKINMAT PYTHONDONTWRITEBYTECODE
+"${MAKE:-make}" --no-print-directory BUILD="$BUILD" shared > "$w/out" 2>&1
+equal 'the library that the documents use' 0 $?
 w=$(cd "$w" && pwd)
-has_pandas=
-if python3 -c 'import pandas' 2> /dev/null; then has_pandas=yes; else echo 'skipped: programs in the documents (python3 has no pandas)'; fi
+missing=
+for module in numpy pandas scipy; do python3 -c "import $module" 2> /dev/null || missing="$missing $module"; done
+[ -z "$missing" ] || echo "skipped: programs in the documents with what python3 has not:$missing"
 
 # in_order PRINTED FOUND: the lines of PRINTED stand in FOUND, next to one another but for `...`; tells the first that does not
 in_order() {
@@ -76,13 +82,15 @@ for document in $documents; do
          equal "$name: status" "${words:-0}" $?
          equal "$name: standard error" '' "$(cat "$w/err")" ;;
       python)
-         if [ -n "$has_pandas" ]; then
+         is_run=yes
+         for module in ${words:-pandas}; do case "$missing " in *" $module "*) is_run= ;; esac; done
+         if [ -n "$is_run" ]; then
             (cd "$place/run" && python3 "$block") > "$w/printed" 2> "$w/err"
             equal "$name: status" 0 $?
             cat "$w/err"
          fi ;;
       output)
-         [ "$last" = python ] && [ -z "$has_pandas" ] || equal "$name" '' "$(in_order "$block" "$w/printed")" ;;
+         [ "$last" = python ] && [ -z "$is_run" ] || equal "$name" '' "$(in_order "$block" "$w/printed")" ;;
       text | '') ;;
       *) miss "$name: no such kind of block" ;;
       esac
@@ -103,6 +111,7 @@ for document in docs/outputs.md docs/messages.md docs/evidence.md docs/developin
    equal "$document: its contents" "$(sed -n 's/^## //p' "$document")" \
       "$(sed '/^## /q' "$document" | tr '\n' ' ' | grep -o '\[[^]]*\](#' | sed 's/^.\(.*\).(#$/\1/')"
 done
+equal 'CITATION.cff: the version' "$("$kinmat" --version | sed 's/^KINMAT //; s/,.*//')" "$(sed -n 's/^version: "\(.*\)"$/\1/p' CITATION.cff)"
 equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make run' README.md)"
 
 # Every card, option and message that the sources have: has FILE WHAT WORDS.
