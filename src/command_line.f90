@@ -9,20 +9,20 @@ module command_line
    private
    public :: options_t, read_command, explained
    public :: file_options
-   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table, &
+   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_dxf, out_table, &
       out_shared, out_last
 
    !> The outputs that are files: up to `out_shared` those that all sets share, then, to `out_last`, those of each set.
    !> Those after `out_log` need a motion.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits
+      enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_dxf
       enumerator :: out_table
-      enumerator :: out_shared = out_circuits, out_last = out_table
+      enumerator :: out_shared = out_dxf, out_last = out_table
    end enum
 
    !> The options that name the files of the outputs. A further output costs a word here.
    character(*), parameter :: file_options(out_last) = [character(10) :: '-o', '--csv', '--log', '--summary', '--svg', &
-      '--animate', '--circuits', '--table']
+      '--animate', '--circuits', '--dxf', '--table']
 
    !> A word of the command: the name of a file.
    type :: word_t
@@ -37,6 +37,8 @@ module command_line
       logical :: quiet = .false.             !< no remarks on standard error
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< the CSV has an error estimate of every number
+      logical :: arrows = .false.            !< pictures have arrows of velocities
+      logical :: no_centrodes = .false.      !< pictures have no centrodes
       logical :: study = .false.             !< speed against error, instead of the listing
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
@@ -83,6 +85,10 @@ contains
                call reject('OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
          case ('--errors')
             options%errors = .true.
+         case ('--arrows')
+            options%arrows = .true.
+         case ('--no-centrodes')
+            options%no_centrodes = .true.
          case ('--no-listing')
             options%no_listing = .true.
          case ('--quiet')

@@ -21,6 +21,7 @@ module job
    use solver_log, only: log_head
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use svg, only: page_t, begin_page, end_page
+   use dxf, only: path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
    use picture, only: put_picture
    use animation, only: put_animation
    use circuits, only: circuits_t
@@ -163,7 +164,7 @@ contains
       process_count = o%options%jobs
       work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
       if (process_count == 0) process_count = merge(processor_count(), 1, work > least_work)
-      if (o%options%check .or. any(o%asked([out_svg, out_animation, out_circuits])) .or. any(o%files%error /= 0)) &
+      if (o%options%check .or. any(o%asked([out_svg, out_animation, out_circuits, out_dxf])) .or. any(o%files%error /= 0)) &
          process_count = 1
       process_count = min(process_count, sum(max(1, sets%variants)))
    end function process_count
@@ -183,6 +184,7 @@ contains
       do k = out_svg, out_circuits
          if (o%asked(k)) call begin_page(o%files(k), pages(k))
       end do
+      if (o%asked(out_dxf)) call begin_dxf(o%files(out_dxf))
       before = o%first - 1
       ! Where no set has variants, those before the part at hand need not be passed over.
       if (.not. o%varies) before = o%own_first - 1
@@ -203,6 +205,7 @@ contains
          end if
          ! Sets that were broken off are not drawn.
          if (o%asked(out_svg) .or. o%asked(out_animation)) call draw_set(sets(i), size(sets), o, pages)
+         if (o%asked(out_dxf)) call export_set(sets(i), i - o%first + 1, o)
          if (o%asked(out_circuits) .and. sets(i)%circuits) then
             ! As a picture, circuits have an analysis of their own.
             call make_set_analysis(sets(i), a)
@@ -214,6 +217,7 @@ contains
       do k = out_svg, out_circuits
          if (o%asked(k)) call end_page(o%files(k), pages(k))
       end do
+      if (o%asked(out_dxf)) call end_dxf(o%files(out_dxf))
    end subroutine run_sets
 
    !> Draws the film of `m`, one of so many `sets`, on those of the `pages` that are asked for. It has an analysis of
@@ -229,7 +233,7 @@ contains
       integer :: every, k
 
       call film_of(m, sets, film, every)
-      d = new_drawing(film, every)
+      d = new_drawing(film, every, o%options%arrows, .not. o%options%no_centrodes)
       call make_set_analysis(with_all_links(film), a)
       do k = 0, instant_count(film) - 1
          ! The first of the instants of AT, from which the deck's own motion goes on.
@@ -241,6 +245,29 @@ contains
       if (o%asked(out_svg)) call put_picture(pages(out_svg), d)
       if (o%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
+
+   !> Exports set number `i` of the file for CAD, `m`, at the instants of the deck. Its analysis is its own, as that of a
+   !> picture.
+   subroutine export_set(m, i, o)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      type(writers_t), intent(inout) :: o
+      type(set_analysis_t) :: a
+      type(drawing_t) :: d
+      type(path_t), allocatable :: paths(:)
+      integer :: k
+
+      call make_set_analysis(with_all_links(m), a)
+      d = new_drawing(m, 1, .false., .false.)
+      call new_paths(m, a%now, paths)
+      do k = 0, merge(m%steps, instant_count(m) - 1, m%steps >= 0)
+         call advance_set(a, instant(m, k))
+         if (k == 0) call record_instant(d, a%now, k)
+         call note_paths(paths, a%now, k)
+         if (signal_received() > 0) return
+      end do
+      call put_dxf(o%files(out_dxf), d, paths, i)
+   end subroutine export_set
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    subroutine run_set(m, i, first, last, findings, o)

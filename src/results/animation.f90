@@ -3,13 +3,15 @@
 !> angle evenly.
 module animation
    use kinds, only: wp
-   use planar, only: in_degrees, without_turns, point_of
+   use planar, only: in_degrees, without_turns, point_of, direction, rotated
    use motion, only: mark_none
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
-   use shapes, only: element_t, shapes_of
-   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_foot, line_height
-   use svg, only: page_t, width, put_end, put_group, put_window, put_words, put_columns, pixels, attribute, fitted
+   use shapes, only: element_t, shapes_of, link_color, pole_name
+   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_label, put_foot, caption, &
+      line_height
+   use labels, only: labels_of
+   use svg, only: page_t, width, put_end, put_group, put_window, put_words, put_circle, put_columns, pixels, attribute
    use listing, only: words_of_mark
    implicit none
    private
@@ -54,12 +56,14 @@ contains
       call put_group(c%o, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
          //full(d%frame(d%films)%t)//'"', '')
       call put_moving_links()
+      call put_centres()
       call put_end(c%o, 'g')
       call put_end(c%o, 'svg')
       do i = 1, size(list)
          if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(c, list(i))
       end do
 
+      call put_names()
       call put_clock()
       call put_foot(c)
 
@@ -126,13 +130,75 @@ contains
          end do
       end subroutine put_moving_links
 
+      !> Draws the ring of each instant centre, which is hidden where the centre is at infinity.
+      subroutine put_centres()
+         real(wp) :: place(2, size(frame))
+         logical :: has(size(frame))
+         integer :: i, k
+
+         do i = 1, size(d%poles)
+            has = [(d%frame(frame(k))%has_centre(i), k=1, size(frame))]
+            if (.not. any(has)) cycle
+            do k = 1, size(frame)
+               place(:, k) = to_pixels(c, d%frame(frame(k))%centre(:, i))
+            end do
+            call put_group(c%o, 'class="pole" transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1)) &
+               //')"', pole_name(c%m, d%poles(i)))
+            call put_moving(shift, place, .false.)
+            if (.not. all(has)) call put_moving('animate attributeName="opacity"', &
+               reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
+            call put_circle(c%o, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
+               //link_color(c%m, c%m%requests(d%poles(i))%subject)//'"')
+            call put_end(c%o, 'g')
+         end do
+      end subroutine put_centres
+
+      !> Writes the names of points and links where they stand best at the first frame. Each keeps its distance from what
+      !> it names.
+      subroutine put_names()
+         type(label_t), allocatable :: labels(:)
+         real(wp) :: by(2, size(frame)), offset(2)
+         integer :: i, k, last
+
+         c%s = d%frame(1)
+         do i = 1, size(list)
+            call note_shape(c, list(i))
+         end do
+         call labels_of(c, labels)
+         do i = 1, size(labels)
+            associate (link => labels(i)%link)
+               call put_group(c%o, 'class="label"', '')
+               if (.not. c%m%links(link)%ground) then
+                  offset = offset_of(labels(i)%of, c%s%place(:, link))
+                  last = 1
+                  do k = 1, size(frame)
+                     if (d%frame(frame(k))%known(link)) last = frame(k)
+                     by(:, k) = to_pixels(c, point_of(d%frame(last)%place(:, link), offset)) - labels(i)%of
+                  end do
+                  call put_moving(shift, by, smooth)
+               end if
+               call put_label(c, labels(i))
+               call put_end(c%o, 'g')
+            end associate
+         end do
+      end subroutine put_names
+
+      !> The place (2) in the axes of a link at `position` (3) of what is at the pixel `p` (2).
+      pure function offset_of(p, position) result(offset)
+         real(wp), intent(in) :: p(2), position(3)
+         real(wp) :: offset(2)
+
+         offset = (p - c%shift)/c%scale*[1.0_wp, -1.0_wp]
+         offset = rotated(offset - position(:2), direction(-position(3)))
+      end function offset_of
+
       !> Writes the time, in red with its words if the instant is flagged: a column of lines behind a window of one.
       subroutine put_clock()
          real(wp) :: up(2, size(frame))
          character(:), allocatable :: words
          integer :: k, y
 
-         y = c%bottom - 11 - line_height
+         y = nint(c%high(2)) + 33
          call put_window(c%o, real([14, y - line_height], wp), real([width - 14, y], wp))
          call put_group(c%o, 'class="clock"', '')
          up(1, :) = 0.0_wp
@@ -140,7 +206,7 @@ contains
          call put_moving(shift, up, .false.)
          do k = 1, size(frame)
             associate (s => d%frame(frame(k)))
-               words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
+               words = caption(c, s%t)
                if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
                call put_words(c%o, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
                   trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)

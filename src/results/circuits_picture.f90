@@ -42,6 +42,14 @@ module circuits_picture
    !> Steps between ticks, in any power of ten, and of a turn in degrees; at most so many.
    real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp], turn_step = 45.0_wp
    integer, parameter :: most_ticks = 9
+   !> The column of the angle of a link.
+   integer, parameter :: phi = 3
+   !> The middle of the angles of a curve lies within half a turn of this (rad): a whole turn goes from 0 up.
+   real(wp), parameter :: middle_angle = 10.0_wp*degree
+   !> Two curves that are nowhere farther apart than this (pixels) are equal, seen at so many points; they are drawn in
+   !> dashes of this length, in turn.
+   real(wp), parameter :: same_line = 1.0_wp, dash = 9.0_wp
+   integer, parameter :: seen_points = 60
 
 contains
 
@@ -71,9 +79,10 @@ contains
                associate (r => own%requests(k))
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
-                  do column = forms(form_of(own, r))%coordinates, 1, -1
-                     ! Of a link that turns its angle alone.
-                     if (does_vary .and. r%kind == request_link) exit
+                  ! Of a link that turns its angle alone.
+                  if (r%kind == request_link) call put_chart(page, s, own, found(i), r, phi, does_vary)
+                  if (does_vary) cycle
+                  do column = 1, min(forms(form_of(own, r))%coordinates, merge(phi - 1, phi, r%kind == request_link))
                      call put_chart(page, s, own, found(i), r, column, does_vary)
                   end do
                end associate
@@ -99,18 +108,18 @@ contains
       real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
       character(6), parameter :: anchors(2) = ['middle', 'end   ']
       type(chart_curve_t) :: curves(size(found%list))
-      character(:), allocatable :: name, drive_words
+      character(:), allocatable :: name, drive_words, style
       character(7) :: color
       character(label_length) :: units(2)
       logical :: angular(2)
       real(wp), dimension(2) :: low, high, unit, turn, start, corner, extent, at
       real(wp) :: beyond, range, power, step, x
-      integer :: from(2), to(2), i, j, k, n
+      integer :: from(2), to(2), first(size(found%list)), equal, i, j, k, n
       integer(int64) :: number
       type(motion_t) :: q
       type(row_t) :: row
 
-      ! The curves, and whether they vary. An angle begins within half a turn of 0.
+      ! The curves, and whether they vary.
       q = new_motion(size(m%links))
       q%known = 0
       q%origin = s%now%motions(found%part)%origin
@@ -129,8 +138,10 @@ contains
                curve%p(:, k) = at/unit
             end do
             if (angular(2)) then
-               at = curve%p(:, 1)
-               curve%p(2, :) = curve%p(2, :) - (at(2) - without_turns(at(2)*unit(2))/unit(2))
+               associate (middle => 0.5_wp*(minval(curve%p(2, :)) + maxval(curve%p(2, :)))*unit(2))
+                  curve%p(2, :) = curve%p(2, :) &
+                     + (without_turns(middle - middle_angle) - (middle - middle_angle))/unit(2)
+               end associate
             end if
             low = min(low, minval(curve%p, dim=2))
             high = max(high, maxval(curve%p, dim=2))
@@ -181,8 +192,13 @@ contains
       ! Each curve as many times, whole turns apart, as it enters the window; then its dead points and change points.
       ! The last point of a closed circuit is the first.
       call put_window(page%body, corner, corner + extent)
+      first = [(first_equal(i), i=1, size(curves))]
       do i = 1, size(curves)
          color = color_of(i)
+         style = 'class="curve" style="stroke:'//color//'"'
+         equal = count(first == first(i))
+         if (equal > 1) style = style//' stroke-dasharray="'//fitted(dash)//' '//fitted(dash*(equal - 1)) &
+            //'" stroke-dashoffset="'//fitted(-dash*count(first(:i - 1) == first(i)))//'"'
          associate (circuit => found%list(i), p => curves(i)%p)
             call put_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
                phrase(say_circuit, m%polish)//' '//whole(i))
@@ -191,8 +207,7 @@ contains
             n = size(p, 2)
             do k = from(1), to(1)
                do j = from(2), to(2)
-                  call put_line(page%body, 'polyline', pixels_of(p - spread([k, j]*turn, 2, n)), &
-                     'class="curve" style="stroke:'//color//'"')
+                  call put_line(page%body, 'polyline', pixels_of(p - spread([k, j]*turn, 2, n)), style)
                end do
             end do
             if (circuit%ends(1) == end_closed) n = n - 1
@@ -211,6 +226,44 @@ contains
       call put_end(page%body, 'g')
 
    contains
+
+      !> The number of the first curve to which curve `i` is equal in the window, but for whole turns.
+      pure integer function first_equal(i)
+         integer, intent(in) :: i
+
+         do first_equal = 1, i - 1
+            if (lies_on(pixels_of(curves(i)%p), pixels_of(curves(first_equal)%p)) .and. &
+               lies_on(pixels_of(curves(first_equal)%p), pixels_of(curves(i)%p))) exit
+         end do
+      end function first_equal
+
+      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `q` (2, :),
+      !> but for whole turns.
+      pure logical function lies_on(p, q)
+         real(wp), intent(in) :: p(:, :), q(:, :)
+         real(wp) :: a(2), u(2), v(2), least
+         integer :: point, side, k, j
+
+         lies_on = .false.
+         associate (period => extent/(high - low)*turn)
+            do point = 1, size(p, 2), 1 + size(p, 2)/seen_points
+               least = huge(least)
+               do k = merge(-1, 0, turn(1) > 0.0_wp), merge(1, 0, turn(1) > 0.0_wp)
+                  do j = merge(-1, 0, turn(2) > 0.0_wp), merge(1, 0, turn(2) > 0.0_wp)
+                     a = p(:, point) + [k, j]*period
+                     do side = 1, size(q, 2) - 1
+                        u = a - q(:, side)
+                        v = q(:, side + 1) - q(:, side)
+                        least = min(least, norm2(u - v*min(max(dot_product(u, v) &
+                           /max(dot_product(v, v), tiny(1.0_wp)), 0.0_wp), 1.0_wp)))
+                     end do
+                  end do
+               end do
+               if (least > same_line) return
+            end do
+         end associate
+         lies_on = .true.
+      end function lies_on
 
       !> By how many turns the place `p` (2) is off the window.
       pure function turns_of(p) result(turns)

@@ -16,7 +16,7 @@ module drawing
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, outline_t, outlines_of, hull, moved
+   public :: point_place, point_velocity, outline_t, outlines_of, hull, moved
 
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals, or so many
    !> for each turn of a drive. Reason: at ten degrees a step a path would have corners, and an animation leaps.
@@ -48,6 +48,7 @@ module drawing
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
       real(wp), allocatable :: rate(:)       !< (links) of phi; 0 where it is not known
+      real(wp), allocatable :: velocity(:, :)   !< (2, links) for arrows; 0 where it is not known
       logical, allocatable :: known(:)       !< (links)
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
@@ -65,6 +66,7 @@ module drawing
       real(wp) :: angle = 0.0_wp             !< the direction of the line there (rad)
       real(wp) :: block_angle = 0.0_wp       !< the same in the axes of the block (rad)
       integer :: sense = 1                   !< -1: the slide grows against the direction
+      logical :: is_cylinder = .false.       !< the slide is the length of a cylinder, whose barrel is the carrier's
       real(wp) :: low = huge(1.0_wp), high = -huge(1.0_wp)   !< range of the block along the line, from the foot
    end type guide_t
 
@@ -75,6 +77,8 @@ module drawing
       type(outline_t), allocatable :: outlines(:)   !< (links)
       integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
       integer, allocatable :: poles(:)       !< the requests of poles
+      logical :: has_centrodes = .true.      !< they are drawn
+      logical :: has_arrows = .false.        !< the velocities of points are drawn
       type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
       integer :: stride = 1                  !< every so many instants of TIME, and the last, are frames
@@ -122,15 +126,19 @@ contains
    end subroutine film_of
 
    !> Returns a drawing of the film `m` without a frame. `every`: as in `film_of`.
-   function new_drawing(m, every) result(d)
+   function new_drawing(m, every, has_arrows, has_centrodes) result(d)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: every
+      logical, intent(in) :: has_arrows      !< the velocities of points are drawn
+      logical, intent(in) :: has_centrodes   !< the centrodes of poles are drawn
       type(drawing_t) :: d
       real(wp) :: angles(2)
       integer :: ends(2), i, k, most
 
       d%m = m
       d%every = every
+      d%has_arrows = has_arrows
+      d%has_centrodes = has_centrodes
       d%origin = plane_origin(m)
       d%outlines = outlines_of(m)
       allocate (d%own(0), d%curves(0))
@@ -153,6 +161,9 @@ contains
                k = merge(2, 1, .not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
                   (size(d%outlines(li)%corner, 2) == 1 .and. size(d%outlines(lj)%corner, 2) > 1)))
             end associate
+            ! Only a cylinder has its direction from the drawing.
+            g%is_cylinder = pair%drawn(1)
+            if (g%is_cylinder) k = 1
             g%pivot = ends(k)
             g%point = ends(3 - k)
             g%carrier = m%points(g%pivot)%link
@@ -187,6 +198,7 @@ contains
 
       allocate (s%place(3, size(d%m%links)), s%rate(size(d%m%links)), s%centre(2, size(d%poles)), source=0.0_wp)
       allocate (s%has_centre(size(d%poles)), source=.false.)
+      if (d%has_arrows) allocate (s%velocity(2, size(d%m%links)), source=0.0_wp)
       s%known = d%m%links%ground
       do i = 1, size(d%m%links)
          if (s%known(i)) s%place(:, i) = d%m%links(i)%position - [d%origin, 0.0_wp]
@@ -255,7 +267,9 @@ contains
                   if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                   now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
                   now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
-                  if (known_of(q, i) > 0) now%rate(links(i)) = q%velocity(3, i)
+                  if (known_of(q, i) == 0) cycle
+                  now%rate(links(i)) = q%velocity(3, i)
+                  if (d%has_arrows) now%velocity(:, links(i)) = q%velocity(:2, i)
                end do
             end associate
          end do
@@ -277,6 +291,18 @@ contains
 
       p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
+
+   !> Velocity (2) of point number `i` at the position `s` of a drawing with arrows; 0 where it is not known.
+   pure function point_velocity(m, s, i) result(v)
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp) :: v(2)
+
+      associate (link => m%points(i)%link)
+         v = s%velocity(:, link) + s%rate(link)*quarter_turn(point_place(m, s, i) - s%place(:2, link))
+      end associate
+   end function point_velocity
 
    !> The outlines (links) of all links of `m`, in one pass over its points.
    pure function outlines_of(m) result(list)

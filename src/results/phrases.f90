@@ -191,6 +191,7 @@ module phrases
       say_of_pair = phrase_t('OF PAIR', 'PARY'), &
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &
       say_elsewhere = phrase_t('THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'), &
+      say_centre_outside = phrase_t('INSTANT CENTRE OUTSIDE', 'SRODEK CHWILOWY POZA RYSUNKIEM'), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &

@@ -2,30 +2,23 @@
 !> asks for, the centrodes that POLE asks for, the first flagged instant in words, names, and a scale. Which frames it
 !> shows: the one in which the mechanism is read best, and a few others.
 module picture
-   use kinds, only: wp, label_length
-   use mechanism, only: has_guide, request_point, is_listed_alone, drive_angle, drive_x, drive_y, drive_relangle, &
-      drive_slide
+   use kinds, only: wp
+   use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use planar, only: degree, direction, quarter_turn
    use drives, only: drive_motion
    use names, only: drive_name
-   use drawing, only: drawing_t, snapshot_t, point_place, moved
+   use drawing, only: drawing_t, snapshot_t, point_place, point_velocity, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
-   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_outlines, put_name, put_foot, &
-      add_lines, add_box, cover_of, line_height
-   use svg, only: page_t, tie, put_end, put_group, put_window, put_circle, put_line, put_words, fitted
+   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_outlines, place_name, &
+      put_label, put_foot, put_bar, caption, add_lines, add_box, cover_of, line_height
+   use labels, only: labels_of, clear_of_point
+   use svg, only: page_t, tie, put_end, put_group, put_window, put_circle, put_line, put_words, attribute, fitted
+   use numerals, only: full
    use phrases
    implicit none
    private
    public :: put_picture, clearest, faint_frames
 
-   !> A picture of more links or points than this has no names: they would cover it.
-   integer, parameter :: max_names = 120
-   !> Points closer than this, in pixels, have one name.
-   real(wp), parameter :: together = 2.0_wp
-   !> How far names stay from what is drawn, in pixels. The name of a link must not seem to be that of another.
-   real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
-   !> Where along a bar its name may stand, in parts of its length.
-   real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
    !> The arrow of a drive is a line of so many pieces, the last ones its tip.
    integer, parameter :: pieces = 10, of_tip = 2
    !> Its pixels: length of a straight one, its distance aside, half the tip; radius of an arc.
@@ -34,6 +27,8 @@ module picture
    !> The angle of an arc, and where it may begin, from the side of the link in its own sense (degrees).
    real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
+   !> The longest arrow of a velocity, and its tip (pixels).
+   real(wp), parameter :: longest_arrow = 55.0_wp, tip_length = 9.0_wp
    !> The weight of an arrow for names.
    real(wp), parameter :: arrow_weight = 3.0_wp
 
@@ -54,6 +49,7 @@ contains
       type(canvas_t) :: c
       type(snapshot_t) :: s
       type(element_t), allocatable :: list(:)
+      type(label_t), allocatable :: labels(:)
       integer, allocatable :: faint(:)
       integer :: best, k
 
@@ -66,29 +62,31 @@ contains
       end if
       call make_canvas(page, d, s, faint, c)
 
-      call put_group(c%o, 'class="faint"', '')
-      do k = 1, size(faint)
-         call put_outlines(c, d%frame(faint(k)))
-      end do
-      call put_end(c%o, 'g')
       list = shapes_of(d, c%scale)
       call put_window(c%o, c%low, c%high)
+      call put_group(c%o, 'class="faint"', '')
+      do k = 1, size(faint)
+         call put_outlines(c, list, d%frame(faint(k)))
+      end do
+      call put_end(c%o, 'g')
       do k = 1, size(list)
          call put_shape(c, list(k))
+         call note_shape(c, list(k))
       end do
       call put_end(c%o, 'svg')
       call put_drives(c)
+      if (d%has_arrows) call put_velocities(c)
       do k = 1, size(d%poles)
-         call put_centre(c, k)
+         call put_centre(c, page, k)
       end do
-      if (max(size(d%m%links), size(d%m%points)) <= max_names) then
-         call put_points(c)
-         call put_links(c)
-      end if
+      call labels_of(c, labels)
+      do k = 1, size(labels)
+         call put_label(c, labels(k))
+      end do
 
       ! At the foot: the instant that is drawn in full.
-      if (size(d%own) > 0) call put_words(c%o, [14.0_wp, real(c%bottom - 16 - line_height, wp)], 'start', &
-         'class="time"', 'T = '//fitted(s%t)//' '//trim(d%m%time_unit))
+      if (size(d%own) > 0) call put_words(c%o, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
+         caption(c, s%t))
       call put_foot(c)
    end subroutine put_picture
 
@@ -183,7 +181,7 @@ contains
       !> Draws the first of the `lines` (2, 0:pieces, :), in pixels, that cover least, as an arrow.
       subroutine put_clearest(lines)
          real(wp), intent(in) :: lines(:, 0:, :)
-         real(wp) :: cover, least, e(2)
+         real(wp) :: cover, least
          integer :: k, best
 
          best = 1
@@ -194,91 +192,83 @@ contains
             least = cover
             best = k
          end do
-         associate (line => lines(:, :, best), tail => lines(:, pieces - of_tip, best), tip => lines(:, pieces, best))
-            e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
-            call put_line(c%o, 'polyline', line(:, :1 + pieces - of_tip), 'class="drive"')
-            call put_line(c%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), 'class="tip"')
-            call add_lines(c, line, arrow_weight)
-         end associate
+         call put_arrow_line(c, reshape([lines(:, :pieces - of_tip, best), lines(:, pieces, best)], &
+            [2, 2 + pieces - of_tip]), 'class="drive"', 'class="tip"')
       end subroutine put_clearest
    end subroutine put_drives
 
-   !> Draws the ring of the instant centre of pole number `i`, with its name, if it is in the picture.
-   subroutine put_centre(c, i)
+   !> Draws an arrow along the pixels `line` (2, :), whose last piece is its tip.
+   subroutine put_arrow_line(c, line, of_line, of_tip)
       type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: line(:, :)
+      character(*), intent(in) :: of_line, of_tip   !< attributes
+      real(wp) :: e(2)
+
+      associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
+         e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
+         call put_line(c%o, 'polyline', line(:, :n - 1), of_line)
+         call put_line(c%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
+      end associate
+      call add_lines(c, line, arrow_weight)
+   end subroutine put_arrow_line
+
+   !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a line
+   !> with its place at the foot of the `page`.
+   subroutine put_centre(c, page, i)
+      type(canvas_t), intent(inout) :: c
+      type(page_t), intent(inout) :: page
       integer, intent(in) :: i
       real(wp), parameter :: radius = 4.0_wp
-      character(:), allocatable :: color
+      type(label_t) :: label
+      character(:), allocatable :: color, name
       real(wp) :: p(2)
 
       if (.not. c%s%has_centre(i)) return
       p = to_pixels(c, c%s%centre(:, i))
-      if (any(p < c%low) .or. any(p > c%high)) return
-      color = link_color(c%m, c%m%requests(c%d%poles(i))%subject)
-      call put_circle(c%o, p, radius, 'class="centre" style="stroke:'//color//'"')
+      color = 'style="fill:'//link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"'
+      name = pole_name(c%m, c%d%poles(i))
+      if (any(p < c%low) .or. any(p > c%high)) then
+         associate (at => c%s%centre(:, i) + c%d%origin)
+            call put_words(c%o, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
+               phrase(say_centre_outside, c%m%polish)//': '//fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
+         end associate
+         page%height = page%height + line_height
+         return
+      end if
+      call put_circle(c%o, p, radius, 'class="centre" style="stroke:' &
+         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"')
       call put_circle(c%o, p, 1.0_wp, 'class="point"')
       call add_box(c, p - radius, p + radius)
-      call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:'//color//'"', &
-         pole_name(c%m, c%d%poles(i)))
+      label%attributes = 'class="link" '//color
+      call place_name(c, reshape(p, [2, 1]), clear_of_point, name, label)
+      call put_label(c, label)
    end subroutine put_centre
 
-   !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the
-   !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT
-   !> asks for, of several the one with the shortest name, the first of these. The name of its link would stand there
-   !> twice.
-   subroutine put_points(c)
+   !> Draws the velocities of the points whose paths are drawn, as arrows, and their scale below that of lengths.
+   subroutine put_velocities(c)
       type(canvas_t), intent(inout) :: c
-      logical, dimension(size(c%m%points)) :: open, printed
-      real(wp) :: p(2, size(c%m%points))
-      integer :: i, best
+      real(wp) :: v(2, size(c%d%curves)), scale, p(2), tip(2)
+      integer :: k
 
-      open = .not. c%m%links(c%m%points%link)%ground
-      do i = 1, size(c%m%pairs)
-         if (.not. has_guide(c%m%pairs(i)%kind)) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
+      do k = 1, size(c%d%curves)
+         v(:, k) = point_velocity(c%m, c%s, c%d%curves(k))*[1.0_wp, -1.0_wp]
       end do
-      open = open .and. .not. c%m%links(c%m%points%link)%hidden
-      open = open .and. c%s%known(c%m%points%link)
-      printed = .false.
-      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point &
-         .and. .not. is_listed_alone(c%m%requests))) = .true.
-      do i = 1, size(c%m%points)
-         if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
+      if (.not. any(abs(v) > 0.0_wp)) return
+      scale = longest_arrow/maxval(norm2(v, dim=1))
+      do k = 1, size(c%d%curves)
+         if (norm2(v(:, k))*scale < tip_length) cycle
+         associate (point => c%d%curves(k))
+            p = to_pixels(c, point_place(c%m, c%s, point))
+            call put_group(c%o, 'class="velocity" '//attribute('data-point', trim(c%m%points(point)%name)) &
+               //' data-scale="'//full(scale)//'"', '')
+            tip = p + scale*v(:, k)
+            call put_arrow_line(c, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), 'class="arrow"', &
+               'class="tip arrow"')
+            call put_end(c%o, 'g')
+         end associate
       end do
-      do while (any(open))
-         best = minloc(len_trim(c%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
-         do i = 1, size(c%m%points)
-            if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
-         end do
-         if (c%m%points(best)%name == c%m%links(c%m%points(best)%link)%name) cycle
-         call put_name(c, p(:, best:best), clear_of_point, 'class="name"', trim(c%m%points(best)%name))
-      end do
-   end subroutine put_points
-
-   !> The names of the moving links, each in its color: beside a bar, in or beside a polygon. They may stand along the
-   !> sides of the link, or at its only place.
-   subroutine put_links(c)
-      type(canvas_t), intent(inout) :: c
-      real(wp), allocatable :: corners(:, :), p(:, :)
-      integer :: i, j, k, n, places
-
-      do i = 1, size(c%m%links)
-         if (c%m%links(i)%ground .or. c%m%links(i)%hidden .or. .not. c%s%known(i)) cycle
-         corners = moved(c%d%outlines(i)%corner, c%s%place(:, i))
-         n = size(corners, 2)
-         if (n == 0) cycle
-         places = merge(size(along), 1, n > 1)
-         allocate (p(2, places*n))
-         do k = 1, n
-            associate (side => corners(:, 1 + modulo(k, n)) - corners(:, k))
-               do j = 1, places
-                  p(:, places*(k - 1) + j) = to_pixels(c, corners(:, k) + along(j)*side)
-               end do
-            end associate
-         end do
-         call put_name(c, p, clear_of_link, 'class="link" style="fill:'//color_of(i)//'"', trim(c%m%links(i)%name))
-         deallocate (p)
-      end do
-   end subroutine put_links
+      call put_bar(c, c%high(2) + 36.0_wp, scale, trim(c%m%length_unit)//'/'//trim(c%m%time_unit), 'class="arrow"')
+   end subroutine put_velocities
 
    !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
    !> is `wide` across. Reason: links that are collinear at the first instant are read better later.

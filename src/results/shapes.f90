@@ -9,7 +9,7 @@ module shapes
    use svg, only: attribute
    implicit none
    private
-   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block
+   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block, joint_radius
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
@@ -17,6 +17,7 @@ module shapes
       character(:), allocatable :: attributes
       integer :: link = 0                       !< 0: the fixed plane
       logical :: is_below = .false.             !< it is drawn before all links
+      logical :: is_faint = .false.             !< a faint position shows its outline
       real(wp), allocatable :: p(:, :), add(:, :)   !< (2, places) of a circle its centre
       real(wp) :: radius = 0.0_wp               !< of a circle; of a box how far it goes beyond its places
       !> Names should not cross its lines, the less the more they weigh; below 0: not cover its box.
@@ -24,12 +25,16 @@ module shapes
    end type element_t
 
    !> Links take these in turn; what belongs to the ground has its own.
-   character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a']
+   character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a', &
+      '#7d8c1f', '#5a6b7b', '#e07a8b', '#1f3f7a', '#c2a83e']
    character(*), parameter :: ground_color = '#222', ground_block = '#dddddd'
    real(wp), parameter :: joint_radius = 4.5_wp, point_radius = 2.5_wp
-   !> Half the length and width of a block. A guide goes on by so much beyond the places of its block: the ground's, and
-   !> that of a moving link.
-   real(wp), parameter :: half_block(2) = [12.0_wp, 7.0_wp], beyond = 22.0_wp, rod_beyond = 15.0_wp
+   !> Half the length and width of a block. A guide goes on by so much beyond the places of its block, so that a block's
+   !> length of it is seen at both ends; beyond the places of a pin in a slot by less.
+   real(wp), parameter :: half_block(2) = [12.0_wp, 7.0_wp], beyond = 3.0_wp*half_block(1), beyond_pin = 15.0_wp
+   !> A barrel is half as wide as a support is wide, and has this part of the least length of its cylinder; the rod has
+   !> this part. So both end before the other pin.
+   real(wp), parameter :: half_barrel = 10.0_wp, of_barrel = 0.85_wp, of_piston = 0.97_wp
    !> A support: its point, its two feet, and the ends of its hatched line. A hatch lies so far below its line.
    real(wp), parameter :: support(2, 3) = reshape([0.0_wp, 0.0_wp, -10.0_wp, -16.0_wp, 10.0_wp, -16.0_wp], [2, 3]), &
       base(2, 2) = reshape([-14.0_wp, -16.0_wp, 14.0_wp, -16.0_wp], [2, 2]), below = 3.0_wp
@@ -69,11 +74,11 @@ contains
          call add(0, 'polyline', 'class="support"', place(:, :2), base)
       end do
       do i = 1, size(d%guides)
-         if (d%guides(i)%high >= d%guides(i)%low) call add_guide(d%guides(i))
+         if (d%guides(i)%high >= d%guides(i)%low .and. .not. d%guides(i)%is_cylinder) call add_guide(d%guides(i))
       end do
       do i = 1, size(d%poles)
          do k = 1, 2
-            call add_centrode(i, k)
+            if (d%has_centrodes) call add_centrode(i, k)
          end do
       end do
       list(:used)%is_below = .true.
@@ -84,21 +89,24 @@ contains
          stroke = 'style="stroke:'//color_of(i)
          associate (p => d%outlines(i)%corner)
             if (size(p, 2) == 2) then
-               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight)
+               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, is_faint=.true.)
                call add(i, 'polyline', 'class="core"', p)
             else if (size(p, 2) > 2) then
-               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight)
+               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
+                  is_faint=.true.)
             end if
          end associate
       end do
       do i = 1, size(d%guides)
          associate (g => d%guides(i))
-            if (d%m%links(g%block)%hidden) cycle
+            if (g%is_cylinder .and. g%high >= g%low) call add_cylinder(g)
+            if (d%m%links(g%block)%hidden .or. g%is_cylinder) cycle
             u = half_block(1)*direction(g%block_angle)
             v = half_block(2)*quarter_turn(direction(g%block_angle))
             call add(g%block, 'polygon', 'class="block" style="fill:' &
                //merge(ground_block, color_of(g%block), d%m%links(g%block)%ground)//'"', &
-               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box)
+               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
+               is_faint=.true.)
          end associate
       end do
       do i = 1, size(d%m%pairs)
@@ -122,11 +130,12 @@ contains
    contains
 
       !> Adds an `element` of SVG that moves with `link`.
-      subroutine add(link, element, attributes, p, pixels, weight, radius)
+      subroutine add(link, element, attributes, p, pixels, weight, radius, is_faint)
          integer, intent(in) :: link
          character(*), intent(in) :: element, attributes
          real(wp), intent(in) :: p(:, :)
          real(wp), intent(in), optional :: pixels(:, :), weight, radius
+         logical, intent(in), optional :: is_faint
 
          used = used + 1
          if (used > size(list)) list = [list, list]
@@ -134,6 +143,7 @@ contains
          if (present(pixels)) list(used)%add = pixels
          if (present(weight)) list(used)%weight = weight
          if (present(radius)) list(used)%radius = radius
+         if (present(is_faint)) list(used)%is_faint = is_faint
       end subroutine add
 
       !> Adds the pieces of a line through the places `p` (2, :), which go from each place that `goes_on` to the next;
@@ -177,12 +187,13 @@ contains
       subroutine add_guide(g)
          type(guide_t), intent(in) :: g
          real(wp), allocatable :: p(:, :), pixels(:, :)
-         real(wp) :: e(2), beside(2)
+         real(wp) :: e(2), beside(2), further
 
          e = direction(g%angle)
+         further = merge(beyond_pin, beyond, d%m%links(g%block)%hidden)
          if (d%m%links(g%carrier)%ground) then
             p = reshape([g%foot + g%low*e, g%foot + g%high*e], [2, 2])
-            pixels = reshape([-beyond*e, beyond*e], [2, 2])
+            pixels = reshape([-further*e, further*e], [2, 2])
             ! A vertical one has it on the right, whatever rounding makes of its cosine.
             beside = -sign(below, cos(d%now%place(3, g%carrier) + g%angle) + one_place)*quarter_turn(e)
             call add(g%carrier, 'polyline', 'class="hatch"', p, pixels + spread(beside, 2, 2), line_weight)
@@ -190,17 +201,37 @@ contains
          else
             beside = d%m%points(g%pivot)%offset - g%foot
             p = reshape([g%foot + min(g%low, 0.0_wp)*e, g%foot + max(g%high, 0.0_wp)*e], [2, 2])
-            pixels = reshape([min(scale*max(g%low, 0.0_wp) - rod_beyond, 0.0_wp)*e, &
-               max(scale*min(g%high, 0.0_wp) + rod_beyond, 0.0_wp)*e], [2, 2])
+            pixels = reshape([min(scale*max(g%low, 0.0_wp) - further, 0.0_wp)*e, &
+               max(scale*min(g%high, 0.0_wp) + further, 0.0_wp)*e], [2, 2])
             if (scale*norm2(beside) > 1.0_wp) then
                p = reshape([p(:, 1), g%foot, g%foot + beside, g%foot, p(:, 2)], [2, 5])
                pixels = reshape([pixels(:, 1), 0.0_wp*[beside, beside, beside], pixels(:, 2)], [2, 5])
             end if
             call add(g%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(g%carrier)//'"', p, pixels, &
-               line_weight)
+               line_weight, is_faint=.true.)
             call add(g%carrier, 'polyline', 'class="slot"', p, pixels)
          end if
       end subroutine add_guide
+
+      !> Adds the cylinder of the guide `g`: a rod from Q, and over it a barrel from P.
+      subroutine add_cylinder(g)
+         type(guide_t), intent(in) :: g
+         real(wp) :: e(2), aside(2), least
+
+         least = max(g%low, 0.0_wp)
+         e = direction(g%block_angle)
+         associate (q => d%m%points(g%point)%offset)
+            call add(g%block, 'polyline', 'class="piston" style="stroke:'//link_color(d%m, g%block)//'"', &
+               reshape([q, q - of_piston*least*e], [2, 2]), weight=line_weight, is_faint=.true.)
+         end associate
+         e = direction(g%angle)
+         aside = half_barrel*quarter_turn(e)
+         associate (p => d%m%points(g%pivot)%offset)
+            call add(g%carrier, 'polygon', 'class="barrel" style="stroke:'//link_color(d%m, g%carrier)//'"', &
+               reshape([p, p, p + of_barrel*least*e, p + of_barrel*least*e], [2, 4]), &
+               reshape([aside, -aside, -aside, aside], [2, 4]), weight=line_weight, is_faint=.true.)
+         end associate
+      end subroutine add_cylinder
 
       !> Adds the centrode of pole number `i` in its link number `side`, 1 or 2, as it lies in that link: the two touch
       !> at the instant centre. It may run to infinity, and the picture shows its part of it. Where the sense of the

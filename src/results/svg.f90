@@ -32,6 +32,9 @@ module svg
       '.faint *{stroke:#d0d4d8;stroke-width:1.2}', &
       '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
+      '.barrel{stroke-width:2;fill:#fff;fill-opacity:0.85}', &
+      '.piston{stroke-width:4}', &
+      '.leader{stroke:#888;stroke-width:0.8}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
       '.centrode{stroke-width:4;stroke-opacity:0.4}', &
       '.centre{fill:#fff;stroke-width:2}', &
@@ -42,7 +45,9 @@ module svg
       '.joint{fill:#fff;stroke:#222;stroke-width:1.5}', &
       '.point{fill:#222}', &
       '.drive{stroke:#0a7a3c;stroke-width:2}', &
-      '.tip{stroke:none;fill:#0a7a3c}']
+      '.tip{stroke:none;fill:#0a7a3c}', &
+      '.arrow{stroke:#a01060;stroke-width:2}', &
+      '.tip.arrow{stroke:none;fill:#a01060}']
 
    !> Pixels, and overlaps of this many of them, that differ by no more are the same: rounding errors do not choose.
    real(wp), parameter, public :: tie = 1.0e-6_wp

@@ -122,14 +122,15 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    for svg in "$w/$name.svg" "$w/$name.all.svg"; do
       equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
-      equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
+      equal "$svg: blocks on guides" "$(grep -cE '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+      equal "$svg: cylinders" "$(grep -cE '^CYLINDER' "$deck")" "$(grep -c 'class="barrel"' "$svg")"
    done
    svg=$w/$name.moving.svg
    equal "$svg: well-formed" '' "$(tags "$svg")"
    xml "$svg"
    equal "$svg: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$svg")"
    equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
-   equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
+   equal "$svg: blocks on guides" "$(grep -cE '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
    # Of a deck without joints nothing is compared.
    count=$(grep -cE '^(REVOLUTE|JOINT)' "$deck")
    equal "$svg: joints in motion" "$count $([ "$count" -gt 0 ] && echo 1 || echo 0)" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
@@ -184,6 +185,153 @@ equal 'centrodes of a four-bar' '2 3 through
 1 1 through' "$(centrodes "$w/poles.svg" | awk '{ print ($1 == "BASE-COUPLER") + 1, $3, $4 }')"
 equal 'centrodes in a window' 6 "$(awk '/<svg x=/ { inside = 1 } /<.svg>/ { inside = 0 } inside' "$w/poles.svg" |
    grep -c 'class="centrode" data-centrode="BASE-COUPLER"')"
+# A centrode that runs far away takes no room of the picture: its centre is a line. Without centrodes the ring remains.
+
+cat > "$w/wishbone.deck" <<'DECK'
+TITLE   DOUBLE WISHBONE
+UNITS   MM      DEG     S
+GROUND  BODY
+LINK    UPPER
+LINK    LOWER
+LINK    UPRIGHT
+JOINT   A       BODY    UPPER   420.0           510.0
+JOINT   B       UPPER   UPRIGHT 650.0           540.0
+JOINT   C       BODY    LOWER   340.0           220.0
+JOINT   D       LOWER   UPRIGHT 690.0           195.0
+POINT   PATCH   UPRIGHT         760.0           0.0
+POINT   WHEEL   UPRIGHT         760.0           310.0
+DRIVE   Y       WHEEL           310.0           20.0
+TIME    4                       0.0             4.0
+PRINT   POINTS  PATCH
+POLE    BODY    UPRIGHT
+END
+DECK
+"$kinmat" "$w/wishbone.deck" --no-listing --arrows --svg "$w/wishbone.svg" --table "$w/wishbone.csv" --animate "$w/moving.svg"
+# By hand: the lines from (420, 510) to (650, 540) and from (340, 220) to (690, 195) meet there.
+equal 'an instant centre outside' 'INSTANT CENTRE OUTSIDE: -1044.92, 318.923 (BODY-UPRIGHT)' \
+   "$(sed -n 's/.*>\(INSTANT CENTRE OUTSIDE: .*\)<.*/\1/p' "$w/wishbone.svg")"
+"$kinmat" input/poles.deck --no-listing --no-centrodes --svg "$w/rings.svg"
+equal 'without centrodes' "0 $(grep -c 'class="centre"' "$w/poles.svg")" \
+   "$(grep -c 'class="centrode"' "$w/rings.svg") $(grep -c 'class="centre"' "$w/rings.svg")"
+equal 'an instant centre outside takes no room' yes "$(awk -F'"' '/class="set"/ { for (i = 1; i < NF; i++) if ($i ~ /data-scale=$/) print ($(i + 1) > 0.8 ? "yes" : "no") }' "$w/wishbone.svg")"
+# An arrow has the length and direction of the velocity, in its scale; the caption has the value of the drive.
+equal 'the arrow of a velocity' yes "$(awk -F, '
+   FNR == NR { if (FNR == 2) { vx = $(NF - 3); vy = $(NF - 2) } ; next }
+   /class="velocity"/ { scale = $0; sub(/.*data-scale="/, "", scale); sub(/".*/, "", scale); on = 1 }
+   on && /<polyline/ { line = $0; sub(/.*points="/, "", line); split(line, from, "[ ,]") }
+   on && /<polygon/ { line = $0; sub(/.*points="/, "", line); split(line, tip, "[ ,]")
+      x = (tip[1] - from[1])/scale - vx; y = (from[2] - tip[2])/scale - vy
+      print (x*x + y*y < (0.02/scale)^2 ? "yes" : "no " x " " y); exit }' "$w/wishbone.csv" "$w/wishbone.svg")"
+equal 'the caption' 'T = 0 S, Y WHEEL = 310 MM' "$(sed -n 's/.*class="time">\(T = .*\)<.*/\1/p' "$w/wishbone.svg")"
+equal 'an animation has names and the value of the drive' '3 5 5' "$(grep -c 'class="link" style="fill' "$w/moving.svg") \
+$(grep -cE '>[ABCD]<|>WHEEL<' "$w/moving.svg") $(grep -c 'T = .* S, Y WHEEL = .* MM<' "$w/moving.svg" | sed 's/^361$/5/')"
+# A cylinder: nothing sticks out beyond a pin. The barrel begins at P and is shorter than the least length; faint too.
+cat > "$w/gate.deck" <<'DECK'
+TITLE   GATE
+UNITS   M       DEG     S
+GROUND  BASE
+LINK    GATE
+LINK    BARREL
+LINK    ROD
+JOINT   O       BASE    GATE    0.0             0.0
+JOINT   F       BASE    BARREL  2.0             0.0
+JOINT   E       ROD     GATE    1.2             1.6
+CYLINDERF       E       CYL
+DRIVE   SLIDE   CYL                             -0.1
+TIME    4                       0.0             8.0
+PRINT   PAIRS   CYL
+END
+DECK
+"$kinmat" "$w/gate.deck" --no-listing --svg "$w/gate.svg" --table "$w/gate.csv"
+# lengths CLASS: the lengths of the elements of a class in units of length: of a polygon its longest side
+lengths() { awk -v class="$1" '
+   /class="set"/ { scale = $0; sub(/.*data-scale="/, "", scale); sub(/".*/, "", scale) }
+   $0 ~ "class=\"" class "\"" { line = $0; sub(/.*points="/, "", line); sub(/".*/, "", line); n = split(line, p, "[ ,]"); most = 0
+      for (i = 3; i < n; i += 2) { d = sqrt((p[i] - p[i - 2])^2 + (p[i + 1] - p[i - 1])^2); if (d > most) most = d }
+      printf "%.3f\n", most/scale }' "$2"; }
+least=$(awk -F, 'NR > 1 && (NR == 2 || $2 < least) { least = $2 } END { print least }' "$w/gate.csv")
+for class in barrel piston; do
+   equal "$class: shorter than the least length" yes "$(lengths $class "$w/gate.svg" |
+      awk -v least="$least" '{ print ($1 > 0.8*least && $1 < least ? "yes" : "no " $1) }')"
+done
+equal 'faint positions show cylinders' yes "$(sed -n '/class="faint"/,/^<.g>/p' "$w/gate.svg" | grep -c 'polygon' |
+   awk '{ print ($1 >= 2 ? "yes" : "no") }')"
+# Twelve colours.
+{ card UNITS M DEG S; card GROUND BASE; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do card LINK L$i; done
+   for i in 1 2 3 4 5 6 7 8 9 10 11 12; do card JOINT J$i BASE L$i $i.0; card POINT P$i L$i '' $i.0 1.0; card DRIVE ANGLE L$i '' '' 1.0; done
+   card TIME 1 '' '' 0.0 1.0; card END; } > "$w/twelve.deck"
+"$kinmat" "$w/twelve.deck" --no-listing --svg "$w/twelve.svg"
+equal 'twelve colours' 12 "$(grep -o 'class="bar" style="stroke:[^"]*"' "$w/twelve.svg" | sort -u | wc -l)"
+# Circuits that are equal in a diagram are dashed in turn; x before y.
+cat > "$w/sewing.deck" <<'DECK'
+UNITS   MM      DEG     S
+GROUND  HEAD
+LINK    SHAFT
+LINK    ROD
+LINK    NEEDLE
+LINK    TAKEUP
+LINK    GUIDE
+JOINT   O       HEAD    SHAFT   0.0             0.0
+JOINT   A       SHAFT   ROD     0.0             14.0
+JOINT   N       NEEDLE  ROD     0.0             -32.0
+POINT   TOP     HEAD
+PRISM   TOP     N       BAR     90.0
+JOINT   A2      SHAFT   TAKEUP  0.0             14.0
+JOINT   B       TAKEUP  GUIDE   -20.0           26.0
+JOINT   B0      GUIDE   HEAD    -22.0           6.0
+POINT   EYE     TAKEUP          -40.0           60.0
+DRIVE   ANGLE   SHAFT                           1200.0
+TIME    12                      0.0             0.3
+CIRCUITS
+PRINT   POINTS  EYE
+PRINT   PAIRS   BAR
+END
+DECK
+"$kinmat" "$w/sewing.deck" --no-listing --circuits "$w/sewing.svg"
+equal 'x before y' 'X EYE, MM Y EYE, MM BAR, MM' "$(sed -n 's/.*class="time">\([XYB].*\)<.*/\1/p' "$w/sewing.svg" | paste -s -d ' ')"
+# A curve is drawn as often as it enters the window.
+dashes() { grep -c "stroke-dasharray=\"9 9\" stroke-dashoffset=\"$1\"" "$w/sewing.svg"; }
+equal 'each curve has dashes of its own' "$(grep -c '<polyline class="curve"' "$w/sewing.svg")" $(($(dashes 0) + $(dashes -9)))
+equal 'dashes in turn' "$(dashes 0)" "$(dashes -9)"
+
+# The drawing for CAD: each vertex of a path is the number of the table, rounded to 12 digits; layers; closed or open.
+# vertices FILE LAYER: x and y of each
+vertices() { awk -v layer="$2" '
+   { sub(/\r$/, "") }
+   FNR % 2 == 1 { code = $1 + 0; next }
+   code == 0 { if (on) print x, y; on = 0; kind = $0 }
+   code == 8 && kind == "VERTEX" && $0 == layer { on = 1 }
+   code == 10 { x = $0 } code == 20 { y = $0 }' "$1"; }
+# flags FILE LAYER: 1 for each closed line, 0 for each open one
+flags() { awk -v layer="$2" 'FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 } code == 8 { own = $0 }
+   code == 70 && kind == "POLYLINE" && own == layer { print }' "$1"; }
+# entities FILE: the numbers of entities by kind and layer
+entities() { awk 'FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 } code == 8 { print kind, $0 }' "$1" | sort | uniq -c | awk '{ print $2, $3, $1 }' | paste -s -d,; }
+sed 's/^DRIVE.*/DRIVE   ANGLE   UPPER                           5.0/; s/^TIME .*/TIME    4                       0.0             4.0/' "$w/wishbone.deck" > "$w/two.deck"
+{ sed -n '1,/^END/p' input/jansen.deck; cat "$w/two.deck"; } > "$w/cad.deck"
+"$kinmat" "$w/cad.deck" --no-listing --dxf "$w/cad.dxf" --table "$w/cad.csv"
+equal 'a drawing for CAD: status' 0 $?
+for set in 1 2; do
+   layer=$([ $set = 1 ] || echo 2-)PATHS
+   # The columns of points, which are those with x and y and without phi.
+   awk -F, -v closed="$(flags "$w/cad.dxf" $layer | head -n 1)" '
+      NR == 1 { for (c = 1; c <= NF; c++) { name = $c; if (sub(/[.]x$/, "", name)) x[name] = c; name = $c; if (sub(/[.]phi$/, "", name)) angle[name] = 1 }
+         for (name in x) if (!(name in angle)) list[x[name]] = 1; columns = NF; next }
+      { for (c in list) { row[c, NR - 1] = sprintf("%.11e %.11e", $c, $(c + 1)) } ; rows = NR - 1 }
+      END { for (c = 1; c <= columns; c++) if (c in list) for (k = 1; k <= rows - closed; k++) print row[c, k] }' "$w/cad-$set.csv" > "$w/of.table"
+   vertices "$w/cad.dxf" $layer | awk '{ printf "%.11e %.11e\n", $1, $2 }' > "$w/of.dxf"
+   equal "set $set: vertices as in the table" "$(wc -l < "$w/of.table") 0" "$(wc -l < "$w/of.dxf") $(cmp -s "$w/of.table" "$w/of.dxf"; echo $?)"
+done
+equal 'a motion that closes, and one that does not' '1 0' "$(flags "$w/cad.dxf" PATHS | sort -u) $(flags "$w/cad.dxf" 2-PATHS | sort -u)"
+equal 'entities of the second set' 'CIRCLE 2-JOINTS 4,LINE 2-LINKS 6,POLYLINE 2-PATHS 1,SEQEND 2-PATHS 1,VERTEX 2-PATHS 5' \
+   "$(entities "$w/cad.dxf" | tr , '\n' | grep ' 2-' | paste -s -d,)"
+equal 'it begins and ends' 'SECTION ENTITIES ENDSEC EOF' "$(awk 'NR == 2 || NR == 4' "$w/cad.dxf" | paste -s -d ' ') $(tail -n 4 "$w/cad.dxf" | awk 'NR % 2 == 0' | paste -s -d ' ')"
+if python3 -c 'import ezdxf' 2> /dev/null; then
+   equal 'ezdxf reads it' '2' "$(python3 -c 'import ezdxf, sys; print(len({e.dxf.layer for e in ezdxf.readfile(sys.argv[1]).modelspace() if e.dxftype() == "POLYLINE"}))' "$w/cad.dxf" 2>&1)"
+else
+   echo 'skipped: ezdxf (not installed)'
+fi
+
 # Coarse instants make no coarse centrodes.
 sed -e '/^END/q' -e 's/^TIME.*/TIME    4                       0.0             12.0/' input/poles.deck > "$w/coarse.deck"
 "$kinmat" "$w/coarse.deck" --no-listing --svg "$w/coarse.svg"
@@ -251,7 +399,7 @@ equal 'names with characters of XML: text' yes "$(grep -q 'data-drive="ANGLE &lt
    grep -q 'data-link="&gt;RO&amp;LT;"' "$w/names.moving.svg" && grep -q '>&quot;&lt;C&amp;&gt;&quot;<' "$w/names.svg" && echo yes)"
 
 cp input/four_bar.deck "$w/own.deck"
-for option in --svg --animate; do
+for option in --svg --animate --dxf; do
    rejected "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
    rejected "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
    rejected "$option and --study" 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/own.deck" $option "$w/a" --study
@@ -263,6 +411,7 @@ for option in --svg --animate; do
    fi
    # More shares than sets: a picture of nothing is still one.
    "$kinmat" "$w/own.deck" --sets 1/9 $option "$w/share.svg" > "$w/out" 2> "$w/err"
+   [ $option = --dxf ] && { equal 'a share without sets' 8 "$(wc -l < "$w/share.svg")"; continue; }
    equal "$option, a share without sets" '' "$(tags "$w/share.svg")"
    equal "$option, a share without sets: none" 0 "$(grep -c '<g class="set"' "$w/share.svg")"
 done

@@ -1,0 +1,216 @@
+!> The drawing of a set for CAD: entities of DXF (Release 12) in the deck's unit of length, y up. Layer PATHS has the
+!> paths of points through the instants of the deck; JOINTS and LINKS have the first instant.
+module dxf
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_point, is_listed_alone, has_guide
+   use motion, only: motion_t
+   use points, only: row_t, is_fixed
+   use planar, only: direction
+   use scales, only: characteristic_length
+   use separations, only: motions_apart, closes
+   use set_motion, only: set_motion_t, find_row_in_set
+   use drawing, only: drawing_t, point_place, moved
+   use numerals, only: whole, rounded
+   use text_output, only: output_t, put
+   implicit none
+   private
+   public :: path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
+
+   !> The path of a point.
+   type :: path_t
+      integer :: request = 0                 !< the row of the point, among the requests of the set
+      real(wp), allocatable :: p(:, :)       !< (2, instants) in the deck's coordinates
+      logical, allocatable :: known(:)       !< (instants)
+      type(motion_t), allocatable :: first(:)   !< (parts) the motions at the first instant; of the first path alone
+      logical :: is_closed = .false.         !< the motion of the set closes; of the first path alone
+   end type path_t
+
+   !> Significant digits of a number.
+   integer, parameter :: digits = 12
+   !> The radius of the circle of a joint, in characteristic lengths.
+   real(wp), parameter :: joint_radius = 0.015_wp
+
+contains
+
+   !> Begins the paths of the points that PRINT cards of `m` ask for, without those of the ground.
+   subroutine new_paths(m, s, paths)
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s    !< the motion of the set `m`
+      type(path_t), allocatable, intent(out) :: paths(:)
+      integer :: i, count, instants
+
+      instants = m%steps + 1
+      if (m%steps < 0) instants = size(m%at)
+      count = 0
+      allocate (paths(size(m%requests)))
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
+            cycle
+         count = count + 1
+         paths(count)%request = i
+         allocate (paths(count)%p(2, instants), paths(count)%known(instants))
+      end do
+      paths = paths(:count)
+      if (count > 0) allocate (paths(1)%first(s%count))
+   end subroutine new_paths
+
+   !> Adds instant number `k`, from 0, of the motion `s` to the `paths`; the last one tells whether the motion closes.
+   subroutine note_paths(paths, s, k)
+      type(path_t), intent(inout) :: paths(:)
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: k
+      type(row_t) :: row
+      real(wp) :: apart(3)
+      integer :: i
+
+      do i = 1, size(paths)
+         call find_row_in_set(s, paths(i)%request, row)
+         paths(i)%p(:, k + 1) = row%value(:2, 0)
+         paths(i)%known(k + 1) = row%known >= 0
+      end do
+      if (size(paths) == 0) return
+      associate (one => paths(1))
+         if (k == 0) one%first = s%motions
+         if (k == 0 .or. k + 1 < size(one%known)) return
+         one%is_closed = all(one%known)
+         do i = 1, s%count
+            apart = motions_apart(s%parts(i), one%first(i), s%motions(i))
+            one%is_closed = one%is_closed .and. closes(apart(:2))
+         end do
+      end associate
+   end subroutine note_paths
+
+   !> Begins the file `o`.
+   subroutine begin_dxf(o)
+      type(output_t), intent(inout) :: o
+
+      call put_pair(o, 0, 'SECTION')
+      call put_pair(o, 2, 'ENTITIES')
+   end subroutine begin_dxf
+
+   !> Ends the file `o`.
+   subroutine end_dxf(o)
+      type(output_t), intent(inout) :: o
+
+      call put_pair(o, 0, 'ENDSEC')
+      call put_pair(o, 0, 'EOF')
+   end subroutine end_dxf
+
+   !> Writes the entities of the drawing `d` of a set, whose first frame is the first instant, and the `paths`. Layers of
+   !> the first set of the file have no number.
+   subroutine put_dxf(o, d, paths, number)
+      type(output_t), intent(inout) :: o
+      type(drawing_t), intent(in) :: d
+      type(path_t), intent(in) :: paths(:)
+      integer, intent(in) :: number          !< of the set in the file, from 1
+      character(:), allocatable :: layer
+      real(wp), allocatable :: p(:, :)
+      integer :: i, k, n
+
+      layer = ''
+      if (number > 1) layer = whole(number)//'-'
+      do i = 1, size(paths)
+         call put_path(o, layer//'PATHS', paths(i), paths(1)%is_closed)
+      end do
+      associate (m => d%m, s => d%frame(1))
+         do i = 1, size(m%pairs)
+            if (has_guide(m%pairs(i)%kind) .or. .not. s%known(m%points(m%pairs(i)%point_i)%link)) cycle
+            call put_pair(o, 0, 'CIRCLE')
+            call put_pair(o, 8, layer//'JOINTS')
+            call put_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + d%origin)
+            call put_number(o, 40, joint_radius*characteristic_length(m))
+         end do
+         ! The sides of links; a bar has one.
+         do i = 1, size(m%links)
+            n = size(d%outlines(i)%corner, 2)
+            if (m%links(i)%ground .or. n < 2 .or. .not. s%known(i)) cycle
+            p = moved(d%outlines(i)%corner, s%place(:, i))
+            do k = 1, merge(n, 1, n > 2)
+               call put_side(o, layer, p(:, k) + d%origin, p(:, 1 + modulo(k, n)) + d%origin)
+            end do
+         end do
+         ! Guides between the ends of the slide at this instant: from the foot to the block.
+         do i = 1, size(d%guides)
+            associate (g => d%guides(i))
+               if (.not. (s%known(g%carrier) .and. s%known(g%block)) .or. g%low > g%high) cycle
+               p = moved(reshape([g%foot, g%foot + g%low*direction(g%angle)], [2, 2]), s%place(:, g%carrier))
+               call put_side(o, layer, p(:, 1) + d%origin, p(:, 2) + d%origin)
+            end associate
+         end do
+      end associate
+   end subroutine put_dxf
+
+   !> Writes the pieces of a path on which its places are known. A path of one piece that `closes` has its first place
+   !> only once.
+   subroutine put_path(o, layer, path, closes)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: layer
+      type(path_t), intent(in) :: path
+      logical, intent(in) :: closes
+      integer :: first, last, k
+
+      last = 0
+      do
+         first = last + findloc(path%known(last + 1:), .true., dim=1)
+         if (first == last) exit
+         last = first - 1 + findloc([path%known(first:), .false.], .false., dim=1) - 1
+         if (closes) last = last - 1
+         if (last > first) then
+            call put_pair(o, 0, 'POLYLINE')
+            call put_pair(o, 8, layer)
+            call put_pair(o, 66, '1')
+            call put_place(o, 0, [0.0_wp, 0.0_wp])
+            call put_pair(o, 70, merge('1', '0', closes))
+            do k = first, last
+               call put_pair(o, 0, 'VERTEX')
+               call put_pair(o, 8, layer)
+               call put_place(o, 0, path%p(:, k))
+            end do
+            call put_pair(o, 0, 'SEQEND')
+            call put_pair(o, 8, layer)
+         end if
+         if (closes) exit
+      end do
+   end subroutine put_path
+
+   !> Writes a line from `p` to `q` (2) on the layer of links.
+   subroutine put_side(o, layer, p, q)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: layer      !< its number, or ''
+      real(wp), intent(in) :: p(2), q(2)
+
+      call put_pair(o, 0, 'LINE')
+      call put_pair(o, 8, layer//'LINKS')
+      call put_place(o, 0, p)
+      call put_place(o, 1, q)
+   end subroutine put_side
+
+   !> Writes a place `p` (2): `which` is 0 for the first place of an entity, 1 for the second.
+   subroutine put_place(o, which, p)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: which
+      real(wp), intent(in) :: p(2)
+
+      call put_number(o, 10 + which, p(1))
+      call put_number(o, 20 + which, p(2))
+      call put_number(o, 30 + which, 0.0_wp)
+   end subroutine put_place
+
+   subroutine put_number(o, code, x)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: code
+      real(wp), intent(in) :: x
+
+      call put_pair(o, code, rounded(x, digits, 1.0e-3_wp, 1.0e9_wp))
+   end subroutine put_number
+
+   !> Writes a pair of DXF: a group code and its value.
+   subroutine put_pair(o, code, value)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: code
+      character(*), intent(in) :: value
+
+      call put(o, whole(code))
+      call put(o, value)
+   end subroutine put_pair
+end module dxf

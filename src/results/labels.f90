@@ -1,0 +1,106 @@
+!> The names in a picture: of points and of moving links, each where it covers least at the position that the canvas
+!> shows.
+module labels
+   use kinds, only: wp, label_length
+   use mechanism, only: has_guide, request_point, is_listed_alone
+   use drawing, only: point_place, moved
+   use shapes, only: color_of
+   use canvas, only: canvas_t, label_t, to_pixels, place_name
+   implicit none
+   private
+   public :: labels_of, clear_of_point
+
+   !> A picture of more links or points than this has no names: they would cover it.
+   integer, parameter :: max_names = 120
+   !> Points closer than this, in pixels, have one name.
+   real(wp), parameter :: together = 2.0_wp
+   !> How far names stay from what is drawn, in pixels. The name of a link must not seem to be that of another.
+   real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
+   !> Where along a bar its name may stand, in parts of its length.
+   real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
+
+contains
+
+   !> Finds the names of points and links in the picture `c`; none if they are too many.
+   subroutine labels_of(c, labels)
+      type(canvas_t), intent(inout) :: c
+      type(label_t), allocatable, intent(out) :: labels(:)
+      integer :: used
+
+      used = 0
+      allocate (labels(size(c%m%points) + size(c%m%links)))
+      if (max(size(c%m%links), size(c%m%points)) <= max_names) then
+         call name_points(c, labels, used)
+         call name_links(c, labels, used)
+      end if
+      labels = labels(:used)
+   end subroutine labels_of
+
+   !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the
+   !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT
+   !> asks for, of several the one with the shortest name, the first of these. The name of its link would stand there
+   !> twice.
+   subroutine name_points(c, labels, used)
+      type(canvas_t), intent(inout) :: c
+      type(label_t), intent(inout) :: labels(:)
+      integer, intent(inout) :: used         !< so many are found
+      logical, dimension(size(c%m%points)) :: open, printed
+      real(wp) :: p(2, size(c%m%points))
+      integer :: i, best
+
+      open = .not. c%m%links(c%m%points%link)%ground
+      do i = 1, size(c%m%pairs)
+         if (.not. has_guide(c%m%pairs(i)%kind)) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
+      end do
+      open = open .and. .not. c%m%links(c%m%points%link)%hidden
+      open = open .and. c%s%known(c%m%points%link)
+      printed = .false.
+      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point &
+         .and. .not. is_listed_alone(c%m%requests))) = .true.
+      do i = 1, size(c%m%points)
+         if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
+      end do
+      do while (any(open))
+         best = minloc(len_trim(c%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
+         do i = 1, size(c%m%points)
+            if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
+         end do
+         if (c%m%points(best)%name == c%m%links(c%m%points(best)%link)%name) cycle
+         used = used + 1
+         labels(used)%attributes = 'class="name"'
+         labels(used)%link = c%m%points(best)%link
+         call place_name(c, p(:, best:best), clear_of_point, trim(c%m%points(best)%name), labels(used))
+      end do
+   end subroutine name_points
+
+   !> The names of the moving links, each in its color: beside a bar, in or beside a polygon. They may stand along the
+   !> sides of the link, or at its only place.
+   subroutine name_links(c, labels, used)
+      type(canvas_t), intent(inout) :: c
+      type(label_t), intent(inout) :: labels(:)
+      integer, intent(inout) :: used         !< so many are found
+      real(wp), allocatable :: corners(:, :), p(:, :)
+      integer :: i, j, k, n, places
+
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground .or. c%m%links(i)%hidden .or. .not. c%s%known(i)) cycle
+         corners = moved(c%d%outlines(i)%corner, c%s%place(:, i))
+         n = size(corners, 2)
+         if (n == 0) cycle
+         places = merge(size(along), 1, n > 1)
+         allocate (p(2, places*n))
+         do k = 1, n
+            associate (side => corners(:, 1 + modulo(k, n)) - corners(:, k))
+               do j = 1, places
+                  p(:, places*(k - 1) + j) = to_pixels(c, corners(:, k) + along(j)*side)
+               end do
+            end associate
+         end do
+         used = used + 1
+         labels(used)%attributes = 'class="link" style="fill:'//color_of(i)//'"'
+         labels(used)%link = i
+         call place_name(c, p, clear_of_link, trim(c%m%links(i)%name), labels(used))
+         deallocate (p)
+      end do
+   end subroutine name_links
+end module labels
