@@ -110,8 +110,8 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 # Nearly all time is spent in `hot`: a step, and its row in a table. In double precision `warm` is optimized by itself,
 # without the link; the rest and what tests/ has of its own are compiled with less optimization, in half the time.
 modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
-hot  := $(filter-out picture% animation canvas drawing svg,\
-   $(call modules_in,base linear mechanism blocks continuation perturbed proof $(if $(filter single,$(KIND)),,results)))
+hot  := $(filter-out picture% animation canvas drawing svg circuit% set_circuits ranges dwells,\
+   $(call modules_in,base linear mechanism blocks continuation perturbed proof rows answers $(if $(filter single,$(KIND)),,results)))
 warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
 $(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)

@@ -163,9 +163,10 @@ contains
       associate (by => q%by(request%drive))
          if (.not. allocated(by%velocity)) return
          if (.not. all(by%is_known(links) .or. m%links(links)%ground)) return
-         unit%position = q%position
-         unit%velocity = by%velocity
-         unit%acceleration = by%acceleration
+         allocate (unit%position, unit%velocity, unit%acceleration, mold=q%position)
+         unit%position(:, links) = q%position(:, links)
+         unit%velocity(:, links) = by%velocity(:, links)
+         unit%acceleration(:, links) = by%acceleration(:, links)
       end associate
       row%known = 2
       row%mark = mark_none

@@ -18,7 +18,6 @@ module set_analysis
       new_motion, turned_t, mark_inconsistent
    use block_rank, only: surplus_drives
    use separations, only: motions_apart
-   use independent, only: request_of
    use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -352,7 +351,7 @@ contains
 
          associate (own => s%now%parts(c), a => s%list(c))
             do i = 1, size(list)
-               call find_row(own, q, request_of(s%now, list(i)), rows(i))
+               call find_row(own, q, own%requests(s%now%rows(list(i))%number), rows(i))
             end do
             if (.not. present(always)) return
             call estimate_errors(s%estimators(c), own, a%engine, q, always, .false., estimate)
