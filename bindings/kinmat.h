@@ -1,8 +1,10 @@
-/* KINMAT: kinematics of planar linkages. The library prints nothing and never ends the process.
+/* KINMAT: kinematics of planar linkages. The library prints nothing.
 
    A handle is one set of a deck and where it is in its motion. Threads may use different handles at a time, and one
    handle one after another. Lengths and times are in the units of the deck, angles in degrees or radians, as its card
-   UNITS says. */
+   UNITS says.
+
+   Without memory for what the estimate did not foresee, the run-time library of Fortran ends the process. */
 #ifndef KINMAT_H
 #define KINMAT_H
 #ifdef __cplusplus
@@ -15,7 +17,7 @@ enum {
    KINMAT_SOLVED = 0,   /* every number exists */
    KINMAT_REJECTED = 1, /* the deck, or the call, has a fault; nothing is computed */
    KINMAT_FLAGGED = 2,  /* the instant is flagged: a number may not exist, and is NaN */
-   KINMAT_SYSTEM = 3    /* not enough memory */
+   KINMAT_SYSTEM = 3    /* not enough memory for the deck, by an estimate from its length; nothing is computed */
 };
 
 /* Gives "KINMAT" and the version. */

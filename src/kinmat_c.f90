@@ -21,6 +21,9 @@ module kinmat_c
    !> Characters of the name of a column, and the null after it.
    integer, parameter :: name_length = 80
 
+   !> Bytes for each character of a deck: without these it is not read. Decks of `tests/make_deck` take up to 17.
+   integer(c_size_t), parameter :: memory_of_character = 20
+
    type :: handle_t
       type(set_analysis_t) :: set
       type(table_t) :: table
@@ -70,6 +73,7 @@ contains
       type(handle_t), pointer :: k
       type(failure_t), allocatable :: failure
       character(:), allocatable :: report
+      character(kind=c_char), allocatable :: room(:)
       integer(c_int) :: done
       integer :: error
 
@@ -78,6 +82,9 @@ contains
       allocate (k, stat=error)
       if (error /= 0) return
       handle = c_loc(k)
+      if (c_associated(deck)) allocate (room(memory_of_character*strlen(deck)), stat=error)
+      if (error /= 0) return
+      if (allocated(room)) deallocate (room)
 
       done = pthread_mutex_lock(reading)
       call read_set(text_of(deck), int(number), k, report, failure)
@@ -128,7 +135,7 @@ contains
       kinmat_message = c_loc(no_memory)
       if (.not. c_associated(handle)) return
       call c_f_pointer(handle, k)
-      kinmat_message = c_loc(k%message)
+      if (allocated(k%message)) kinmat_message = c_loc(k%message)
    end function kinmat_message
 
    !> Counts the columns: time, drives, what PRINT or COLUMN cards ask for. 0 if the set was rejected.

@@ -1,9 +1,12 @@
+#define _GNU_SOURCE
 /* What tests/system/library.sh asks of the shared library. See each command below for what it prints. */
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include "kinmat.h"
 
 static char *text_of(const char *path) {
@@ -211,11 +214,37 @@ static int calls(const char *path, const char *rejected) {
    return 0;
 }
 
+/* memory DECK: reads it with 30 MB more than the process has, then without a limit. */
+static int memory(const char *path) {
+   char *text = text_of(path);
+   long pages = 0;
+   int status;
+   struct rlimit limit;
+   FILE *file = fopen("/proc/self/statm", "r");
+   kinmat *k;
+   if (!file || fscanf(file, "%ld", &pages) != 1) return 3;
+   fclose(file);
+   getrlimit(RLIMIT_AS, &limit);
+   limit.rlim_cur = pages*sysconf(_SC_PAGESIZE) + 30000000;
+   setrlimit(RLIMIT_AS, &limit);
+   k = kinmat_read(text, 1, &status);
+   printf("%d '%s' %d\n", status, kinmat_message(k), kinmat_columns(k));
+   kinmat_free(k);
+   limit.rlim_cur = limit.rlim_max;
+   setrlimit(RLIMIT_AS, &limit);
+   k = kinmat_read(text, 1, &status);
+   printf("%d '%s'\n", status, kinmat_message(k));
+   kinmat_free(k);
+   free(text);
+   return 0;
+}
+
 int main(int argc, char **argv) {
    if (argc > 2 && !strcmp(argv[1], "table")) return table(argv[2]);
    if (argc > 3 && !strcmp(argv[1], "threads")) return threads(atoi(argv[2]), argc - 3, argv + 3);
    if (argc > 3 && !strcmp(argv[1], "reads")) return reads(atoi(argv[2]), argc - 3, argv + 3);
    if (argc > 3 && !strcmp(argv[1], "steps")) return steps(atoi(argv[2]), argv[3]);
+   if (argc > 2 && !strcmp(argv[1], "memory")) return memory(argv[2]);
    if (argc > 3 && !strcmp(argv[1], "calls")) return calls(argv[2], argv[3]);
    return 3;
 }

@@ -75,6 +75,11 @@ for lists in '' --lists; do
       input/cylinder.deck input/stroke.deck input/ten_plates.deck 2>&1)"
 done
 
+# Without memory for a deck: status 3, and the process goes on.
+tests/make_deck windows 3000 1 > "$w/long.deck"
+equal 'a deck without memory for it' "3 'NOT ENOUGH MEMORY' 0
+0 ''" "$("$w/library" memory "$w/long.deck" 2>&1)"
+
 # Nothing is lost, and nothing is used that was not set.
 if command -v valgrind > /dev/null; then
    OPENBLAS_NUM_THREADS=1 valgrind -q --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible \
