@@ -80,14 +80,14 @@ contains
       call solve_blocks(e, t, .false., c)
       if (.not. e%blocks%solvable) return
       rest = nothing_gathered
-      if (is_solved(c)) call solve_each(e, pack([(i, i=1, size(found))], [(all(e%needed /= i), i=1, size(found))]), &
-         .false., rest)
+      if (is_solved(c)) call solve_each(e, pack([(i, i=1, size(found))], &
+         [(all(e%blocks%needed /= i), i=1, size(found))]), .false., rest)
       is_complete = is_solved(c) .and. is_solved(rest)
       places = places_of(e)
 
       ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
       turn = 0.0_wp
-      associate (class => e%orientation_of, offset => e%geometry%equations%axes%angle_offset)
+      associate (class => e%blocks%tree%orientation, offset => e%geometry%equations%axes%angle_offset)
          do k = size(class), 1, -1
             if (class(k) > 0) turn(class(k)) = without_turns(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
          end do
@@ -114,12 +114,12 @@ contains
       if (is_nearer(nearest, distance_of(e, places, e%estimate))) &
          e%choice(pack(places(1, :), is_implied))%is_incomplete = .true.
       c = nothing_gathered
-      k = findloc(found(e%needed)%chosen, 0, dim=1)
+      k = findloc(found(e%blocks%needed)%chosen, 0, dim=1)
       if (k == 0) then
-         call solve_each(e, e%needed, .false., c)
+         call solve_each(e, e%blocks%needed, .false., c)
       else
-         call solve_each(e, e%needed(:k - 1), .false., c)
-         if (is_solved(c)) call gather(found(e%needed(k))%ending, c)
+         call solve_each(e, e%blocks%needed(:k - 1), .false., c)
+         if (is_solved(c)) call gather(found(e%blocks%needed(k))%ending, c)
       end if
    end subroutine solve_first
 
@@ -367,8 +367,8 @@ contains
       block_of(0) = 0
       block_of(1:) = e%blocks%block_of
       places = 0
-      do k = 1, size(e%chain%links)
-         associate (h => e%chain%links(k))
+      do k = 1, size(e%geometry%chain%links)
+         associate (h => e%geometry%chain%links(k))
             places(1, h%link) = block_of(h%orientation)
             places(2, h%link) = max(block_of(h%orientation), block_of(h%slide))
             if (h%parent > 0) places(2, h%link) = max(places(2, h%link), places(2, h%parent))
@@ -394,7 +394,7 @@ contains
       logical :: finite
 
       q = new_motion(size(guess, 2))
-      call move_links(e%chain, e%state, e%length, q, finite, .true.)
+      call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
       square = squared_distances(q%position, guess, e%geometry%span)
    end function squares_of
 

@@ -122,9 +122,9 @@ contains
       crossed = e%crossed
       ! A prediction that leaps too far is not solved at all.
       passed = any(crossed) .and. is_short_and_right(e, c%change)
-      do k = 1, size(e%moving)
+      do k = 1, size(e%blocks%moving)
          if (.not. passed) exit
-         associate (i => e%moving(k), before => e%history%t(0))
+         associate (i => e%blocks%moving(k), before => e%history%t(0))
             if (.not. crossed(i)) cycle
             r = new_diagnostic(diagnostic_change, links_of(e, i))
             ! The least pivot goes through zero in proportion to the values of the drives.
@@ -148,18 +148,18 @@ contains
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
-      real(wp), dimension(size(e%moving)) :: lipschitz, rounded
+      real(wp), dimension(size(e%blocks%moving)) :: lipschitz, rounded
       real(wp) :: right, driven
-      logical, dimension(size(e%moving)) :: crosses, is_short
+      logical, dimension(size(e%blocks%moving)) :: crosses, is_short
 
-      crosses = e%crossed(e%moving)
-      lipschitz = e%geometry%blocks(e%moving)%lipschitz
+      crosses = e%crossed(e%blocks%moving)
+      lipschitz = e%geometry%blocks(e%blocks%moving)%lipschitz
       is_short = e%change <= short_step &
-         .or. e%followed(e%moving)%pivot + e%found(e%moving)%pivot <= short_pivots*lipschitz
+         .or. e%followed(e%blocks%moving)%pivot + e%found(e%blocks%moving)%pivot <= short_pivots*lipschitz
       is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
       if (.not. is) return
       driven = abs(e%t - e%history%t(0))*largest_drive_rate(e%state)
-      rounded = rounding*lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
+      rounded = rounding*lipschitz/e%followed(e%blocks%moving)%pivot**2*max(e%change, driven)
       right = right_part*(short_step/max(short_step, e%change))**2*e%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
       is = correction <= min(right, max_wrong*e%change)
@@ -188,7 +188,7 @@ contains
       away = -2.0_wp*v%s(v%n)/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
       c = nothing_gathered
-      call solve_each(e, e%moving, .true., c)
+      call solve_each(e, e%blocks%moving, .true., c)
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
       crossed(i) = .not. crossed(i)

@@ -59,8 +59,8 @@ contains
             if (same == 0) list = [list, r]
          end do
       end if
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k))
+      do k = 1, size(e%blocks%needed)
+         associate (i => e%blocks%needed(k))
             if (e%blocks%list(i)%direct) cycle
             if (singular) then
                call add_mobility(e, i, list)
@@ -71,7 +71,7 @@ contains
          end associate
       end do
       off = without_turns(found%position(3, :) - e%estimate(3, :))
-      link = maxloc(abs(off), mask=e%is_found, dim=1)
+      link = maxloc(abs(off), mask=e%blocks%is_found, dim=1)
       if (link == 0) return
       if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
@@ -90,8 +90,8 @@ contains
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
       end associate
-      do k = 1, e%chain%wanted
-         associate (h => e%chain%links(k))
+      do k = 1, e%geometry%chain%wanted
+         associate (h => e%geometry%chain%links(k))
             if (h%parent > 0) moved(h%link) = moved(h%link) .or. moved(h%parent)
          end associate
       end do
@@ -102,14 +102,14 @@ contains
    pure function links_of(e, i) result(chosen)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
-      logical :: chosen(size(e%orientation_of))
+      logical :: chosen(size(e%blocks%tree%orientation))
       integer :: k
 
       associate (unknowns => own_unknowns(e%blocks, i))
          chosen = links_with(e, unknowns)
          if (any(chosen)) return
-         do k = 1, size(e%chain%links)
-            if (any(unknowns == e%chain%links(k)%slide)) chosen(e%chain%links(k)%link) = .true.
+         do k = 1, size(e%geometry%chain%links)
+            if (any(unknowns == e%geometry%chain%links(k)%slide)) chosen(e%geometry%chain%links(k)%link) = .true.
          end do
       end associate
    end function links_of
@@ -118,12 +118,12 @@ contains
    pure function links_with(e, unknowns) result(chosen)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: unknowns(:)
-      logical :: chosen(size(e%orientation_of))
+      logical :: chosen(size(e%blocks%tree%orientation))
       integer :: k
 
       chosen = .false.
       do k = 1, size(unknowns)
-         chosen = chosen .or. (e%orientation_of == unknowns(k) .and. e%orientation_of > 0)
+         chosen = chosen .or. (e%blocks%tree%orientation == unknowns(k) .and. e%blocks%tree%orientation > 0)
       end do
    end function links_with
 
@@ -142,24 +142,24 @@ contains
 
       allocate (list(0))
       if (e%history%filled == 0) return
-      do k = 1, size(e%moving)
-         if (e%blocks%list(e%moving(k))%direct) cycle
-         left = time_to_limit(e%moving(k))
-         if (abs(left) <= 0.0_wp) left = time_to_infinity(e%moving(k))
+      do k = 1, size(e%blocks%moving)
+         if (e%blocks%list(e%blocks%moving(k))%direct) cycle
+         left = time_to_limit(e%blocks%moving(k))
+         if (abs(left) <= 0.0_wp) left = time_to_infinity(e%blocks%moving(k))
          if (abs(left) <= 0.0_wp) cycle
-         associate (i => e%moving(k))
-            r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
+         associate (i => e%blocks%moving(k))
+            r = new_diagnostic(diagnostic_limit, links_of(e, e%blocks%moving(k)))
             r%in_line = is_in_line(e, i, r, e%history%past%value)
             r%t = e%history%t(0) + left
          end associate
          exit
       end do
-      if (k > size(e%moving)) return
+      if (k > size(e%blocks%moving)) return
 
       ! The first drive that moves the block there, itself or through what it builds on; where all stand still, the
       ! first that could.
       moves = .false.
-      associate (below => blocks_below(e%blocks, e%moving(k)))
+      associate (below => blocks_below(e%blocks, e%blocks%moving(k)))
          do d = 1, size(below)
             associate (block => e%blocks%list(below(d)))
                moves(e%blocks%rows(block%first_row:block%last_row)%drive) = .true.
@@ -256,8 +256,8 @@ contains
 
       found = -1
       missing = 0
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k), b => e%blocks%list(e%needed(k)))
+      do k = 1, size(e%blocks%needed)
+         associate (i => e%blocks%needed(k), b => e%blocks%list(e%blocks%needed(k)))
             before = largest_known(e%blocks, i, missing)
             if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, e%geometry, i, e%state)
             missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
@@ -302,8 +302,8 @@ contains
       real(wp), allocatable :: angle(:)
       integer :: m, k
 
-      is_in_line = count(r%links > 0) == 2 .and. any([(all(e%joint(:, k) == r%links(:2)) &
-         .or. all(e%joint(:, k) == r%links(2:1:-1)), k=1, size(e%joint, 2))])
+      is_in_line = count(r%links > 0) == 2 .and. any([(all(e%blocks%joint(:, k) == r%links(:2)) &
+         .or. all(e%blocks%joint(:, k) == r%links(2:1:-1)), k=1, size(e%blocks%joint, 2))])
       allocate (angle(0))
       do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
          do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector

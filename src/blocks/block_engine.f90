@@ -18,12 +18,12 @@ module block_engine
    use block_solver, only: workspace_t, new_workspace, solve_block, solve_direct
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
-   use link_motion, only: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+   use link_motion, only: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
       missing_all
    implicit none
    private
    public :: block_engine_t, engine_state_t, followed_t, choice_t
-   public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_each, &
+   public :: make_block_engine, take_requests, renew_block_engine, put_geometry, put_path, solve_blocks, solve_each, &
       separation_of, set_drive_values, accept, get_motion, get_ratios, mark_singular_links, get_driven_links, &
       followed_state, slide_unit
 
@@ -57,20 +57,14 @@ module block_engine
       logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
    end type engine_state_t
 
-   !> Lengths in units of `length`. What the structure and the deck give does not change; `work` is scratch.
+   !> Structure and geometry, the path of the drives, and how the first position is chosen do not change with the
+   !> instant; `work` is scratch.
    type, extends(engine_state_t) :: block_engine_t
-      real(wp) :: length = 1.0_wp                       !< the unit of its lengths, a power of two in the deck's unit
       type(blocks_t), allocatable :: blocks
       type(geometry_t), allocatable :: geometry
-      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
-      type(chain_t) :: chain                            !< of the links: those that are asked for, then the others
       type(drive_path_t) :: path                        !< of its drives
-      integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for
-      integer, allocatable :: orientation_of(:)         !< (links)
-      integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
-      logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       real(wp), allocatable :: estimated(:)             !< (0:unknowns) from the deck's positions
-      real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
+      real(wp), allocatable :: estimate(:, :)           !< (3, links) places from the chain's origin, angles of the deck
       type(choice_t), allocatable :: choice(:)          !< (blocks) of their positions at the first instant
       type(kept_start_t), allocatable :: starts(:)      !< (blocks) near which the paths to all positions begin
       type(workspace_t) :: work
@@ -78,15 +72,13 @@ module block_engine
 
 contains
 
-   !> Ready for the first instant of `m`. `structure`: that of `m`, whose blocks the engine takes over; without it
-   !> the engine makes one.
+   !> Makes the engine ready for the first instant of `m`. `structure`: that of `m`, whose blocks and geometry the
+   !> engine takes over; without it the engine makes one.
    subroutine make_block_engine(e, m, structure)
       type(block_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
-      logical, allocatable :: need(:)                   ! (0:unknowns)
-      integer :: i
 
       if (present(structure)) then
          call move_alloc(structure%blocks, e%blocks)
@@ -96,50 +88,62 @@ contains
          call move_alloc(own%blocks, e%blocks)
          call move_alloc(own%geometry, e%geometry)
       end if
-      e%length = e%geometry%equations%length
-      e%geometry%tolerance = m%tolerance
-      e%ratios = [integer ::]
-      if (any(m%requests%drive > 0)) e%ratios = pack([(i, i=1, size(m%drives))], &
-         [(any(m%requests%drive == i), i=1, size(m%drives))])
+      call take_requests(m, e%blocks, e%geometry)
       if (.not. e%blocks%solvable) return
-
-      e%chain = new_chain(m, e%blocks, e%geometry, wanted_links(m))
-      ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
-      allocate (need(0:e%blocks%unknowns), source=.false.)
-      do i = 1, e%chain%wanted
-         associate (h => e%chain%links(i))
-            need([h%orientation, h%slide, h%root, h%root + min(h%root, 1)]) = .true.
-         end associate
-      end do
-      e%needed = blocks_that_give(e%blocks, e%blocks%list%shape%rows > e%blocks%list%shape%n, need)
-      e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
-      e%orientation_of = e%blocks%tree%orientation
-      e%is_found = wanted_links(m) .and. e%orientation_of > 0
-      do i = 1, size(m%links)
-         if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(e%orientation_of(i)))%direct
-      end do
-      allocate (e%joint(2, count(.not. has_guide(m%pairs%kind))))
-      e%joint(1, :) = m%points(pack(m%pairs%point_i, .not. has_guide(m%pairs%kind)))%link
-      e%joint(2, :) = m%points(pack(m%pairs%point_j, .not. has_guide(m%pairs%kind)))%link
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
-      call put_laws(e, m)
+      call put_path(m, e%blocks, e%geometry, e%path)
       call begin_state(e, m)
    end subroutine make_block_engine
 
-   !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
-   !> was made; its state stays, and its estimate. `fits`: see `put_numbers`.
-   subroutine put_mechanism(e, m, fits)
-      type(block_engine_t), intent(inout) :: e
+   !> Finds which of the blocks `b` of `m`, with the geometry `x`, are solved for its requests, and the chain of the
+   !> links that these ask for.
+   subroutine take_requests(m, b, x)
       type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(inout) :: b
+      type(geometry_t), intent(inout) :: x
+      logical :: need(0:b%unknowns)
+      integer :: i
+
+      x%tolerance = m%tolerance
+      b%ratios = [integer ::]
+      if (any(m%requests%drive > 0)) b%ratios = pack([(i, i=1, size(m%drives))], &
+         [(any(m%requests%drive == i), i=1, size(m%drives))])
+      if (.not. b%solvable) return
+      x%chain = new_chain(m, b, x, wanted_links(m))
+      ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
+      need = .false.
+      do i = 1, x%chain%wanted
+         associate (h => x%chain%links(i))
+            need([h%orientation, h%slide, h%root, h%root + min(h%root, 1)]) = .true.
+         end associate
+      end do
+      b%needed = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
+      b%moving = pack(b%needed, moving_blocks(b, b%needed))
+      b%is_found = wanted_links(m) .and. b%tree%orientation > 0
+      do i = 1, size(m%links)
+         if (b%is_found(i)) b%is_found(i) = .not. b%list(b%block_of(b%tree%orientation(i)))%direct
+      end do
+      associate (revolute => .not. has_guide(m%pairs%kind))
+         b%joint = reshape([m%points(pack(m%pairs%point_i, revolute))%link, &
+            m%points(pack(m%pairs%point_j, revolute))%link], [2, count(revolute)], order=[2, 1])
+      end associate
+   end subroutine take_requests
+
+   !> Gives the geometry `x` and the `path` the numbers of `m`, a mechanism with the links, points, pairs and drives of
+   !> that of which the blocks `b` were made. `fits`: see `put_numbers`.
+   subroutine put_geometry(m, b, x, path, fits)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(inout) :: x
+      type(drive_path_t), intent(inout) :: path
       logical, intent(out) :: fits
 
-      call put_numbers(m, e%blocks, e%geometry, fits)
-      e%geometry%tolerance = m%tolerance
-      e%length = e%geometry%equations%length
-      call put_chain(m, e%blocks, e%geometry, e%chain)
-      call put_laws(e, m)
-   end subroutine put_mechanism
+      call put_numbers(m, b, x, fits)
+      x%tolerance = m%tolerance
+      call put_chain(m, b, x, x%chain)
+      call put_path(m, b, x, path)
+   end subroutine put_geometry
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
    !> with the blocks and the memory that it has. `is_done`: they fit; otherwise `e` is of no use.
@@ -149,7 +153,7 @@ contains
       logical, intent(out) :: is_done
 
       is_done = e%blocks%solvable
-      if (is_done) call put_mechanism(e, m, is_done)
+      if (is_done) call put_geometry(m, e%blocks, e%geometry, e%path, is_done)
       if (.not. is_done) return
       call put_estimate(e, m)
       call begin_state(e, m)
@@ -162,7 +166,7 @@ contains
 
       e%engine_state_t = engine_state_t()
       e%state = new_state(e%blocks, size(m%drives))
-      e%history = history_t(predicted=iterated_unknowns(e%blocks, e%moving), order=m%predictor)
+      e%history = history_t(predicted=iterated_unknowns(e%blocks, e%blocks%moving), order=m%predictor)
       allocate (e%history%past(0:e%blocks%unknowns))
       associate (n => size(e%blocks%list))
          allocate (e%found(n), e%followed(n))
@@ -180,26 +184,28 @@ contains
       integer :: i
 
       do i = 1, size(m%links)
-         e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
+         e%estimate(:, i) = m%links(i)%position - [e%geometry%chain%origin, 0.0_wp]
       end do
       ! As a section: a function's result would bring its own lower bound.
       e%estimated(:) = estimated_values(m, e%blocks, e%geometry)
    end subroutine put_estimate
 
-   !> The laws of the drives of `m`, and the units of their values.
-   subroutine put_laws(e, m)
-      type(block_engine_t), intent(inout) :: e
+   !> Puts the laws of the drives of `m`, and the units of their values, into its `path`.
+   subroutine put_path(m, b, x, path)
       type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(inout) :: path
       integer :: i
 
-      e%path%laws = m%drives
-      e%path%unit = merge(1.0_wp/e%length, 1.0_wp, is_length(m%drives))
-      do i = 1, size(e%blocks%rows)
-         associate (drive => e%blocks%rows(i)%drive)
-            if (drive > 0) e%path%unit(drive) = e%path%unit(drive)/e%geometry%rows(i)%unit
+      path%laws = m%drives
+      path%unit = merge(1.0_wp/x%equations%length, 1.0_wp, is_length(m%drives))
+      do i = 1, size(b%rows)
+         associate (drive => b%rows(i)%drive)
+            if (drive > 0) path%unit(drive) = path%unit(drive)/x%rows(i)%unit
          end associate
       end do
-   end subroutine put_laws
+   end subroutine put_path
 
    !> Solves for the motion at `t`, from the one accepted last (`follows`) or from the deck's estimate. `c`: how that
    !> ended in the worst block, with the largest change of a predicted value.
@@ -215,22 +221,24 @@ contains
          return
       end if
       e%t = t
-      call set_drive_values(e, t)
+      call set_drive_values(e%path, t, e%state)
       c = nothing_gathered
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          c%keeps_signs = e%change <= largest_change
          if (.not. c%keeps_signs) e%crossed = .false.
-         if (c%keeps_signs) call solve_each(e, e%moving, follows, c)
+         if (c%keeps_signs) call solve_each(e, e%blocks%moving, follows, c)
       else
          ! Whole turns that a drive asks for close nothing, and would have to be travelled.
          e%state%u%value = e%estimated
-         do k = 1, size(e%needed)
-            if (.not. e%blocks%list(e%needed(k))%direct) call add_turns(e%blocks, e%geometry, e%needed(k), e%state)
+         do k = 1, size(e%blocks%needed)
+            associate (i => e%blocks%needed(k))
+               if (.not. e%blocks%list(i)%direct) call add_turns(e%blocks, e%geometry, i, e%state)
+            end associate
          end do
          e%estimated(:) = e%state%u%value
          e%choice = choice_t()
-         call solve_each(e, e%needed, follows, c)
+         call solve_each(e, e%blocks%needed, follows, c)
       end if
    end subroutine solve_blocks
 
@@ -259,16 +267,17 @@ contains
       separation = 2.0_wp/max(bound, tiny(bound))
    end function separation_of
 
-   !> Value, rate and acceleration of the drives at `t`, the time or another parameter of their path.
-   pure subroutine set_drive_values(e, t)
-      type(block_engine_t), intent(inout) :: e
+   !> Finds value, rate and acceleration of the drives at the parameter `t` of their `path`.
+   pure subroutine set_drive_values(path, t, s)
+      type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t
+      type(state_t), intent(inout) :: s
       real(wp) :: f(3)
       integer :: i
 
-      do i = 1, size(e%path%laws)
-         f = drive_at(e%path, i, t)
-         e%state%drive_value(0:2, i) = e%path%unit(i)*f
+      do i = 1, size(path%laws)
+         f = drive_at(path, i, t)
+         s%drive_value(0:2, i) = path%unit(i)*f
       end do
    end subroutine set_drive_values
 
@@ -318,10 +327,10 @@ contains
 
       if (e%history%filled == 0) e%followed = e%found
       uncertain = 0.0_wp
-      do k = 1, size(e%moving)
-         e%followed(e%moving(k)) = e%found(e%moving(k))
+      do k = 1, size(e%blocks%moving)
+         e%followed(e%blocks%moving(k)) = e%found(e%blocks%moving(k))
          uncertain = max(uncertain, &
-            uncertain_part(e%blocks, e%geometry, e%moving(k), e%found(e%moving(k))%pivot, e%state))
+            uncertain_part(e%blocks, e%geometry, e%blocks%moving(k), e%found(e%blocks%moving(k))%pivot, e%state))
       end do
       call remember(e%history, e%t, e%state%u, uncertain)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, e%geometry, 1, e%state)
@@ -334,44 +343,48 @@ contains
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: finite
 
-      call move_links(e%chain, e%state, e%length, found, finite)
+      call move_links(e%geometry%chain, e%state, e%geometry%equations%length, found, finite)
    end subroutine get_motion
 
    !> Finds the motions found%by in which one of the drives by which ratios are asked for has the rate 1 and the others
-   !> rest, at the position found last: as the motion itself, with other values of drives.
-   subroutine get_ratios(e, is_lost, found)
-      type(block_engine_t), intent(inout) :: e
+   !> rest, at the position `here`: as the motion itself, with other values of drives.
+   subroutine get_ratios(b, x, path, is_lost, here, w, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
       logical, intent(in) :: is_lost(:)      !< (blocks) without a position, or without unique rates
+      type(state_t), intent(in) :: here
+      type(workspace_t), intent(inout) :: w
       type(motion_t), intent(inout) :: found
       type(motion_t) :: unit
       type(state_t) :: s
       type(convergence_t) :: c
-      integer :: missing(0:e%blocks%unknowns), j, k
+      integer :: missing(0:b%unknowns), j, k
       logical :: has_rates, finite
 
       ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
-      if (.not. allocated(found%by)) allocate (found%by(size(e%path%laws)))
+      if (.not. allocated(found%by)) allocate (found%by(size(path%laws)))
       unit = new_motion(size(found%position, 2))
-      do j = 1, size(e%ratios)
-         s = e%state
+      do j = 1, size(b%ratios)
+         s = here
          s%drive_value(1:, :) = 0.0_wp
-         s%drive_value(1, e%ratios(j)) = e%path%unit(e%ratios(j))
+         s%drive_value(1, b%ratios(j)) = path%unit(b%ratios(j))
          missing = missing_nothing
-         do k = 1, size(e%needed)
-            associate (i => e%needed(k))
+         do k = 1, size(b%needed)
+            associate (i => b%needed(k))
                has_rates = .not. is_lost(i)
-               if (has_rates) has_rates = largest_known(e%blocks, i, missing) == missing_nothing
+               if (has_rates) has_rates = largest_known(b, i, missing) == missing_nothing
                if (has_rates) then
                   c = convergence_t()
-                  call solve_block(e%blocks, e%geometry, i, .false., e%work, s, c)
+                  call solve_block(b, x, i, .false., w, s, c)
                   has_rates = .not. (c%singular .or. c%rates_open)
                end if
-               if (.not. has_rates) call note_block(e, i, missing_rates, missing)
+               if (.not. has_rates) call note_block(b, i, missing_rates, missing)
             end associate
          end do
-         call move_links(e%chain, s, e%length, unit, finite)
-         call mark_links(e%chain, missing, unit)
-         associate (by => found%by(e%ratios(j)))
+         call move_links(x%chain, s, x%equations%length, unit, finite)
+         call mark_links(x%chain, missing, unit)
+         associate (by => found%by(b%ratios(j)))
             by%velocity = unit%velocity
             by%acceleration = unit%acceleration
             by%is_known = unit%link_known == 2 .and. all(abs(unit%velocity) <= huge(1.0_wp) .and. &
@@ -389,13 +402,13 @@ contains
       integer :: missing(0:e%blocks%unknowns), k
 
       missing = missing_nothing
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k))
-            call note_block(e, i, merge(missing_rates, missing_nothing, e%is_singular(i) .or. (all_at_once .and. &
-               .not. e%blocks%list(i)%direct)), missing)
+      do k = 1, size(e%blocks%needed)
+         associate (i => e%blocks%needed(k))
+            call note_block(e%blocks, i, merge(missing_rates, missing_nothing, e%is_singular(i) .or. &
+               (all_at_once .and. .not. e%blocks%list(i)%direct)), missing)
          end associate
       end do
-      call mark_links(e%chain, missing, found)
+      call mark_links(e%geometry%chain, missing, found)
    end subroutine mark_singular_links
 
    !> Finds what is certain at `t`, where there is no position: the motion of the links that drives alone move. `found`
@@ -409,11 +422,11 @@ contains
       logical :: finite
 
       if (.not. e%blocks%solvable) return
-      call set_drive_values(e, t)
+      call set_drive_values(e%path, t, e%state)
       missing = missing_nothing
-      do k = 1, size(e%needed)
-         i = e%needed(k)
-         call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
+      do k = 1, size(e%blocks%needed)
+         i = e%blocks%needed(k)
+         call note_block(e%blocks, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
          if (.not. e%blocks%list(i)%direct) cycle
          if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
             call solve_direct(e%blocks, e%geometry, i, e%state)
@@ -422,9 +435,10 @@ contains
       do k = 1, e%blocks%unknowns
          if (missing(k) > missing_nothing) s%u(k) = unknown_t()
       end do
-      call mark_links(e%chain, missing, found)
-      call move_links(e%chain, s, e%length, found, finite)
-      if (size(e%ratios) > 0) call get_ratios(e, .not. e%blocks%list%direct, found)
+      call mark_links(e%geometry%chain, missing, found)
+      call move_links(e%geometry%chain, s, e%geometry%equations%length, found, finite)
+      if (size(e%blocks%ratios) > 0) call get_ratios(e%blocks, e%geometry, e%path, &
+         .not. e%blocks%list%direct, e%state, e%work, found)
    end subroutine get_driven_links
 
    !> Finds the state `s` of the motion that is followed; at the first instant that of the deck's estimate, but for what
@@ -436,9 +450,7 @@ contains
 
       s = e%state
       if (e%history%filled > 0) then
-         do k = 1, size(e%path%laws)
-            s%drive_value(:, k) = e%path%unit(k)*drive_at(e%path, k, e%history%t(0))
-         end do
+         call set_drive_values(e%path, e%history%t(0), s)
          do k = 1, size(e%history%predicted)
             i = e%history%predicted(k)
             associate (past => e%history%past(i))
@@ -449,8 +461,8 @@ contains
             call set_direction(e%blocks, i, s)
          end do
       end if
-      do k = 1, size(e%needed)
-         i = e%needed(k)
+      do k = 1, size(e%blocks%needed)
+         i = e%blocks%needed(k)
          if (e%blocks%list(i)%direct) then
             call solve_direct(e%blocks, e%geometry, i, s)
          else if (e%history%filled == 0) then
@@ -461,21 +473,21 @@ contains
 
    !> Notes what is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on
    !> lacks.
-   subroutine note_block(e, i, own, missing)
-      type(block_engine_t), intent(in) :: e
+   subroutine note_block(b, i, own, missing)
+      type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, own
       integer, intent(inout) :: missing(0:)
 
-      missing(own_unknowns(e%blocks, i)) &
-         = max(own, largest_known(e%blocks, i, missing))
+      missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
    end subroutine note_block
 
    !> The unit of unknown number `k` in the deck's, if it is a slide; 1 of an angle.
-   pure real(wp) function slide_unit(e, k) result(unit)
-      type(block_engine_t), intent(in) :: e
+   pure real(wp) function slide_unit(b, x, k) result(unit)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: k
 
-      unit = e%geometry%unit(k)
-      if (k > e%blocks%orientations) unit = unit*e%length
+      unit = x%unit(k)
+      if (k > b%orientations) unit = unit*x%equations%length
    end function slide_unit
 end module block_engine

@@ -8,34 +8,13 @@ module link_motion
    use planar, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: link_offset_t, place_on_tree
-   use blocks, only: blocks_t, geometry_t
+   use links_tree, only: place_on_tree
+   use blocks, only: blocks_t, geometry_t, chain_t, chain_link_t
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+   public :: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
       missing_all
-
-   !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
-   type :: chain_link_t
-      integer :: link = 0, parent = 0
-      integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
-      integer :: slide = 0                              !< its unknown
-      integer :: root = 0                               !< the unknown that is its x; y is the next
-      real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
-      logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
-      real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
-      type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
-   end type chain_link_t
-
-   !> The links to be moved, the wanted ones first, parents before their children; and those that stay.
-   type :: chain_t
-      type(chain_link_t), allocatable :: links(:)
-      integer, allocatable :: ground(:)                 !< numbers of the ground links
-      integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
-      real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
-      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
-   end type chain_t
 
    !> What is missing of an unknown, the worst last: nothing, its derivatives, its value as well.
    integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2

@@ -206,7 +206,7 @@ contains
 
       if ((a%t - a%last)*(t - a%last) < 0.0_wp) then
          call leave(a%following_t, a%last, t, &
-            pack(a%engine%moving, a%singular(a%engine%moving)), returns)
+            pack(a%engine%blocks%moving, a%singular(a%engine%blocks%moving)), returns)
          step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
          if (size(step%dead_end) > 0) then
             step%ending = step_blocked
@@ -228,9 +228,9 @@ contains
       if (a%is_left) call return_to(a%following_t, a%left)
       associate (e => a%engine)
          e%t = t
-         call set_drive_values(e, t)
+         call set_drive_values(e%path, t, e%state)
          a%convergence = nothing_gathered
-         call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., a%convergence)
+         call solve_each(e, pack(e%blocks%moving, .not. e%is_singular(e%blocks%moving)), .true., a%convergence)
       end associate
       a%convergence%singular = .true.
       step%ending = step_rests
@@ -318,13 +318,13 @@ contains
       end if
 
       goes_on = found%known == 2 .and. .not. found%rests
-      if (allocated(a%dense)) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
+      if (allocated(a%dense)) goes_on = .not. any(a%engine%is_singular(a%engine%blocks%needed))
       if (allocated(a%singular)) deallocate (a%singular)
       if (goes_on) then
          call go_on_from(a%following_t, found%t)
       else
          call go_back(a%following_t, step)
-         if (any(a%engine%is_singular(a%engine%needed))) a%singular = a%engine%is_singular
+         if (any(a%engine%is_singular(a%engine%blocks%needed))) a%singular = a%engine%is_singular
       end if
       if (a%follows) then
          a%state = on_motion
@@ -399,7 +399,8 @@ contains
       if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
          associate (open => a%convergence%open)
             call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
-               is_angle=open%is_angle, value=open%value*merge(1.0_wp, a%engine%length*open%unit, open%is_angle))], &
+               is_angle=open%is_angle, value=open%value &
+               *merge(1.0_wp, a%engine%geometry%equations%length*open%unit, open%is_angle))], &
                found)
          end associate
       else
@@ -475,7 +476,8 @@ contains
       else
          call get_blocks_motion(a%engine, found, finite)
       end if
-      if (size(a%engine%ratios) > 0) call get_ratios(a%engine, a%engine%is_singular, found)
+      if (size(a%engine%blocks%ratios) > 0) call get_ratios(a%engine%blocks, a%engine%geometry, &
+         a%engine%path, a%engine%is_singular, a%engine%state, a%engine%work, found)
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows

@@ -96,7 +96,7 @@ contains
       ! at the deck's estimate.
       call followed_state(e, s)
       before = new_motion(size(there, 2))
-      call move_links(e%chain, s, e%length, before, finite, .true.)
+      call move_links(e%geometry%chain, s, e%geometry%equations%length, before, finite, .true.)
       w = 0.0_wp
       if (e%history%filled > 0) w = order_weights(d%order, found%t - e%history%t(0), 0.0_wp)
       start = before%position + w(1)*before%velocity + w(2)*before%acceleration
@@ -123,7 +123,7 @@ contains
       c%iterations = iterations
       if (.not. is_solved(c)) return
 
-      c%singular = c%singular .or. any(e%is_singular(e%needed))
+      c%singular = c%singular .or. any(e%is_singular(e%blocks%needed))
       found%position = d%pose%q
       if (.not. c%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
@@ -160,8 +160,8 @@ contains
       off(:2, :) = off(:2, :)*(d%system%length/e%geometry%span)
       largest = maxval(off)
       is = .true.
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k))
+      do k = 1, size(e%blocks%needed)
+         associate (i => e%blocks%needed(k))
             if (e%is_singular(i)) then
                is = is .and. largest <= same_place
             else

@@ -66,8 +66,8 @@ contains
       if (.not. is_covered) return
       is_covered = e%history%filled == 3 .and. e%history%order == own_predictor &
          .and. .not. e%geometry%tolerance > 0.0_wp
-      do k = 1, size(e%moving)
-         associate (shape => e%blocks%list(e%moving(k))%shape)
+      do k = 1, size(e%blocks%moving)
+         associate (shape => e%blocks%list(e%blocks%moving(k))%shape)
             is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
          end associate
       end do
@@ -79,7 +79,7 @@ contains
       type(block_engine_t), intent(in) :: e
 
       l%blocks = e%blocks
-      l%moving = e%moving
+      l%moving = e%blocks%moving
       l%predicted = e%history%predicted
       associate (b => l%blocks, drives => size(e%path%laws))
          allocate (l%polynomial(width, 3, drives), l%unit(width, drives))
@@ -122,40 +122,25 @@ contains
          end associate
          l%unit(lane, i) = e%path%unit(i)
       end do
-      associate (b => e%blocks, x => e%geometry)
-         do i = 1, size(b%list)
-            l%block(i)%lipschitz(lane) = x%blocks(i)%lipschitz
-            l%block(i)%coarse(lane) = max(1.0_wp, x%blocks(i)%coarse)
-            l%block(i)%has_right_sides = l%block(i)%has_right_sides .or. x%blocks(i)%has_right_sides
-         end do
-         do i = 1, size(b%rows)
-            l%rows(i)%constant(lane) = x%rows(i)%constant
-         end do
-         do i = 1, size(b%body_vectors)
-            l%d(i)%x(lane) = x%d(i)%x
-            l%d(i)%y(lane) = x%d(i)%y
-         end do
-         do i = 1, size(b%loops)
-            l%numbers(i)%ground%x(lane) = x%loops(i)%ground%x
-            l%numbers(i)%ground%y(lane) = x%loops(i)%ground%y
-            l%numbers(i)%direction%x(lane) = x%loops(i)%direction%x
-            l%numbers(i)%direction%y(lane) = x%loops(i)%direction%y
-         end do
-         do i = 1, size(b%slides)
-            l%e(i)%x(lane) = x%e(i)%x
-            l%e(i)%y(lane) = x%e(i)%y
-         end do
+      associate (x => e%geometry, u => e%state%u)
+         l%block%lipschitz(lane) = x%blocks%lipschitz
+         l%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
+         l%block%has_right_sides = l%block%has_right_sides .or. x%blocks%has_right_sides
+         l%rows%constant(lane) = x%rows%constant
+         l%d%x(lane) = x%d%x
+         l%d%y(lane) = x%d%y
+         l%e%x(lane) = x%e%x
+         l%e%y(lane) = x%e%y
+         l%numbers%ground%x(lane) = x%loops%ground%x
+         l%numbers%ground%y(lane) = x%loops%ground%y
+         l%numbers%direction%x(lane) = x%loops%direction%x
+         l%numbers%direction%y(lane) = x%loops%direction%y
+         l%u%value(lane) = u%value
+         l%u%rate(lane) = u%rate
+         l%u%acceleration(lane) = u%acceleration
+         l%u%c(lane) = u%c
+         l%u%s(lane) = u%s
       end associate
-
-      do i = 0, e%blocks%unknowns
-         associate (u => e%state%u(i))
-            l%u(i)%value(lane) = u%value
-            l%u(i)%rate(lane) = u%rate
-            l%u(i)%acceleration(lane) = u%acceleration
-            l%u(i)%c(lane) = u%c
-            l%u(i)%s(lane) = u%s
-         end associate
-      end do
 
       ! Of motions before the latest the engine has no values.
       do k = 0, 2
@@ -168,11 +153,9 @@ contains
             end do
          end associate
       end do
-      do i = 1, size(l%block)
-         l%block(i)%sign_of(lane) = e%followed(i)%sign_of
-         l%block(i)%pivot(lane, l%slot(0)) = e%followed(i)%pivot
-         l%block(i)%inverse(lane, l%slot(0)) = e%followed(i)%inverse
-      end do
+      l%block%sign_of(lane) = e%followed%sign_of
+      l%block%pivot(lane, l%slot(0)) = e%followed%pivot
+      l%block%inverse(lane, l%slot(0)) = e%followed%inverse
    end subroutine load_lane
 
    !> Gives `e` the latest motion of `lane`: as the one that it follows.
@@ -195,11 +178,9 @@ contains
       end do
       e%history%filled = 3
       associate (slot => l%slot(0))
-         do i = 1, size(l%block)
-            e%followed(i)%sign_of = nint(l%block(i)%sign_of(lane))
-            e%followed(i)%pivot = l%block(i)%pivot(lane, slot)
-            e%followed(i)%inverse = l%block(i)%inverse(lane, slot)
-         end do
+         e%followed%sign_of = nint(l%block%sign_of(lane))
+         e%followed%pivot = l%block%pivot(lane, slot)
+         e%followed%inverse = l%block%inverse(lane, slot)
       end associate
    end subroutine unload_lane
 end module lane_state

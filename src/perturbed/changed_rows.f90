@@ -5,40 +5,45 @@ module changed_rows
    use mechanism, only: mechanism_t
    use motion, only: motion_t, turned_t, new_motion, forget_links
    use points, only: row_t, find_row
-   use blocks, only: largest_known, own_unknowns
-   use block_state, only: unknown_t
-   use block_solver, only: solve_block
+   use blocks, only: blocks_t, geometry_t, largest_known, own_unknowns
+   use block_state, only: unknown_t, state_t, new_state
+   use block_solver, only: workspace_t, new_workspace, solve_block
    use block_matrix, only: solve_first, solve_again
    use block_equations, only: assemble_dense, right_hand_side
-   use block_structure, only: structure_t
-   use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, get_ratios, &
+   use block_structure, only: structure_t, make_structure
+   use drive_path, only: drive_path_t
+   use block_engine, only: block_engine_t, take_requests, put_geometry, put_path, set_drive_values, get_ratios, &
       slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
-   use link_motion, only: mark_links, missing_nothing, missing_rates, missing_all
+   use link_motion, only: move_links, mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
    public :: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
 
-   !> A spare set of numbers and a spare state, which serve for any change of a mechanism.
+   !> A mechanism with changed numbers: a geometry of the structure that the mechanism itself has.
    type :: perturbed_t
-      type(mechanism_t) :: m                     !< with changed numbers; its links are where the cards put them
-      type(block_engine_t) :: engine
-      type(motion_t) :: q                        !< found last
+      type(mechanism_t) :: m                     !< its links are where the cards put them
+      type(geometry_t) :: geometry
+      type(drive_path_t) :: path
       logical :: is_ready = .false.              !< made for this mechanism
-      logical :: fits = .true.                   !< the blocks of the engine serve for its numbers
+      logical :: fits = .true.                   !< the structure serves for its numbers
       integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
       real(wp) :: roundings = 0.0_wp, time_off = 0.0_wp   !< the instant is off by this part of it
       real(wp) :: length = 0.0_wp                !< then: see `put_off`
    end type perturbed_t
 
-   !> The position at hand, and what the rows show that were found last from it.
+   !> The position at hand, what solves from it for one changed mechanism after another, and what the rows show that
+   !> were found last.
    type :: at_hand_t
       type(unknown_t), allocatable :: start(:)   !< (0:unknowns) slides in the deck's unit
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
       type(turned_t), allocatable :: turned(:)   !< (measures) angles of measures go on from there
+      type(state_t) :: state
+      type(workspace_t) :: work
+      type(motion_t) :: q                        !< found last
       !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -71,12 +76,27 @@ contains
       place%only_driven = q%known < 0
       place%is_singular = q%known == 0
       if (allocated(q%turned)) place%turned = q%turned
-      if (.not. allocated(place%start)) allocate (place%start(0:e%blocks%unknowns))
+      if (.not. allocated(place%start)) then
+         allocate (place%start(0:e%blocks%unknowns))
+         call make_room(e%blocks, size(e%path%laws), place)
+         place%q = new_motion(size(q%position, 2))
+         place%q%known = 2
+      end if
       place%start(:) = e%state%u
       do k = 1, ubound(place%start, 1)
-         place%start(k)%value = place%start(k)%value*slide_unit(e, k)
+         place%start(k)%value = place%start(k)%value*slide_unit(e%blocks, e%geometry, k)
       end do
    end subroutine find_place
+
+   !> Makes room for the solution of the blocks `b`, which so many `drives` move.
+   subroutine make_room(b, drives, place)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: drives
+      type(at_hand_t), intent(inout) :: place
+
+      place%state = new_state(b, drives)
+      place%work = new_workspace(b)
+   end subroutine make_room
 
    !> Makes number `i` of `list` ready for direction `k` of changes of `m`, whose engine is `e`, if it is not yet; its
    !> numbers are still others.
@@ -86,7 +106,6 @@ contains
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       integer, intent(out) :: i
-      type(structure_t) :: structure
 
       if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
       i = merge(k, 0, k <= ubound(list, 1))
@@ -95,59 +114,62 @@ contains
          p%is_ready = .true.
          p%direction = -1
          p%m = m
-         if (allocated(p%engine%blocks)) return
-         structure%blocks = e%blocks
-         structure%geometry = e%geometry
-         call make_block_engine(p%engine, m, structure)
-         p%q = new_motion(size(m%links))
-         p%q%known = 2
+         p%geometry = e%geometry
       end associate
    end subroutine make_ready
 
-   !> Gives the engine of `p` the numbers of p%m. `by_roundings`: they are off by roundings alone, and what cancels in
-   !> the equations is left out: redundant equations stay so, and so do guides that are parallel.
-   subroutine put_changes(p, by_roundings)
+   !> Gives the geometry of `p`, of the structure `b`, the numbers of p%m. `by_roundings`: they are off by roundings
+   !> alone, and what cancels in the equations is left out: redundant equations stay so, and so do guides that are
+   !> parallel.
+   subroutine put_changes(b, p, by_roundings)
+      type(blocks_t), intent(in) :: b
       type(perturbed_t), intent(inout) :: p
       logical, intent(in) :: by_roundings
 
       p%m%tolerance = 0.0_wp
-      call put_mechanism(p%engine, p%m, p%fits)
+      call put_geometry(p%m, b, p%geometry, p%path, p%fits)
       p%fits = p%fits .or. by_roundings
    end subroutine put_changes
 
-   !> The `rows` (requests) of `p` at the time `t`, solved from `place`.
-   subroutine rows_with(p, t, place, rows)
-      type(perturbed_t), intent(inout) :: p
+   !> The `rows` (requests) of `p`, of the structure `b`, at the time `t`, solved from `place`.
+   subroutine rows_with(b, p, t, place, rows)
+      type(blocks_t), intent(in) :: b
+      type(perturbed_t), intent(in) :: p
       real(wp), intent(in) :: t
       type(at_hand_t), intent(inout) :: place
       type(row_t), intent(inout) :: rows(:)
-      type(block_engine_t), allocatable :: other
+      type(structure_t) :: other
+      type(drive_path_t) :: path
       integer :: i
 
-      p%q%t = t
+      place%q%t = t
       if (p%fits) then
-         call solve_needed(p%engine, place, p%q)
+         call solve_needed(b, p%geometry, p%path, place)
       else
-         allocate (other)
-         call make_block_engine(other, p%m)
-         call solve_needed(other, place, p%q)
-         if (.not. other%blocks%solvable .or. other%blocks%redundant /= p%engine%blocks%redundant) then
+         call make_structure(p%m, other)
+         call take_requests(p%m, other%blocks, other%geometry)
+         call put_path(p%m, other%blocks, other%geometry, path)
+         if (other%blocks%solvable) call make_room(other%blocks, size(path%laws), place)
+         call solve_needed(other%blocks, other%geometry, path, place)
+         call make_room(b, size(path%laws), place)
+         if (.not. other%blocks%solvable .or. other%blocks%redundant /= b%redundant) then
             place%jams = .true.
-            p%q%link_known = spread(-1, 1, size(p%m%links))
+            place%q%link_known = spread(-1, 1, size(p%m%links))
          end if
       end if
-      if (allocated(place%turned)) p%q%turned = place%turned
+      if (allocated(place%turned)) place%q%turned = place%turned
       do i = 1, size(rows)
-         call find_row(p%m, p%q, p%m%requests(i), rows(i))
+         call find_row(p%m, place%q, p%m%requests(i), rows(i))
       end do
    end subroutine rows_with
 
-   !> Solves the blocks of `e` in turn, to the limit of rounding, for the motion `q` at its time. What is known of it
-   !> may differ from link to link.
-   subroutine solve_needed(e, place, q)
-      type(block_engine_t), intent(inout) :: e
+   !> Solves the needed ones of the blocks `b` with the geometry `x` in turn, to the limit of rounding, for the motion
+   !> place%q at its time. What is known of it may differ from link to link.
+   subroutine solve_needed(b, x, path, place)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
       type(at_hand_t), intent(inout) :: place
-      type(motion_t), intent(inout) :: q
       type(convergence_t) :: c
       integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite
@@ -156,76 +178,80 @@ contains
       place%change = 0.0_wp
       place%jams = .false.
       place%opened = 0.0_wp
-      if (.not. e%blocks%solvable) return
-      e%state%u(:) = place%start
-      do k = 1, ubound(e%state%u, 1)
-         associate (x => e%state%u(k)%value)
-            x = x/slide_unit(e, k)
-            ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
-            if (.not. place%stays) x = x + merge(singular_nudge*(-1)**k, nudge, place%is_singular)
-         end associate
-      end do
-      call set_drive_values(e, q%t)
-      missing = missing_nothing
-      worst = missing_nothing
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
-            lack = missing_nothing
-            if (worst > missing_nothing) lack = largest_known(e%blocks, i, missing)
-            if (place%only_driven .and. .not. block%direct) lack = missing_all
-            if (lack < missing_all) then
-               c = convergence_t()
-               call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, c)
-               place%ratio = max(place%ratio, c%kantorovich_ratio)
-               place%opened = max(place%opened, c%open%value/c%open%level)
-               place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
-                  .or. place%opened > place%room
-               if (c%singular) lack = missing_rates
-               if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
-               if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(e, i)
-               if (place%is_singular) then
-                  if (c%change > singular_change) lack = missing_all
-               else if (c%kantorovich_ratio > largest_ratio .and. .not. c%singular) then
-                  lack = missing_all
+      if (.not. b%solvable) return
+      associate (s => place%state, w => place%work, q => place%q)
+         s%u(:) = place%start
+         do k = 1, ubound(s%u, 1)
+            associate (value => s%u(k)%value)
+               value = value/slide_unit(b, x, k)
+               ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
+               if (.not. place%stays) value = value + merge(singular_nudge*(-1)**k, nudge, place%is_singular)
+            end associate
+         end do
+         call set_drive_values(path, q%t, s)
+         missing = missing_nothing
+         worst = missing_nothing
+         do k = 1, size(b%needed)
+            associate (i => b%needed(k), block => b%list(b%needed(k)))
+               lack = missing_nothing
+               if (worst > missing_nothing) lack = largest_known(b, i, missing)
+               if (place%only_driven .and. .not. block%direct) lack = missing_all
+               if (lack < missing_all) then
+                  c = convergence_t()
+                  call solve_block(b, x, i, .true., w, s, c)
+                  place%ratio = max(place%ratio, c%kantorovich_ratio)
+                  place%opened = max(place%opened, c%open%value/c%open%level)
+                  place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
+                     .or. place%opened > place%room
+                  if (c%singular) lack = missing_rates
+                  if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
+                  if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(b, x, i, w, s)
+                  if (place%is_singular) then
+                     if (c%change > singular_change) lack = missing_all
+                  else if (c%kantorovich_ratio > largest_ratio .and. .not. c%singular) then
+                     lack = missing_all
+                  end if
                end if
-            end if
-            worst = max(worst, lack)
-            if (lack > missing_nothing) missing(e%blocks%unknown(block%first:block%last)) = lack
-         end associate
-      end do
-      ! That of a drive's own unknown counts too: full turns are no return.
-      do k = 1, ubound(e%state%u, 1)
-         place%change = max(place%change, abs(e%state%u(k)%value - place%start(k)%value/slide_unit(e, k)))
-      end do
-      call get_motion(e, q, finite)
-      if (size(e%ratios) > 0) call get_ratios(e, [(missing(e%blocks%unknown(max(1, e%blocks%list(k)%first))) &
-         > missing_nothing, k=1, size(e%blocks%list))], q)
-      call forget_links(q)
-      if (worst > missing_nothing) call mark_links(e%chain, missing, q)
+               worst = max(worst, lack)
+               if (lack > missing_nothing) missing(b%unknown(block%first:block%last)) = lack
+            end associate
+         end do
+         ! That of a drive's own unknown counts too: full turns are no return.
+         do k = 1, ubound(s%u, 1)
+            place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))
+         end do
+         call move_links(x%chain, s, x%equations%length, q, finite)
+         if (size(b%ratios) > 0) call get_ratios(b, x, path, [(missing(b%unknown(max(1, b%list(k)%first))) &
+            > missing_nothing, k=1, size(b%list))], s, w, q)
+         call forget_links(q)
+         if (worst > missing_nothing) call mark_links(x%chain, missing, q)
+      end associate
    end subroutine solve_needed
 
-   !> The rates of block `i` of `e` again, by iterative refinement. Orthogonal factors, of equations that are too many,
+   !> The rates of block `i` again, by iterative refinement. Orthogonal factors, of equations that are too many,
    !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
    !> Numerical Algorithms, 2002, ch. 20).
-   subroutine refine_rates(e, i)
-      type(block_engine_t), intent(inout) :: e
+   subroutine refine_rates(b, x, i, w, s)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
       real(wp), allocatable :: jacobian(:, :)
       integer :: order, info
 
-      associate (shape => e%blocks%list(i)%shape, w => e%work, &
-         own => own_unknowns(e%blocks, i))
-         call assemble_dense(e%blocks, e%geometry, i, e%state, w%a, w%r)
+      associate (shape => b%list(i)%shape, own => own_unknowns(b, i))
+         call assemble_dense(b, x, i, s, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
          call solve_first(shape, w%a, w%pivots, w%work, w%r, info)
          if (info > 0) return
          do order = 1, 2
-            call right_hand_side(e%blocks, e%geometry, i, order, e%state, w%r)
+            call right_hand_side(b, x, i, order, s, w%r)
             w%r(:shape%rows) = w%r(:shape%rows) &
-               - matmul(jacobian, merge(e%state%u(own)%rate, e%state%u(own)%acceleration, order == 1))
+               - matmul(jacobian, merge(s%u(own)%rate, s%u(own)%acceleration, order == 1))
             call solve_again(shape, w%a, w%pivots, w%work, w%r)
-            if (order == 1) e%state%u(own)%rate = e%state%u(own)%rate + w%r(:shape%n)
-            if (order == 2) e%state%u(own)%acceleration = e%state%u(own)%acceleration + w%r(:shape%n)
+            if (order == 1) s%u(own)%rate = s%u(own)%rate + w%r(:shape%n)
+            if (order == 2) s%u(own)%acceleration = s%u(own)%acceleration + w%r(:shape%n)
          end do
       end associate
    end subroutine refine_rates

@@ -94,10 +94,10 @@ contains
       ! over `rate_digits`, by C L^2/p^3 in accelerations.
       growth = 0.0_wp
       of_angles = 1.0_wp
-      do k = 1, size(e%needed)
-         associate (block => e%geometry%blocks(e%needed(k)))
-            if (e%blocks%list(e%needed(k))%direct) cycle
-            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
+      do k = 1, size(e%blocks%needed)
+         associate (block => e%geometry%blocks(e%blocks%needed(k)))
+            if (e%blocks%list(e%blocks%needed(k))%direct) cycle
+            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%blocks%needed(k))%pivot), smallest_pivot)
             associate (turned => block%lipschitz*inverse)
                growth = max(growth, turned*inverse)
                if (block%coarse > usual_coarse) growth = max(growth, block%coarse*inverse*max(1.0_wp, turned))

@@ -126,12 +126,12 @@ contains
                associate (axes => engine%geometry%equations%axes)
                   call put_off(m, engine%blocks%tree, axes, k, roundings, length, p%m, p%time_off)
                end associate
-               call put_changes(p, by_roundings=.true.)
+               call put_changes(engine%blocks, p, by_roundings=.true.)
                p%direction = k
                p%roundings = roundings
                p%length = length
             end if
-            call rows_with(p, q%t + p%time_off*q%t, s%place, rows)
+            call rows_with(engine%blocks, p, q%t + p%time_off*q%t, s%place, rows)
          end associate
       end subroutine find_changed
 

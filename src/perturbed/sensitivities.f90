@@ -137,8 +137,8 @@ contains
          associate (p => s%perturbed(0))
             p%m = m
             if (present(one)) call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
-            call put_changes(p, by_roundings=.false.)
-            call rows_with(p, q%t, s%place, rows)
+            call put_changes(e%blocks, p, by_roundings=.false.)
+            call rows_with(e%blocks, p, q%t, s%place, rows)
          end associate
          if (present(one)) found%jams(d) = found%jams(d) .or. s%place%jams
       end subroutine find_rows

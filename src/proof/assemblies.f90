@@ -66,7 +66,7 @@ contains
       allocate (a%list(0), a%blocks(0))
       call make_block_engine(e, m)
       if (.not. e%blocks%solvable) return
-      call set_drive_values(e, t)
+      call set_drive_values(e%path, t, e%state)
       places = places_of(e)
       do i = 1, size(e%blocks%list)
          associate (shape => e%blocks%list(i)%shape)
@@ -103,7 +103,7 @@ contains
       call solve_first(e, t, c)
       if (is_solved(c)) then
          q = new_motion(size(m%links))
-         call move_links(e%chain, e%state, e%length, q, unused, .true.)
+         call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, unused, .true.)
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
          do i = 1, size(a%list)
@@ -157,7 +157,7 @@ contains
 
       p = new_ball_numbers(m, e%blocks, e%geometry)
       q = new_placed(e%blocks, size(m%drives))
-      e%needed = [(k, k=1, size(found))]
+      e%blocks%needed = [(k, k=1, size(found))]
       chosen = 0
       seen = -1
       changed = 0
@@ -207,7 +207,7 @@ contains
       integer :: i, k
 
       q = new_motion(size(e%estimate, 2))
-      call move_links(e%chain, e%state, e%length, q, finite, .true.)
+      call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved

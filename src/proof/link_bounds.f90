@@ -24,7 +24,7 @@ contains
       type(block_engine_t), intent(in) :: e
       type(ball_state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
-      type(ball_t), intent(out) :: links(3, 0:2, size(e%orientation_of))
+      type(ball_t), intent(out) :: links(3, 0:2, size(e%blocks%tree%orientation))
       real(wp), intent(out) :: largest(2, 0:2)
       type(vector_t) :: here(0:2)
       real(wp) :: error(3, 0:2), slide(2), of_angle, of_direction, of_vectors
@@ -36,31 +36,33 @@ contains
          + maxval([0.0_wp, abs(m%pairs%offset)]))
       links = zero
       largest = 0.0_wp
-      do i = 1, e%chain%wanted
-         associate (h => e%chain%links(i), own => e%chain%links(i)%link, place => e%chain%links(i)%place, &
-            p => s%u(e%chain%links(i)%parent_orientation), f => s%u(e%chain%links(i)%orientation))
-            here = vector_t()
-            if (h%root > 0) then
-               call add_sliding(vector_t(ball_t(e%length*h%root_unit(1), 0.0_wp), zero), s%u(0), s%u(h%root), here)
-               call add_sliding(vector_t(zero, ball_t(e%length*h%root_unit(2), 0.0_wp)), s%u(0), s%u(h%root + 1), here)
-            else
-               if (h%parent > 0) here%x = links(1, :, h%parent)
-               if (h%parent > 0) here%y = links(2, :, h%parent)
-               call add_rotating(around(real_vector_t(place%reach(1), place%reach(2)), of_vectors), p, here)
-               call add_rotating(around(real_vector_t(-place%body_vector(1), -place%body_vector(2)), of_vectors), f, &
-                  here)
-               slide = place%slide_body_vector*e%length
-               if (h%slide > 0) call add_sliding(around(real_vector_t(slide(1), slide(2)), of_direction*norm2(slide)), &
-                  p, s%u(h%slide), here)
-            end if
-            links(1, :, own) = here%x
-            links(2, :, own) = here%y
-            links(3, :, own) = [f%value + ball_t(h%angle_offset, of_angle), f%rate, f%acceleration]
-            error(:, 0) = distance(links(:, 0, own), q%position(:, own))
-            error(:, 1) = distance(links(:, 1, own), q%velocity(:, own))
-            error(:, 2) = distance(links(:, 2, own), q%acceleration(:, own))
-            largest(1, :) = max(largest(1, :), error(1, :), error(2, :))
-            largest(2, :) = max(largest(2, :), error(3, :))
+      do i = 1, e%geometry%chain%wanted
+         associate (chain => e%geometry%chain%links, length => e%geometry%equations%length)
+            associate (h => chain(i), own => chain(i)%link, place => chain(i)%place, &
+               p => s%u(chain(i)%parent_orientation), f => s%u(chain(i)%orientation))
+               here = vector_t()
+               if (h%root > 0) then
+                  call add_sliding(vector_t(ball_t(length*h%root_unit(1), 0.0_wp), zero), s%u(0), s%u(h%root), here)
+                  call add_sliding(vector_t(zero, ball_t(length*h%root_unit(2), 0.0_wp)), s%u(0), s%u(h%root + 1), here)
+               else
+                  if (h%parent > 0) here%x = links(1, :, h%parent)
+                  if (h%parent > 0) here%y = links(2, :, h%parent)
+                  call add_rotating(around(real_vector_t(place%reach(1), place%reach(2)), of_vectors), p, here)
+                  call add_rotating(around(real_vector_t(-place%body_vector(1), -place%body_vector(2)), of_vectors), &
+                     f, here)
+                  slide = place%slide_body_vector*length
+                  if (h%slide > 0) call add_sliding(around(real_vector_t(slide(1), slide(2)), &
+                     of_direction*norm2(slide)), p, s%u(h%slide), here)
+               end if
+               links(1, :, own) = here%x
+               links(2, :, own) = here%y
+               links(3, :, own) = [f%value + ball_t(h%angle_offset, of_angle), f%rate, f%acceleration]
+               error(:, 0) = distance(links(:, 0, own), q%position(:, own))
+               error(:, 1) = distance(links(:, 1, own), q%velocity(:, own))
+               error(:, 2) = distance(links(:, 2, own), q%acceleration(:, own))
+               largest(1, :) = max(largest(1, :), error(1, :), error(2, :))
+               largest(2, :) = max(largest(2, :), error(3, :))
+            end associate
          end associate
       end do
    end subroutine bound_links

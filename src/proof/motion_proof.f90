@@ -97,7 +97,7 @@ contains
       if (holds(found)) return
 
       block_of = [0, e%blocks%block_of]
-      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%orientation_of) == failed)
+      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%blocks%tree%orientation) == failed)
       if (e%blocks%list(failed)%shape%n > max_unknowns) found%too_many = e%blocks%list(failed)%shape%n
    end subroutine prove_motion
 
@@ -145,11 +145,11 @@ contains
 
          if (.not. allocated(other)) other = e
          other%t = 0.5_wp*(from%t + to%t)
-         call set_drive_values(other, other%t)
+         call set_drive_values(other%path, other%t, other%state)
          other%state%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
             + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
          c = nothing_gathered
-         call solve_each(other, other%needed, .false., c)
+         call solve_each(other, other%blocks%needed, .false., c)
          if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          allocate (middle)
          middle = new_placed(e%blocks, size(e%path%laws))

@@ -101,8 +101,8 @@ contains
          end associate
       end do
 
-      do k = 1, size(e%needed)
-         failed = e%needed(k)
+      do k = 1, size(e%blocks%needed)
+         failed = e%blocks%needed(k)
          call prove_block(p, e%blocks, failed, e%state, order, q, is_proved)
          if (.not. is_proved) return
       end do

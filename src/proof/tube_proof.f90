@@ -67,8 +67,8 @@ contains
       tube%balls%u(:) = unknown_t()
       call bound_drives()
 
-      do k = 1, size(e%needed)
-         tube%block = e%needed(k)
+      do k = 1, size(e%blocks%needed)
+         tube%block = e%blocks%needed(k)
          associate (block => e%blocks%list(tube%block), &
             own => e%blocks%unknown(e%blocks%list(tube%block)%first:e%blocks%list(tube%block)%last))
             if (any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))) return

@@ -7,10 +7,10 @@ module set_motion
    use independent, only: set_t, divide, request_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: findings_t, structure_t, make_structure
-   use blocks, only: blocks_t, geometry_t, largest_known
+   use blocks, only: blocks_t, geometry_t, chain_t, largest_known
    use block_state, only: state_t, new_state, set_direction
    use block_solver, only: solve_direct
-   use link_motion, only: chain_t, new_chain, move_links
+   use link_motion, only: new_chain, move_links
    use points, only: row_t, find_row
    use error_estimate, only: error_estimate_t
    use sensitivities, only: sensitivities_t

@@ -13,12 +13,12 @@ module blocks
    use number_types, only: vector_t, row_numbers_t, loop_numbers_t
    use klu, only: pattern_t
    use block_matrix, only: shape_t
-   use links_tree, only: tree_t
+   use links_tree, only: tree_t, link_offset_t
    use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
-      loop_projection, loop_angles, geometry_t, block_numbers_t, row_numbers_t, loop_numbers_t
+      loop_projection, loop_angles, geometry_t, chain_t, chain_link_t, block_numbers_t, row_numbers_t, loop_numbers_t
    public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to, &
       own_unknowns
 
@@ -77,6 +77,27 @@ module blocks
       real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
    end type block_numbers_t
 
+   !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
+   type :: chain_link_t
+      integer :: link = 0, parent = 0
+      integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
+      integer :: slide = 0                              !< its unknown
+      integer :: root = 0                               !< the unknown that is its x; y is the next
+      real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
+      logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
+      real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
+      type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
+   end type chain_link_t
+
+   !> The links to be moved, the wanted ones first, parents before their children; and those that stay.
+   type :: chain_t
+      type(chain_link_t), allocatable :: links(:)
+      integer, allocatable :: ground(:)                 !< numbers of the ground links
+      integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
+      real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
+      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
+   end type chain_t
+
    !> What the numbers of the cards make of the blocks.
    type :: geometry_t
       real(wp) :: tolerance = 0.0_wp              !< relative, of corrections; 0: the limit of rounding
@@ -89,6 +110,7 @@ module blocks
       type(vector_t), allocatable :: d(:)         !< (body vectors) in the axes of the orientation, unit of the loop
       type(vector_t), allocatable :: e(:)         !< (slides) along the guide, with its sign in the loop
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
+      type(chain_t) :: chain                      !< of the links: those that are asked for, then the others
    end type geometry_t
 
    type :: blocks_t
@@ -106,6 +128,11 @@ module blocks
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
       type(tree_t) :: tree
+      ! What the requests ask for.
+      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
+      integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for
+      integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
+      logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       type(equations_t) :: equations              !< of which they were made
    end type blocks_t
 

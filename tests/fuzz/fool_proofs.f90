@@ -79,7 +79,7 @@ contains
       m = new_mechanism(f)
       allocate (e)
       call make_block_engine(e, m)
-      p = new_ball_numbers(m, e%blocks, e%length)
+      p = new_ball_numbers(m, e%blocks, e%geometry)
       call find_unknowns(m, e, f)
       wrong = .false.
       do k = 1, 2
@@ -158,7 +158,7 @@ contains
       real(wp) :: off
       integer :: k
 
-      call set_drive_values(e, t)
+      call set_drive_values(e%path, t, e%state)
       do k = 1, size(e%blocks%list)
          if (e%blocks%list(k)%direct) call solve_block(e%blocks, e%geometry, k, .true., e%work, e%state, c)
       end do

@@ -108,24 +108,24 @@ contains
 
       select case (f%scene)
       case (scene_four_bar)
-         f%unknowns = e%orientation_of(3:4)
+         f%unknowns = e%blocks%tree%orientation(3:4)
       case (scene_arm)
-         f%unknowns = [e%orientation_of(2), 0]
+         f%unknowns = [e%blocks%tree%orientation(2), 0]
          f%slide = 2
          f%pair = 2
       case (scene_cylinder)
-         f%unknowns = e%orientation_of([2, 4])
+         f%unknowns = e%blocks%tree%orientation([2, 4])
       case (scene_guides)
          t = new_tree(m)
          f%unknowns = [0]
          f%slide = 1
          f%pair = merge(3, 4, t%slide(3) > 0)
       case default
-         f%unknowns = e%orientation_of([3])
+         f%unknowns = e%blocks%tree%orientation([3])
       end select
       if (f%slide == 0) return
       f%unknowns(f%slide) = e%blocks%orientations + 1
-      f%unit = e%length*e%geometry%unit(f%unknowns(f%slide))
+      f%unit = e%geometry%equations%length*e%geometry%unit(f%unknowns(f%slide))
    end subroutine find_unknowns
 
    !> The driven number at `t`.
