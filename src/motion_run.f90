@@ -12,7 +12,7 @@ module motion_run
    use phrases, only: say_broken_off
    use motion_proof, only: holds
    use set_motion, only: has_words
-   use set_analysis, only: set_analysis_t, begin_analysis, advance_set, prove_set
+   use set_analysis, only: set_analysis_t, begin_analysis, foresee_closure, advance_set, prove_set
    implicit none
    private
    public :: run_motion
@@ -32,6 +32,7 @@ contains
       integer :: k
 
       call begin_analysis(a, findings)
+      call foresee_closure(a)
       call begin_printing(p, o, a, full)
       if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, p%lists, asked)
 

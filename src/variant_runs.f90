@@ -24,6 +24,7 @@ module variant_runs
    use phrases, only: say_broken_variant
    use set_motion, only: new_set_motion
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis
+   use kinds, only: wp
    implicit none
    private
    public :: run_variants, are_together
@@ -174,6 +175,7 @@ contains
       logical, intent(in) :: not_have        !< the set has tables or ratios, which lanes do not have
       class(outputs_t), intent(in) :: o
 
-      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
+      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. m%closing > 0.0_wp .or. &
+         o%asked(out_csv) .or. o%asked(out_log))
    end function are_together
 end module variant_runs

@@ -122,7 +122,7 @@ contains
       else
          call put_untold(o%files(out_listing), a%now%polish, p%state)
       end if
-      call put_columns(o%files(out_listing), p%columns, a%now%polish)
+      call put_columns(o%files(out_listing), p%columns, a%now)
    end subroutine end_tables
 
    !> Prints how the motion of `a` ended, with the counts of its instants: the end of its part of the listing.
@@ -135,7 +135,8 @@ contains
 
       if (.not. p%lists) return
       call listing_end(o%files(out_listing), a%now, counts%solved, counts%flagged, set_certificates(a), &
-         maxval([(redundancy_error(a%list(i)), i=1, size(a%list))]), set_closing_diagnostics(a))
+         maxval([(redundancy_error(a%list(i)), i=1, size(a%list))]), &
+         maxval([(a%estimators(i)%closure, i=1, size(a%list))]), set_closing_diagnostics(a))
    end subroutine print_end
 
    !> Ends the run before its time. The last line of the listing of `m` has the `words` and the `number` of the last

@@ -35,6 +35,7 @@ parts() {
    what is as drawn|90|tests/system/as_drawn.sh
    slots|10|tests/system/slots.sh
    lengths|50|tests/system/lengths.sh
+   what a drawing needs|30|tests/system/drawn.sh
    extremes|42|tests/system/answers.sh
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40

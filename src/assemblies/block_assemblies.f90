@@ -27,6 +27,9 @@ module block_assemblies
    integer, parameter :: singular_steps = 6
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
    real(dp), parameter :: solved_level = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
+   !> Within a closing tolerance the paths end at solutions of some of the equations, and Newton's method moves them by
+   !> so many times that tolerance.
+   real(dp), parameter :: moved = 100.0_dp
    !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
    real(wp), parameter :: grid = 2.0_wp**26
 
@@ -61,6 +64,7 @@ contains
       type(convergence_t) :: c
       type(block_form_t) :: f
       type(ends_t) :: ends
+      real(dp) :: level
       logical :: moves
       integer :: j, k
 
@@ -79,6 +83,7 @@ contains
       found%moves = found%moves .or. f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
       moves = .false.
+      level = max(solved_level, sqrt(real(x%closing, dp)))
       if (f%system%p == 0) then
          ends%paths = 1
          allocate (ends%list(1))
@@ -96,7 +101,7 @@ contains
       do k = 1, size(ends%list)
          found%finite = found%finite + 1
          associate (e => ends%list(k))
-            if (all([(abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= solved_level*maxval(abs(e%x))*maxval(abs(e%y)), &
+            if (all([(abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= level*maxval(abs(e%x))*maxval(abs(e%y)), &
                j=1, size(f%more, 3))])) then
                call take_end(e)
             else
@@ -135,7 +140,8 @@ contains
             call leave_out(found%partial)
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, e%is_singular)) then
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, e%is_singular) &
+            + moved*x%closing) then
             call leave_out(found%failed)
             return
          end if

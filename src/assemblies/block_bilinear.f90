@@ -31,6 +31,8 @@ module block_bilinear
    !> Of equations that are too many those that differ by less agree: the numbers of the deck have 11 digits, of which
    !> the elimination may lose two. Newton's method then decides with the exact equations.
    real(wp), parameter :: surplus_level = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
+   !> Within a closing tolerance they differ by so many times that.
+   real(wp), parameter :: lost_by_elimination = 10.0_wp
 
    !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
    type :: projection_t
@@ -80,7 +82,7 @@ contains
          end do
          call add_projections(d)
          call add_pairs(f, d)
-         call reduce(f, d, rows > n)
+         call reduce(f, d, merge(max(surplus_level, lost_by_elimination*x%closing), zero_level, rows > n))
       end associate
    end subroutine make_form
 
@@ -262,17 +264,16 @@ contains
       end do
    end subroutine add_pairs
 
-   !> Eliminates the linear equations. `is_redundant`: equations are too many; those that follow from others by more
-   !> than `surplus_level` are left out, and of more independent ones than unknowns combinations are taken.
-   subroutine reduce(f, d, is_redundant)
+   !> Eliminates the linear equations. Equations that follow from others to `level` are left out; of more independent
+   !> ones than unknowns combinations are taken.
+   subroutine reduce(f, d, level)
       type(block_form_t), intent(inout) :: f
       type(draft_t), intent(in) :: d
-      logical, intent(in) :: is_redundant
+      real(wp), intent(in) :: level          !< part of the terms, 0 to 1
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
-      real(wp) :: level, size_of
+      real(wp) :: size_of
       integer :: p, j, k, count_of
 
-      level = merge(surplus_level, zero_level, is_redundant)
       call find_null_space(transpose(d%a(:, :d%linear)), level, basis)
       p = size(basis, 2) - 1
       allocate (f%basis(0:size(f%turns), 0:p))

@@ -244,7 +244,8 @@ contains
       end if
       if (rows > n .and. moves) then
          if (c%iterations > 0) call note_closure_error(b, x, i, w%gap, c)
-         if (is_solved(c) .and. c%open%value > inconsistent_level*c%open%level) c%ended = ended_inconsistent
+         if (is_solved(c) .and. c%open%value > max(inconsistent_level*c%open%level, x%closing)) &
+            c%ended = ended_inconsistent
       end if
       if (.not. is_solved(c)) return
       if (moves .and. .not. c%singular) call judge()
@@ -261,7 +262,7 @@ contains
       do k = 1, n
          u(unknown(k))%acceleration = r(k, 1)
       end do
-      if (rows > n) c%rates_open = contradict_rates(b, i, values, u, r, numbers%coarse)
+      if (rows > n) c%rates_open = contradict_rates(b, i, values, u, r, numbers%coarse, x%closing)
 
    contains
 
@@ -353,12 +354,13 @@ contains
    !> Tells whether the redundant equations of block `i` contradict its rates or accelerations, by what both columns of
    !> `r` leave of them; beside the largest rate and acceleration of anything that goes into the equations: angles,
    !> slides, drives, known or not.
-   pure logical function contradict_rates(b, i, values, u, r, coarse) result(do)
+   pure logical function contradict_rates(b, i, values, u, r, coarse, closing) result(do)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: values(0:2, 0:*)
       type(unknown_t), intent(in) :: u(0:b%unknowns)
       real(wp), intent(in) :: r(b%list(i)%shape%rows, 2), coarse
+      real(wp), intent(in) :: closing        !< closing tolerance (unit of the loop, rad)
       real(wp) :: largest(2)
       integer :: k
 
@@ -368,8 +370,8 @@ contains
       end do
       associate (known => u(known_to(b, i)), n => b%list(i)%shape%n)
          largest = max(largest, [maxval(abs(known%rate)), maxval(abs(known%acceleration))])
-         do = contradict(r(n + 1:, 2), largest(1), coarse) &
-            .or. contradict(r(n + 1:, 1), max(largest(2), largest(1)**2), coarse)
+         do = contradict(r(n + 1:, 2), largest(1), coarse, closing) &
+            .or. contradict(r(n + 1:, 1), max(largest(2), largest(1)**2), coarse, closing)
       end associate
    end function contradict_rates
 

@@ -19,6 +19,9 @@ module convergence
    real(wp), parameter, public :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
    !> Rates may by this part of them, which a condition makes larger.
    real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Within a closing tolerance rates contradict one another by more, by so many times that tolerance and never by more
+   !> than the second: equations that differ so much in their rates hold the mechanism.
+   real(wp), parameter :: rates_of_closing = 100.0_wp, held_rates = 0.1_wp
    !> Beside what is known the body vectors of a loop may be so short that rounding opens it by more: by so many
    !> roundings of what is known.
    real(wp), parameter :: roundings = 64.0_wp, rate_roundings = 4096.0_wp
@@ -130,11 +133,14 @@ contains
       end do
    end subroutine note_closure_error
 
-   !> Equations that leave `open` of their rates contradict one another; `size_of`: numbers of this size have gone into
-   !> them; `coarse`: of the block.
-   pure logical function contradict(open, size_of, coarse)
-      real(wp), intent(in) :: open(:), size_of, coarse
+   !> Tells whether equations that leave `open` of their rates contradict one another.
+   pure logical function contradict(open, size_of, coarse, closing)
+      real(wp), intent(in) :: open(:)        !< (redundant equations)
+      real(wp), intent(in) :: size_of        !< numbers of this size have gone into them
+      real(wp), intent(in) :: coarse         !< of the block
+      real(wp), intent(in) :: closing        !< closing tolerance (unit of the loop, rad)
 
-      contradict = norm2(open) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse)*size_of
+      contradict = norm2(open) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse, &
+         min(rates_of_closing*min(closing, 1.0_wp), held_rates))*size_of
    end function contradict
 end module convergence

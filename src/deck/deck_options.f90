@@ -21,6 +21,8 @@ module deck_options
    !> Bounds of the relative tolerance: below, rounding prevents convergence; above, the result is no solution.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
+   !> Bounds of the closing tolerance (characteristic lengths, rad): equations that agree to the first need none.
+   real(wp), parameter :: min_closing = 1.0e-10_wp, max_closing = 1.0e-2_wp
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
@@ -73,6 +75,12 @@ contains
                if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &
                    (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
                   call add_card_error(set, number_range, k, real_1, 'ABOVE 1E-15, UP TO 1E-2')
+               m%closing = card%real(2)
+               if (abs(m%closing) > 0.0_wp .and. (m%closing < min_closing .or. m%closing > max_closing)) then
+                  call add_card_error(set, number_range, k, real_2, '1E-10 TO 1E-2')
+               else if (m%closing > 0.0_wp .and. m%method /= method_newton) then
+                  call add_card_error(set, newton_needed, k, real_2)
+               end if
             case (form_time)
                if (.not. card%valid) cycle
                if (card%whole < 1 .or. card%whole > max_steps) then

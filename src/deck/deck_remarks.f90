@@ -249,7 +249,8 @@ contains
                else if (card%given(i)) then
                   text = real_text(card, i)
                else
-                  text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]))
+                  text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]) .and. &
+                     (card%form /= form_method .or. i == 1))
                   if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
                if (card%form == form_link) then

@@ -243,6 +243,7 @@ module mechanism
       logical :: polish = .false.            !< headings are printed in Polish
       integer :: method = method_newton      !< method_newton, method_matrix or method_dense
       real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
+      real(wp) :: closing = 0.0_wp           !< of redundant equations (characteristic lengths, rad); 0: none
       logical :: ranges = .false.            !< the ranges of the drives are asked for
       logical :: proves = .false.            !< a proof of each step is asked for
       logical :: assemblies = .false.        !< all assemblies at the first instant are asked for

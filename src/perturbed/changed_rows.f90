@@ -29,6 +29,7 @@ module changed_rows
       logical :: fits = .true.                   !< the blocks of the engine serve for its numbers
       integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
       real(wp) :: roundings = 0.0_wp, time_off = 0.0_wp   !< the instant is off by this part of it
+      real(wp) :: length = 0.0_wp                !< then: see `put_off`
    end type perturbed_t
 
    !> The position at hand, and what the rows show that were found last from it.
@@ -42,6 +43,8 @@ module changed_rows
       !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
       logical :: jams = .false.
+      !> Redundant equations: the largest closure error (unit of the loop, rad), and what there is room for.
+      real(wp) :: opened = 0.0_wp, room = huge(1.0_wp)
    end type at_hand_t
 
    !> Of a mechanism with so many links at most the changed ones are kept from instant to instant, each with its
@@ -152,6 +155,7 @@ contains
       place%ratio = 0.0_wp
       place%change = 0.0_wp
       place%jams = .false.
+      place%opened = 0.0_wp
       if (.not. e%blocks%solvable) return
       e%state%u(:) = place%start
       do k = 1, ubound(e%state%u, 1)
@@ -173,7 +177,9 @@ contains
                c = convergence_t()
                call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, c)
                place%ratio = max(place%ratio, c%kantorovich_ratio)
-               place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open
+               place%opened = max(place%opened, c%open%value/c%open%level)
+               place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
+                  .or. place%opened > place%room
                if (c%singular) lack = missing_rates
                if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
                if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(e, i)

@@ -6,7 +6,7 @@ module error_estimate
    use motion, only: motion_t
    use points, only: row_t, find_row, known_at, difference, is_fixed
    use instant_centres, only: centre_finite, centre_starting, points_coincide
-   use known_digits, only: nothing_known
+   use known_digits, only: nothing_known, errors_a_digit
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
    use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
@@ -22,6 +22,11 @@ module error_estimate
    !> A sum is off by so many roundings of its largest number. So the estimates of `make errors` are above all the true
    !> errors, and 7 to 10 times these in the mean.
    real(wp), parameter :: of_sum = 0.9_wp
+   !> Roundings of a drawing may leave equations open by less than they are: of 140 drawings all are within the factor.
+   real(wp), parameter :: closure_parts = 8.0_wp, closure_caution = 2.0_wp
+   !> The last digit that is shown is worth so many errors by the closure error: as many as of roundings would leave
+   !> nothing of a drawing.
+   real(wp), parameter :: closure_errors_a_digit = 1.0_wp
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
    type :: error_estimate_t
@@ -35,12 +40,15 @@ module error_estimate
       !> (3, 0:2, requests) --errors: how far numbers are known, with the roundings of the calculation itself: rates of
       !> links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
+      !> (3, 0:2, requests) What lengths and directions off by the closure error change at most; 0 without one.
+      real(wp), allocatable :: by_closure(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
    end type error_estimate_t
 
    !> What the estimates of a mechanism need.
    type :: estimator_t
       type(sizes_t) :: sizes
+      real(wp) :: closure = 0.0_wp           !< closure error at most in its run (characteristic lengths, rad), or 0
       type(at_hand_t) :: place
       !> (0:directions + own_directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in
       !> each direction by `many` or `few` roundings; off in each further direction by one.
@@ -73,16 +81,18 @@ contains
       found%taken = .false.
       found%asked = always
       call find_growth(s%sizes, m, engine, q, found%growth, found%in_doubt)
+      found%in_doubt = found%in_doubt .or. s%closure > 0.0_wp
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
-         found%own(3, 0:2, size(m%requests)), found%solved(size(m%requests)))
+         found%own(3, 0:2, size(m%requests)), found%by_closure(3, 0:2, size(m%requests)), &
+         found%solved(size(m%requests)))
       found%sizes = s%sizes
       found%taken = .true.
       call find_place(engine, q, s%place)
       s%place%stays = s%place%is_singular
-      call find_changed(0, many, found%solved)
+      call find_changed(0, many, 0.0_wp, found%solved)
       s%place%stays = .false.
       call find_largest_changes(many, s%place%is_singular, is_small)
       if (.not. is_small) call find_largest_changes(few, .true., is_small)
@@ -96,26 +106,30 @@ contains
          end associate
       end if
       call add_sums()
+      found%by_closure = 0.0_wp
+      if (s%closure > 0.0_wp) call find_changes_by_closure()
 
    contains
 
       !> The `rows` of `m` near the motion `q` with all numbers off by so many `roundings` in direction `k`; 0: with
-      !> none off.
-      subroutine find_changed(k, roundings, rows)
+      !> none off. `length`: see `put_off`.
+      subroutine find_changed(k, roundings, length, rows)
          integer, intent(in) :: k
          real(wp), intent(in) :: roundings
+         real(wp), intent(in) :: length      !< length; 0: each number is off by its own size
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
          call make_ready(s%perturbed, k, m, engine, i)
          associate (p => s%perturbed(i))
-            if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
+            if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
                associate (axes => engine%geometry%equations%axes)
-                  call put_off(m, engine%blocks%tree, axes, k, roundings, p%m, p%time_off)
+                  call put_off(m, engine%blocks%tree, axes, k, roundings, length, p%m, p%time_off)
                end associate
                call put_changes(p, by_roundings=.true.)
                p%direction = k
                p%roundings = roundings
+               p%length = length
             end if
             call rows_with(p, q%t + p%time_off*q%t, s%place, rows)
          end associate
@@ -123,14 +137,15 @@ contains
 
       !> Puts the opposite change in the place of each of the `rows` that has lost numbers by `find_changed`: it is as
       !> likely, and as large, and on a dead point one of the two has a position.
-      subroutine take_opposite(k, roundings, rows)
+      subroutine take_opposite(k, roundings, length, rows)
          integer, intent(in) :: k
          real(wp), intent(in) :: roundings
+         real(wp), intent(in) :: length      !< see `find_changed`
          type(row_t), intent(inout) :: rows(:)
          type(row_t) :: other(size(rows))
 
          if (all(rows%known >= found%solved%known)) return
-         call find_changed(k, -roundings, other)
+         call find_changed(k, -roundings, length, other)
          where (rows%known < found%solved%known) rows = other
       end subroutine take_opposite
 
@@ -148,10 +163,10 @@ contains
          part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
          found%changes = 0.0_wp
          do k = 1, directions
-            call find_changed(k, roundings, rows)
+            call find_changed(k, roundings, 0.0_wp, rows)
             is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
-            call take_opposite(k, roundings, rows)
+            call take_opposite(k, roundings, 0.0_wp, rows)
             do i = 1, size(rows)
                found%changes(:, :, i) = max(found%changes(:, :, i), change(rows(i), found%solved(i), part))
             end do
@@ -165,14 +180,33 @@ contains
 
          found%own = 0.0_wp
          do k = directions + 1, directions + own_directions
-            call find_changed(k, 1.0_wp, rows)
-            call take_opposite(k, 1.0_wp, rows)
+            call find_changed(k, 1.0_wp, 0.0_wp, rows)
+            call take_opposite(k, 1.0_wp, 0.0_wp, rows)
             do i = 1, size(rows)
                found%own(:, :, i) = min(nothing_known, hypot(found%own(:, :, i), &
                   change(rows(i), found%solved(i), 1.0_wp)/sqrt(real(own_directions, wp))))
             end do
          end do
       end subroutine find_own_changes
+
+      !> Finds the largest changes of the rows by lengths and directions that are off by the closure error, from those
+      !> by a part of it. A much smaller part would show how the weights of equations change, which goes with the error.
+      subroutine find_changes_by_closure()
+         type(row_t) :: rows(size(found%solved))
+         real(wp) :: roundings, times
+         integer :: k, i
+
+         roundings = s%closure/(closure_parts*epsilon(1.0_wp))
+         times = closure_caution*merge(sqrt(closure_parts), closure_parts, s%place%is_singular)
+         do k = 1, directions
+            call find_changed(k, roundings, s%sizes%length, rows)
+            call take_opposite(k, roundings, s%sizes%length, rows)
+            do i = 1, size(rows)
+               found%by_closure(:, :, i) = max(found%by_closure(:, :, i), change(rows(i), found%solved(i), times))
+            end do
+         end do
+         found%by_closure = min(found%by_closure, nothing_known)
+      end subroutine find_changes_by_closure
 
       !> Adds to both changes those by a rounding of the sums that the motion and its rows are.
       subroutine add_sums()
@@ -263,7 +297,9 @@ contains
          end if
          if (s%asked) error = nothing_known
          if (.not. s%taken) return
-         error = merge(nothing_known, caution*s%changes(:, :, i), s%changes(:, :, i) >= nothing_known)
+         error = merge(nothing_known, caution*s%changes(:, :, i), max(s%changes(:, :, i), s%by_closure(:, :, i)) &
+            >= nothing_known)
+         where (error < nothing_known) error = hypot(error, s%by_closure(:, :, i)*closure_errors_a_digit/errors_a_digit)
          if (.not. is_centre(request%kind)) &
             error(:, min(row%known, last_common(s%solved(i), row)) + 1:) = nothing_known
       end associate
@@ -283,7 +319,7 @@ contains
       error = estimate_of(row, m, s, i)
       if (.not. s%taken) return
       if (is_fixed(m, m%requests(i)) .and. row%kind /= request_measure) return
-      where (error < nothing_known) error = s%own(:, :, i) + difference(row, s%solved(i))
+      where (error < nothing_known) error = s%own(:, :, i) + s%by_closure(:, :, i) + difference(row, s%solved(i))
       if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
 

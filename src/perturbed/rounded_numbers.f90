@@ -42,24 +42,29 @@ contains
    !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
    !> by so many `roundings`; 0: by none. `time_off`: by this part of it the instant is off. As they stand are the time
    !> of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial guess of moving
-   !> links. `t`, `axes`: of `m`.
-   subroutine put_off(m, t, axes, k, roundings, off, time_off)
+   !> links. `t`, `axes`: of `m`. With a `length` above 0 lengths are off as if each were so large, and drives and the
+   !> time are as they stand.
+   subroutine put_off(m, t, axes, k, roundings, length, off, time_off)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
+      real(wp), intent(in) :: length         !< length; 0: each number is off by its own size
       type(mechanism_t), intent(inout) :: off
       real(wp), intent(out) :: time_off
       real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
+      ! What is off leaves redundant equations open by more than the tolerance allows.
+      if (m%closing > 0.0_wp) off%closing = huge(1.0_wp)
       time_off = 0.0_wp
-      if (k > 0) time_off = roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
+      if (k > 0 .and. .not. length > 0.0_wp) &
+         time_off = roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
          do j = 1, 2
-            call put(card_number_t(number_link, i, 0, j), abs(m%links(i)%position(j)))
+            call put(card_number_t(number_link, i, 0, j), merge(length, abs(m%links(i)%position(j)), length > 0.0_wp))
          end do
       end do
       origin = plane_origin(m)
@@ -69,6 +74,7 @@ contains
             ! origin of the plane.
             size_of = norm2(m%points(i)%offset)
             if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
+            if (length > 0.0_wp) size_of = length
          end associate
          call put(card_number_t(number_point, i, 0, 1), size_of)
          call put(card_number_t(number_point, i, 0, 2), size_of)
@@ -76,7 +82,7 @@ contains
       largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
       do i = 1, size(m%pairs)
          if (.not. has_guide(m%pairs(i)%kind)) cycle
-         call put(card_number_t(number_pair, i, 0, 2), abs(m%pairs(i)%offset))
+         call put(card_number_t(number_pair, i, 0, 2), merge(length, abs(m%pairs(i)%offset), length > 0.0_wp))
          ! Guides that are parallel or at right angles by the cards of links that turn as one stay so: their directions
          ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
          ! links and between guides are as they stand: the arms that they turn are off.
@@ -88,6 +94,8 @@ contains
                *deviate(card_number_t(number_pair, t%orientation(link), quarters, 1), k)
          end associate
       end do
+      if (length > 0.0_wp) off%drives = m%drives
+      if (length > 0.0_wp) return
       do i = 1, size(m%drives)
          do j = 1, 3
             size_of = abs(m%drives(i)%polynomial(j))

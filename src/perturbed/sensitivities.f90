@@ -15,6 +15,7 @@ module sensitivities
    use rounded_numbers, only: caution
    use error_estimate, only: error_estimate_t, estimator_t
    use changed_rows, only: find_place, make_ready, put_changes, rows_with
+   use convergence, only: inconsistent_level
    implicit none
    private
    public :: sensitivities_t, find_sensitivities, has_tolerances, worst_case, root_of_squares
@@ -48,6 +49,8 @@ module sensitivities
    !> and leaves a larger rounding. Beyond the limit of a motion, where there is no root, it counts as so far at least.
    real(wp), parameter :: too_near = 0.25_wp, no_root = 4.0_wp
    integer, parameter :: max_attempts = 12
+   !> A change of a number that fits opens equations by a small part more.
+   real(wp), parameter :: more_open = 2.0_wp
 
 contains
 
@@ -75,7 +78,10 @@ contains
       found%jams = .false.
       call find_place(e, q, s%place)
       call make_ready(s%perturbed, 0, m, e, i)
+      s%place%room = huge(1.0_wp)
       call find_rows(middle)
+      ! Within a closing tolerance a change that opens redundant equations more than they are open jams all the same.
+      s%place%room = inconsistent_level + more_open*s%place%opened
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &

@@ -4,17 +4,16 @@ module column_table
    use kinds, only: wp
    use columns, only: row_column_t, columns_of_rows, column_at, form_of, cell_of, of_length, of_angle
    use drives, only: drive_motion
-   use mechanism, only: request_t
+   use mechanism, only: request_t, settings_t
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of
    use set_motion, only: set_motion_t, is_flagged
    use rows, only: finished_row_t
    use listing_layout, only: layout_t, line_length, column_name, column_unit
-   use listing_tables, only: law_error
+   use listing_tables, only: law_error, mask_words
    use table, only: format_t, put_cell, put_number, power_text, right
    use text_output, only: output_t, open_held, move_text, put
    use numerals, only: numeral_length
-   use known_digits, only: unknown_digit
    use phrases
    implicit none
    private
@@ -171,10 +170,10 @@ contains
    end subroutine note_columns
 
    !> Writes the tables, and below them what there is to say.
-   subroutine put_columns(o, t, polish)
+   subroutine put_columns(o, t, s)
       type(output_t), intent(inout) :: o
       type(column_table_t), intent(inout) :: t   !< gives up its lines
-      logical, intent(in) :: polish
+      class(settings_t), intent(in) :: s
       character(:), allocatable :: line
       integer :: n, k, i
 
@@ -190,8 +189,8 @@ contains
          end do
          call move_text(t%lines(n), o)
       end do
-      if (t%flagged .and. .not. t%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, polish))
-      if (t%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, polish))
+      if (t%flagged .and. .not. t%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, s%polish))
+      if (t%masked) call put(o, mask_words(s))
       call move_text(t%remarks, o)
    end subroutine put_columns
 end module column_table

@@ -11,7 +11,7 @@ module extremes_table
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
    use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
-   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text
+   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, mask_words
    use text_output, only: output_t, put
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
@@ -84,7 +84,7 @@ contains
       ! What is not sought may move.
       if (.not. moves .and. all([(all(request_sought(x%asked(q))), q=1, size(x%asked))])) &
          call put(o, ' '//phrase(say_at_rest, s%polish))
-      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
+      if (table%masked) call put(o, mask_words(s))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
       do k = 1, size(x%tracks)

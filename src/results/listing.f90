@@ -18,10 +18,9 @@ module listing
    use rows, only: finished_row_t, word_worst, word_rss
    use listing_layout, only: layout_t, new_layout, put_folded, angle_unit, choose_time_digits
    use table, only: format_t, unit_of, number_text
-   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row
+   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row, mask_words
    use text_output, only: output_t, put, add
    use numerals, only: whole, rounded
-   use known_digits, only: unknown_digit
    use phrases
    implicit none
    private
@@ -157,7 +156,7 @@ contains
       if (.not. begun .and. is_flagged(s)) call begin_instant()
       if (table%masked .or. has_news) table%kind = no_table
       call put_marks()
-      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
+      if (table%masked) call put(o, mask_words(s))
       do c = 1, s%count
          if (allocated(s%motions(c)%diagnostics)) call put_diagnostics(o, s%parts(c), s%motions(c)%diagnostics)
       end do
@@ -183,11 +182,14 @@ contains
             associate (q => s%motions(c), m => s%parts(c))
                if (q%mark == mark_none .or. is_told(c)) cycle
                line = words_of_mark(q%mark, q%singularity, s%polish)
-               if (q%mark == mark_inconsistent .and. allocated(q%diagnostics)) then
-                  do k = 1, size(q%diagnostics)
-                     if (q%diagnostics(k)%kind == diagnostic_surplus) &
-                        call put_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
-                  end do
+               if (q%mark == mark_inconsistent) then
+                  k = 0
+                  if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
+                  if (k > 0) call put_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
+                  ! A tolerance is no cure for a drive that is too many.
+                  table%surplus = table%surplus .or. k > 0
+                  if (.not. (table%surplus .or. s%closing > 0.0_wp)) &
+                     line = line//': '//phrase(say_give_closing, s%polish)
                else if (limits(c) < huge(1.0_wp)) then
                   line = phrase(say_beyond, s%polish)//' '//time(m, limits(c))
                else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
@@ -244,14 +246,16 @@ contains
    end function words_of_mark
 
    !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
-   !> characteristic length; negative where none are); `diagnostics`; what is certified of the branches on which the
+   !> characteristic length; negative where none are), and the error to which a closing tolerance lets them agree;
+   !> `diagnostics`; what is certified of the branches on which the
    !> instants were found; how many instants were `solved` and how many are `flagged`.
-   subroutine listing_end(o, s, solved, flagged, certificate_counts, closure_error, diagnostics)
+   subroutine listing_end(o, s, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: s
       integer, intent(in) :: solved, flagged
       type(certificate_counts_t), intent(in) :: certificate_counts
       real(wp), intent(in) :: closure_error
+      real(wp), intent(in) :: allowed_error  !< of instants with a position (characteristic lengths, rad), or 0
       type(diagnostic_t), intent(in) :: diagnostics(:)
       character(:), allocatable :: end_of
       character(20) :: number
@@ -263,6 +267,10 @@ contains
          number = adjustl(number)
          if (closure_error < min_closure_error) number = phrase(say_below, s%polish)//' '//number
          call put(o, ' '//phrase(say_closure_error, s%polish)//' '//trim(number))
+      end if
+      if (allowed_error > 0.0_wp) then
+         write (number, '(es9.1e2)') allowed_error
+         call put_folded(o, ' --- ', phrase(say_not_better, s%polish)//' '//trim(adjustl(number)))
       end if
       do i = 1, size(diagnostics)
          call put_diagnostics(o, s%parts(diagnostics(i)%part), diagnostics(i:i))

@@ -2,17 +2,19 @@
 module listing_tables
    use kinds, only: wp
    use drives, only: drive_motion
+   use mechanism, only: settings_t
    use columns, only: columns_of_rows, forms, kinds_of_rows, is_ratio, cell_of, cell_number, cell_spare
    use points, only: row_t
    use text_output, only: output_t, put
    use numerals, only: whole, put_fixed, numeral_length
-   use known_digits, only: nothing_known
+   use known_digits, only: nothing_known, unknown_digit
    use table, only: format_t, put_cell, put_number, number_text
    use listing_layout
-   use phrases, only: phrase, say_by
+   use phrases, only: phrase, say_by, say_unknown, say_unclosed
    implicit none
    private
-   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text, law_error
+   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text, law_error, &
+      mask_words
 
    character(4), parameter :: between = ' .. '
    !> Heads stand again after so many lines.
@@ -27,6 +29,7 @@ module listing_tables
       integer :: part = 0                  !< of the last of them
       integer :: lines = 0                 !< since the heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
+      logical :: surplus = .false.         !< it is told that a drive is too many
       integer :: told = 0                  !< the last instant that told why it has no values
       integer :: first = -1, last = -1     !< instants after it without values, which have no line yet; -1: none
       real(wp), allocatable :: limits(:)   !< (parts) the limit of motion before the last instant; huge: none
@@ -228,4 +231,13 @@ contains
       call put(o, line(:len_trim(line(:end_of))))
       table%lines = table%lines + 1
    end subroutine put_row
+
+   !> Finds the line that explains the mark of an unknown digit in the set `s`.
+   function mask_words(s) result(line)
+      class(settings_t), intent(in) :: s
+      character(:), allocatable :: line
+
+      line = ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish)
+      if (s%closing > 0.0_wp) line = ' --- '//unknown_digit//': '//phrase(say_unclosed, s%polish)
+   end function mask_words
 end module listing_tables

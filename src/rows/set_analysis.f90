@@ -2,7 +2,8 @@
 !> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, &
+      measure_line
    use scales, only: characteristic_length
    use planar, only: pi
    use structure, only: findings_t
@@ -20,10 +21,12 @@ module set_analysis
    use independent, only: request_of
    use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back
+   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
+   use convergence, only: inconsistent_level
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, take_state, &
+   public :: set_analysis_t, make_set_analysis, begin_analysis, foresee_closure, renew_set_analysis, advance_set, &
+      take_state, &
       rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
       set_closing_diagnostics
 
@@ -91,6 +94,27 @@ contains
       end do
       call begin_paths(s)
    end subroutine begin_analysis
+
+   !> Finds the largest closure error of all instants of `s`, which has none yet, by a run of their own: no number of
+   !> the run is known better. Without a closing tolerance, and where equations agree without one, it is 0.
+   subroutine foresee_closure(s)
+      type(set_analysis_t), intent(inout) :: s
+      type(analysis_t) :: trial
+      type(motion_t) :: q
+      integer :: c, k
+
+      do c = 1, s%now%count
+         if (.not. (s%now%closing > 0.0_wp .and. s%list(c)%engine%blocks%redundant > 0)) cycle
+         trial = s%list(c)
+         q = new_motion(size(s%now%parts(c)%links))
+         do k = 0, instant_count(s%now) - 1
+            call advance(trial, instant(s%now, k), q)
+         end do
+         ! That of an instant without a position is larger than the tolerance.
+         if (redundancy_error(trial) > inconsistent_level) &
+            s%estimators(c)%closure = min(redundancy_error(trial), s%now%closing)
+      end do
+   end subroutine foresee_closure
 
    !> Begins the paths of the set: no instant is taken yet.
    subroutine begin_paths(s)

@@ -35,6 +35,7 @@ contains
       logical, allocatable :: has_vector(:), counts(:, :)
 
       x%span = solver_length(m)
+      x%closing = m%closing
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
       if (.not. fits) return

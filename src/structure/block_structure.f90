@@ -37,6 +37,7 @@ contains
       allocate (s%blocks, s%geometry)
       associate (x => s%geometry)
          x%span = solver_length(m)
+         x%closing = m%closing
          t = new_tree(m)
          e = new_equations(m, t)
          x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)

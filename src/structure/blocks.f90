@@ -81,6 +81,7 @@ module blocks
    type :: geometry_t
       real(wp) :: tolerance = 0.0_wp              !< relative, of corrections; 0: the limit of rounding
       real(wp) :: span = 1.0_wp                   !< the characteristic length, in the deck's unit
+      real(wp) :: closing = 0.0_wp                !< closing tolerance of redundant equations (unit of the loop, rad)
       type(equation_numbers_t) :: equations       !< their unit of length: the power of two next to `span`
       type(block_numbers_t), allocatable :: blocks(:)
       type(row_numbers_t), allocatable :: rows(:)

@@ -154,7 +154,7 @@ contains
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call divide(m, set)
       call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
-         merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0), [diagnostic_t ::])
+         merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0), 0.0_wp, [diagnostic_t ::])
    end subroutine print_motion
 
    !> The numbers of the links of `r`.

@@ -77,6 +77,7 @@ past() { echo " *** NO POSITION: BEYOND THE LIMIT OF MOTION AT T = $(found "$1" 
 # singular LINKS: the sentence of a singular position of these
 singular() { echo " *** JACOBIAN SINGULAR, $*: NO UNIQUE VELOCITIES"; }
 open=' *** REDUNDANT EQUATIONS ARE INCONSISTENT'
+give=': FOR ROUNDED NUMBERS GIVE METHOD, REAL-2, A CLOSING TOLERANCE'
 none=' *** NO POSITION FOUND'
 largest=' LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS, IN CHARACTERISTIC LENGTHS:'
 below="$largest BELOW 1.E-13"
@@ -324,15 +325,15 @@ guides 0.25 -360.0 > "$w/deck"
 told 'two parallel guides, one a whole turn on' 0 "0: --- REDUNDANT EQUATIONS: 2 OF PAIR GUIDE-2
 $below"
 guides 0.252 0.0 > "$w/deck"
-told 'two guides, one too far off' 2 "0:$open
+told 'two guides, one too far off' 2 "0:$open$give
 0: *** PAIR GUIDE-2: CLOSURE ERROR $(small 0.001) M
-1:$open
+1:$open$give
 1: *** PAIR GUIDE-2: CLOSURE ERROR $(small 0.001) M
 $largest 5.E-04"
 guides 0.25 0.001 > "$w/deck"
-told 'two guides that are not parallel' 2 "0:$open
+told 'two guides that are not parallel' 2 "0:$open$give
 0: *** PAIR GUIDE-2: CLOSURE ERROR $(small 0.001) DEG
-1:$open
+1:$open$give
 1: *** PAIR GUIDE-2: CLOSURE ERROR $(small 0.001) DEG
 $largest 2.E-05"
 # With u the direction of the cranks, the left null vector of the loops through B and C is (a u, u), 4 a u_y = u_x - 2 u_y: of
@@ -340,11 +341,11 @@ $largest 2.E-05"
 gap() { small "$1/(1 + ((cos($2*pi/180) - 2*sin($2*pi/180))/(4*sin($2*pi/180)))^2)"; }
 for excess in 1e-3 1e-6 1e-9; do
    { head_of 'THIRD CRANK'; three_cranks $excess 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 2 2.0; } > "$w/deck"
-   told "a third crank too long by $excess" 2 "0:$open
+   told "a third crank too long by $excess" 2 "0:$open$give
 0: *** PAIR PAIR-C: CLOSURE ERROR $(gap $excess 30) M
-1:$open
+1:$open$give
 1: *** PAIR PAIR-C: CLOSURE ERROR $(gap $excess 60) M
-2:$open
+2:$open$give
 2: *** PAIR PAIR-C: CLOSURE ERROR $(gap $excess 90) M
 $largest $(awk "BEGIN { printf \"%.0E\", $(gap $excess 30)/4 }" | sed 's/E/.E/')"
 done
@@ -352,9 +353,9 @@ done
 told 'a third crank too long by 1e-12 of the size' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
 $largest 1.E-12"
 { head_of TROJKAT; card LANG PL; three_cranks 1e-3 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 1 1.0; } > "$w/deck"
-told 'in Polish: too long' 2 "0: *** ROWNANIA NADLICZBOWE SA SPRZECZNE
+told 'in Polish: too long' 2 "0: *** ROWNANIA NADLICZBOWE SA SPRZECZNE: DLA LICZB ZAOKRAGLONYCH PODAJ METHOD, REAL-2, TOLERANCJE ZAMKNIECIA
 0: *** PARA PAIR-C: BLAD ZAMKNIECIA $(gap 1e-3 30) M
-1: *** ROWNANIA NADLICZBOWE SA SPRZECZNE
+1: *** ROWNANIA NADLICZBOWE SA SPRZECZNE: DLA LICZB ZAOKRAGLONYCH PODAJ METHOD, REAL-2, TOLERANCJE ZAMKNIECIA
 1: *** PARA PAIR-C: BLAD ZAMKNIECIA $(gap 1e-3 60) M
  NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH, W DLUGOSCIACH CHARAKT.: 2.E-04"
 
