@@ -200,6 +200,7 @@ contains
       call build_bodies(set)
       call build_measures(set)
       call build_drives(set)
+      call put_turns(set)
       call build_lengths(set)
       call build_requests(set)
       call build_branches(set)

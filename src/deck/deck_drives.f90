@@ -15,7 +15,7 @@ module deck_drives
    use input_errors
    implicit none
    private
-   public :: build_drives, check_terms
+   public :: build_drives, put_turns, check_terms
 
 contains
 
@@ -180,6 +180,28 @@ contains
          end associate
       end subroutine build_term
    end subroutine build_drives
+
+   !> Puts the last instant of a TIME card that counts turns: the drive of constant rate has then turned so often. Other
+   !> drives rest, and a drive of another kind or law is an error.
+   subroutine put_turns(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k
+
+      associate (m => set%mechanism)
+         if (.not. m%turns > 0.0_wp .or. set%errors%count > 0) return
+         k = findloc(abs(m%drives%polynomial(2)) > 0.0_wp, .true., dim=1)
+         if (count(abs(m%drives%polynomial(2)) > 0.0_wp) == 1) then
+            associate (drive => m%drives(k))
+               if (any(drive%kind == [drive_angle, drive_relangle]) .and. size(drive%terms) == 0 .and. &
+                   .not. abs(drive%polynomial(3)) > 0.0_wp) then
+                  m%t1 = m%t0 + 2.0_wp*pi*m%turns/abs(drive%polynomial(2))
+                  return
+               end if
+            end associate
+         end if
+         call add_card_error(set, turns_drive, findloc(set%cards(:set%count)%form, form_time, dim=1), label_b)
+      end associate
+   end subroutine put_turns
 
    !> Whether `card` gives a term of the drive above it.
    pure logical function is_term(card)

@@ -23,6 +23,8 @@ module deck_options
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
    !> Bounds of the closing tolerance (characteristic lengths, rad): equations that agree to the first need none.
    real(wp), parameter :: min_closing = 1.0e-10_wp, max_closing = 1.0e-2_wp
+   !> TIME counts turns of a drive.
+   character(*), parameter :: turns_word = 'TURNS'
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
@@ -85,8 +87,15 @@ contains
                if (.not. card%valid) cycle
                if (card%whole < 1 .or. card%whole > max_steps) then
                   call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
-               else if (.not. any(card%given(1:2))) then
+               else if (all(label(label_b) /= ['     ', turns_word])) then
+                  call add_card_error(set, word_unknown, k, label_b, turns_word)
+               else if (.not. (card%given(2) .or. (card%given(1) .and. label(label_b) == ''))) then
                   call add_card_error(set, field_blank, k, real_2)
+               else if (label(label_b) == turns_word) then
+                  m%steps = card%whole
+                  m%t0 = card%real(1)
+                  m%turns = card%real(2)
+                  if (.not. m%turns > 0.0_wp) call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
                else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
                   call add_card_error(set, time_point, k, real_2)
                else

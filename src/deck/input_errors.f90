@@ -132,6 +132,8 @@ module input_errors
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'EQUALS T0: USE AN AT CARD FOR ONE INSTANT'), &
+      turns_drive = error_code_t(77, 'NEEDS ONE DRIVE WITH A RATE: ANGLE OR RELANGLE, WITHOUT ADD, RISE OR ' &
+         //'ACCELERATION'), &
       newton_needed = error_code_t(87, 'REQUIRES METHOD NEWTON'), &
       units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', own_layout), &
       repeated = error_code_t(96, 'IS REPEATED; FIRST ON CARD'), &

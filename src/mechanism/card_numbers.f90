@@ -91,6 +91,7 @@ contains
             return
          case (number_time)
             name = 'TIME T'//whole(n%place - 1)
+            if (n%place == 2 .and. m%turns > 0.0_wp) name = 'TIME TURNS'
             return
          case default
             name = trim(drive_name(m, m%drives(k)))
@@ -148,6 +149,7 @@ contains
          end associate
       case default
          unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
+         if (n%place == 2 .and. m%turns > 0.0_wp) unit = unit_t(powers=0.0_wp, name='')
       end select
 
    contains
@@ -207,6 +209,7 @@ contains
          case (number_time)
             x => m%t0
             if (i == 2) x => m%t1
+            if (i == 2 .and. m%turns > 0.0_wp) x => m%turns
          case default
             if (n%term == 0) then
                x => m%drives(k)%polynomial(i)

@@ -253,6 +253,7 @@ module mechanism
       integer :: variant = 0                 !< the number of this one; 0: the numbers are those of the deck
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
       real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
+      real(wp) :: turns = 0.0_wp             !< of the TIME card: turns of the drive up to t1; 0: t1 is given
       real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
       type(column_request_t), allocatable :: columns(:)   !< of the COLUMN cards; none: not allocated
    end type settings_t

@@ -858,7 +858,7 @@ explained 'a number of more than 16 columns, at the end' '/^LINK    ROD/ { $0 = 
    ' *** E014  CARD 5  COLUMN 81  FIELD PAST-80: "00001" IS BEYOND COLUMN 80'
 explained 'too many steps for the field' '/^TIME/ { $0 = "TIME    1000000000              0.0             1.0" } 1' \
    ' *** E037  CARD 19  COLUMN 9  FIELD LABEL-A: "1000000000" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
- LAYOUT    |TIME    STEPS                   T0              T1'
+ LAYOUT    |TIME    STEPS   TURNS           T0              T1/TURNS'
 explained 'a joint that is there twice' '/^POINT   O / { print "JOINT   HINGE   BASE    CRANK"; print "JOINT   HINGE   BASE    CRANK" } 1' \
    ' *** E050  CARD 8  COLUMN 9  FIELD LABEL-A: "HINGE" IS A NAME DEFINED TWICE; FIRST ON CARD 7'
 explained 'no END' '/^END/ { next } 1' \
