@@ -7,7 +7,7 @@ module deck
    use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
    use cards
    use deck_measures, only: build_measures, check_measures
-   use deck_drives, only: build_drives, check_terms
+   use deck_drives, only: build_drives, put_turns, check_terms
    use deck_lengths, only: build_lengths
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
