@@ -74,7 +74,7 @@ module cards
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
       form_t('L--', 3, .false., 'RISE    LAW                     START           DURATION        LIFT'), &
       form_t('LLl', 1, .false., 'LENGTH  POINT-P POINT-Q LINK    LENGTH'), &
-      form_t('---', 3, .false., 'TOLER                           OF R1           OF R2           OF R3'), &
+      form_t('l--', 3, .false., 'TOLER   LINK                    OF R1           OF R2           OF R3'), &
       form_t('Wl-', 2, .true.,  'TIME    STEPS   TURNS           T0              T1/TURNS'), &
       form_t('---', 3, .false., 'AT                              T               T               T'), &
       form_t('L--', 2, .true.,  'METHOD  METHOD                  TOLERANCE       CLOSING'), &

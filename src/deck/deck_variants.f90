@@ -7,7 +7,8 @@ module deck_variants
    use kinds, only: wp, label_length
    use mechanism
    use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit, put_number
-   use card_sets, only: card_set_t, begin_mechanism, has_drawing, add_card_error, real_text
+   use card_sets, only: card_set_t, begin_mechanism, has_drawing, look_up, add_card_error, real_text
+   use drawn_lengths, only: mark_hole
    use card_reader, only: parsed_card_t
    use cards
    use input_errors
@@ -21,6 +22,8 @@ module deck_variants
    !> The largest number of variants of a set.
    integer, parameter :: max_variants = 9999999
    character(*), parameter :: list_word = 'LIST'
+   !> The word of a TOLER card for both holes of a joint together.
+   character(*), parameter :: both_word = 'BOTH'
    character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
@@ -55,14 +58,15 @@ module deck_variants
 
 contains
 
-   !> Builds `set`%mechanism%tolerances from the TOLER cards, in their order; the bodies and drives are there. A card
-   !> that stands below no card with numbers, a number that takes no tolerance, and a tolerance below zero are errors.
+   !> Builds `set`%mechanism%tolerances from the TOLER cards, in their order; the bodies and drives are there. Those of
+   !> a JOINT card are of the hole of each of its links, of one link, or of both together. A card that stands below no
+   !> card with numbers, a number that takes no tolerance, and a tolerance below zero are errors.
    subroutine build_tolerances(set)
       type(card_set_t), intent(inout) :: set
-      type(tolerance_t) :: list(3*set%number_of(form_toler))
+      type(tolerance_t) :: list(6*set%number_of(form_toler))
       type(card_number_t) :: number
-      type(unit_t) :: unit
-      integer :: k, i, n, form
+      integer, allocatable :: holes(:)              ! the points of a JOINT card whose holes have tolerances
+      integer :: k, i, j, n, form
 
       n = 0
       do k = 1, set%count
@@ -73,9 +77,12 @@ contains
             if (form == form_unknown) cycle
             if (forms(form)%reals == 0) then
                call add_card_error(set, card_alone, k, card_name)
-            else if (any(set%cards(above + 1:k - 1)%form == form_toler)) then
+            else if (is_second(k, above)) then
                call add_card_error(set, card_second, k, card_name)
+            else if (card%label(label_a) /= '' .and. form /= form_joint) then
+               call add_card_error(set, field_unused, k, label_a)
             else
+               call find_holes(k, above, holes)
                do i = 1, 3
                   if (.not. card%given(i)) cycle
                   number = number_on_card(set, above, i)
@@ -84,17 +91,71 @@ contains
                   else if (card%real(i) < 0.0_wp) then
                      call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
                   else if (card%real(i) > 0.0_wp .and. set%errors%count == 0) then
-                     n = n + 1
-                     unit = number_unit(set%mechanism, number)
-                     list(n) = tolerance_t(card_number_t=number, size_of=card%real(i), text=real_text(card, i), &
-                        name=number_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, &
-                        unit_name=unit%name)
+                     if (size(holes) == 0) call add_tolerance(number, card%real(i), real_text(card, i))
+                     do j = 1, size(holes)
+                        call add_tolerance(card_number_t(number_hole, holes(j), 0, i), card%real(i), real_text(card, i))
+                     end do
                   end if
                end do
             end if
          end associate
       end do
       if (n > 0) set%mechanism%tolerances = list(:n)
+
+   contains
+
+      !> Tells whether card `k` is a second TOLER card of the card `above`: of a JOINT card each link may have its own.
+      logical function is_second(k, above)
+         integer, intent(in) :: k, above
+         integer :: i
+
+         is_second = .false.
+         do i = above + 1, k - 1
+            if (set%cards(i)%form /= form_toler) cycle
+            associate (labels => [set%cards(i)%label(label_a), set%cards(k)%label(label_a)])
+               is_second = is_second .or. set%cards(above)%form /= form_joint .or. any(labels == '') .or. &
+                  any(labels == both_word) .or. labels(1) == labels(2)
+            end associate
+         end do
+      end function is_second
+
+      !> Finds the points of the JOINT card `above` whose holes have the tolerances of card `k`, and all points of these
+      !> holes; none of another card, or if both holes move together.
+      subroutine find_holes(k, above, holes)
+         integer, intent(in) :: k, above
+         integer, allocatable, intent(out) :: holes(:)
+         integer :: i, link
+
+         allocate (holes(0))
+         if (set%cards(above)%form /= form_joint .or. set%cards(above)%subject == 0) return
+         holes = set%cards(above)%subject + [0, 1]
+         if (any(set%mechanism%points(holes)%link == 0)) return
+         do i = 1, 2
+            call mark_hole(set%mechanism, holes(i))
+         end do
+         if (set%cards(k)%label(label_a) == both_word) then
+            deallocate (holes)
+            allocate (holes(0))
+         else if (set%cards(k)%label(label_a) /= '') then
+            call look_up(set, request_link, k, label_a, link)
+            if (link > 0 .and. all(set%mechanism%points(holes)%link /= link)) &
+               call add_card_error(set, toler_link, k, label_a)
+            holes = pack(holes, set%mechanism%points(holes)%link == link)
+         end if
+      end subroutine find_holes
+
+      !> Adds the tolerance of a number.
+      subroutine add_tolerance(number, size_of, text)
+         type(card_number_t), intent(in) :: number
+         real(wp), intent(in) :: size_of     !< in the unit of the number on its card
+         character(*), intent(in) :: text    !< likewise
+         type(unit_t) :: unit
+
+         n = n + 1
+         unit = number_unit(set%mechanism, number)
+         list(n) = tolerance_t(card_number_t=number, size_of=size_of, text=text, &
+            name=number_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, unit_name=unit%name)
+      end subroutine add_tolerance
    end subroutine build_tolerances
 
    !> Number `i` of card `k` of any form; its kind is 0 if no number of the mechanism is there.

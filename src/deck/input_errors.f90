@@ -73,7 +73,8 @@ module input_errors
       card_second = error_code_t(42, 'IS A SECOND * OR TOLER CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: ALSO ON THE CARD THAT THIS ONE CONTINUES'), &
       card_alone = error_code_t(45, 'MUST FOLLOW THE CARD TO WHICH IT APPLIES'), &
-      toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE')
+      toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'), &
+      toler_link = error_code_t(44, 'IS NO LINK OF THE JOINT ABOVE: NAME ONE OF ITS LINKS, OR BOTH', own_layout)
    ! Names.
    type(error_code_t), parameter, public :: &
       name_repeated = error_code_t(50, 'IS A NAME DEFINED TWICE; FIRST ON CARD'), &

@@ -6,7 +6,8 @@ module card_numbers
    use kinds, only: wp, label_length
    use planar, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
-      number_drive, number_knot, number_time, number_length, term_harmonic, term_power, term_table, term_kinds
+      number_drive, number_knot, number_time, number_length, number_hole, term_harmonic, term_power, term_table, &
+      term_kinds
    use scales, only: is_length
    use splines, only: new_spline
    use drawn_values, only: follow_drawing
@@ -56,7 +57,7 @@ contains
       select case (n%kind)
       case (number_link)
          if (m%links(n%subject)%ground) takes_tolerance = .not. any(m%points%link == n%subject .and. m%points%drawn)
-      case (number_point:number_pair, number_length)
+      case (number_point:number_pair, number_length, number_hole)
          takes_tolerance = .true.
       case (number_drive)
          takes_tolerance = .true.
@@ -83,6 +84,10 @@ contains
             name = 'JOINT '//trim(m%points(k)%name)
          case (number_pair)
             name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
+         case (number_hole)
+            name = trim(m%points(k)%name)//' IN '//trim(m%links(m%points(k)%link)%name)//' ' &
+               //trim(number_words(n%place, number_joint))
+            return
          case (number_length)
             associate (one => m%lengths(k))
                name = trim('LENGTH '//trim(m%points(one%point(1))%name)//' '//trim(m%points(one%point(2))%name)//' ' &
@@ -121,7 +126,7 @@ contains
       select case (n%kind)
       case (number_link)
          unit = unit_of(n%place == 3)
-      case (number_point, number_joint, number_length)
+      case (number_point, number_joint, number_length, number_hole)
          unit = unit_of(.false.)
       case (number_pair)
          unit = unit_of(n%place /= 2)
@@ -181,7 +186,7 @@ contains
 
       x => number_in(m, n)
       value = x
-      if (n%kind /= number_joint) return
+      if (all(n%kind /= [number_joint, number_hole])) return
       place = point_of(m%links(m%points(n%subject)%link)%position, m%points(n%subject)%offset)
       value = place(n%place)
    end function number_value
@@ -196,7 +201,7 @@ contains
          select case (n%kind)
          case (number_link)
             x => m%links(k)%position(i)
-         case (number_point, number_joint)
+         case (number_point, number_joint, number_hole)
             x => m%points(k)%offset(i)
          case (number_pair)
             x => m%pairs(k)%alpha
@@ -223,7 +228,8 @@ contains
    end function number_in
 
    !> Gives number `n` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
-   !> the links of `m` are where the cards put them. Points follow a length; numbers as drawn do not.
+   !> the links of `m` are where the cards put them. Points follow a length; numbers as drawn follow neither a length
+   !> nor the hole of one link.
    subroutine set_number(m, n, value)
       type(mechanism_t), intent(inout) :: m
       type(card_number_t), intent(in) :: n
@@ -241,24 +247,28 @@ contains
    end subroutine set_number
 
    !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
-   !> points. Of a table, `put_table` has to follow once all its numbers are put.
+   !> points, or one of them, with all points of its hole. Of a table, `put_table` has to follow once all its numbers
+   !> are put.
    subroutine put_number(m, n, value)
       type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
       real(wp), pointer :: x
       real(wp) :: way(2)
-      integer :: i
+      integer :: i, j
 
-      if (n%kind /= number_joint) then
+      if (all(n%kind /= [number_joint, number_hole])) then
          x => number_in(m, n)
          x = value
          return
       end if
       way = 0.0_wp
       way(n%place) = value - number_value(m, n)
-      do i = n%subject, n%subject + 1
-         m%points(i)%offset = m%points(i)%offset + rotated(way, direction(-m%links(m%points(i)%link)%position(3)))
+      do i = n%subject, n%subject + merge(1, 0, n%kind == number_joint)
+         do j = 1, size(m%points)
+            if (j /= i .and. (m%points(j)%hole == 0 .or. m%points(j)%hole /= m%points(i)%hole)) cycle
+            m%points(j)%offset = m%points(j)%offset + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
+         end do
       end do
    end subroutine put_number
 

@@ -6,7 +6,8 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
-      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot, number_length
+      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot, &
+      number_length, number_hole
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -252,6 +253,8 @@ contains
             associate (one => own%tolerances(i))
                if (one%kind == number_length) then
                   one%subject = merge(count(kept(:one%subject)), 0, kept(one%subject))
+               else if (one%kind == number_hole) then
+                  one%subject = findloc(own%points%hole, m%points(one%subject)%hole, dim=1)
                else
                   one%subject = place(of_numbers(one%kind))%of(one%subject)
                end if

@@ -80,6 +80,7 @@ module mechanism
    integer, parameter :: number_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
    integer, parameter :: number_time = 7     !< T0 or T1 of TIME
    integer, parameter :: number_length = 8   !< the length `subject`, in the order in which lengths are put
+   integer, parameter :: number_hole = 9     !< x or y, in the drawing, of the hole of point `subject` of a JOINT card
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)

@@ -18,11 +18,11 @@ module deck_damage
       '180.0', &
       '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
       '1.5-3']
-   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'JOINT', &
+   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'SLOT', 'LENGTH', 'JOINT', &
       'DRIVE', 'ADD', &
       'RISE', 'TIME', 'AT', 'METHOD']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', &
-      'JOINT', 'DRIVE']
+      'SLOT', 'LENGTH', 'JOINT', 'DRIVE']
    !> Radians, or lengths: so far drives go in all; where extremes are searched, which takes longer.
    real(wp), parameter :: longest_way = 2000.0_wp, longest_search = 60.0_wp
    character(*), &

@@ -51,13 +51,13 @@ contains
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
 
-      select case (throw(r, 34))
+      select case (throw(r, 38))
       case (1:5)
          call change_length(d, r)
       case (6:7)
          call change_rough(d, r)
       case (8)
-         call change_real(d, r, ['GROUND  ', 'PRISM   '])
+         call change_real(d, r, ['GROUND  ', 'PRISM   ', 'SLOT    '])
       case (9:11)
          call change_drive(d, r)
       case (12:13)
@@ -88,6 +88,12 @@ contains
          call far_rough(d, r)
       case (33)
          call round_drive(d, r)
+      case (34)
+         call make_slot(d, r)
+      case (35:36)
+         call give_length(d, r)
+      case (37)
+         call give_bar(d, r)
       case default
          call change_at(d, r)
       end select
@@ -148,6 +154,10 @@ contains
          select case (name_of(d%line(i)))
          case ('POINT', 'GROUND', 'LINK', 'JOINT')
             call set_full(d, i, 1, factor*real_field(d, i, 1))
+            call set_full(d, i, 2, factor*real_field(d, i, 2))
+         case ('LENGTH')
+            call set_full(d, i, 1, factor*real_field(d, i, 1))
+         case ('SLOT')
             call set_full(d, i, 2, factor*real_field(d, i, 2))
          case ('PRISM')
             call set_full(d, i, 2, factor*real_field(d, i, 2))
@@ -240,4 +250,76 @@ contains
       end do
       call add_note(d, d%line(i)(1:32))
    end subroutine make_prism
+
+   !> A revolute pair becomes a slot, whose slide is driven.
+   subroutine make_slot(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(80) :: card
+      integer :: i
+
+      i = pick(r, find_cards(d, ['REVOLUTE']))
+      if (i == 0) return
+      d%line(i)(1:8) = 'SLOT'
+      if (chance(r, 0.7_wp)) call set_real(d, i, 1, between(r, -2.0_wp, 2.0_wp))
+      if (chance(r, 0.3_wp)) call set_real(d, i, 2, between(r, -0.2_wp, 0.2_wp))
+      write (card, '(a, t33, 2es16.8e3)') 'DRIVE   SLIDE   '//label(d%line(i), 3), between(r, -0.3_wp, 0.3_wp), &
+         between(r, -0.1_wp, 0.1_wp)
+      call insert_line(d, size(d%line), card)
+      call add_note(d, 'SLOT '//d%line(i)(9:32))
+   end subroutine make_slot
+
+   !> Two joints of one link get a length, mostly about that of the drawing.
+   subroutine give_length(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(80) :: card
+      real(wp) :: length
+      integer :: i, j
+
+      call pick_joints(d, r, i, j)
+      if (i == 0) return
+      length = norm2([real_field(d, j, 1) - real_field(d, i, 1), real_field(d, j, 2) - real_field(d, i, 2)])
+      if (chance(r, 0.8_wp)) length = near(length, r)
+      write (card, '(a, t33, es16.8e3)') 'LENGTH  '//label(d%line(i), 1)//label(d%line(j), 1), abs(length)
+      call insert_line(d, size(d%line), card)
+      call add_note(d, trim(card))
+   end subroutine give_length
+
+   !> A link with two joints gets axes along the bar.
+   subroutine give_bar(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer, allocatable :: cards(:)
+      integer :: i, j, k
+
+      call pick_joints(d, r, i, j)
+      if (i == 0) return
+      cards = find_cards(d, ['LINK    '])
+      do k = 1, size(cards)
+         if (all(label(d%line(cards(k)), 1) /= [label(d%line(i), 2), label(d%line(i), 3)])) cycle
+         if (all(label(d%line(cards(k)), 1) /= [label(d%line(j), 2), label(d%line(j), 3)])) cycle
+         call set_label(d%line(cards(k)), 2, label(d%line(i), 1))
+         call set_label(d%line(cards(k)), 3, label(d%line(j), 1))
+         call add_note(d, 'BAR '//d%line(cards(k))(9:32))
+      end do
+   end subroutine give_bar
+
+   !> Two JOINT cards with a link in common; `i` is 0 if there are none.
+   subroutine pick_joints(d, r, i, j)
+      type(draft_t), intent(in) :: d
+      type(dice_t), intent(inout) :: r
+      integer, intent(out) :: i, j
+      integer :: k
+
+      do k = 1, 10
+         i = pick(r, find_cards(d, ['JOINT   ']))
+         j = pick(r, find_cards(d, ['JOINT   ']))
+         if (i == 0) return
+         if (i == j) cycle
+         if (any(label(d%line(i), 2) == [label(d%line(j), 2), label(d%line(j), 3)])) return
+         if (any(label(d%line(i), 3) == [label(d%line(j), 2), label(d%line(j), 3)])) return
+      end do
+      i = 0
+   end subroutine pick_joints
 end module deck_mutations

@@ -10,7 +10,8 @@ module deck_questions
    private
    public :: ask, lengthen_names, write_in_polish
 
-   character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'DRIVE']
+   character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'SLOT', 'JOINT', 'LENGTH', &
+      'DRIVE']
    !> Circuits are asked of so many links at most.
    integer, parameter :: most_links = 5
 
@@ -125,7 +126,7 @@ contains
       integer :: i
 
       name = ''
-      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'JOINT   ']))
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'SLOT    ', 'JOINT   ']))
       if (i > 0) name = label(d%line(i), merge(1, 3, name_of(d%line(i)) == 'JOINT'))
    end function any_pair
 
@@ -155,9 +156,11 @@ contains
       character(80) :: card
       integer :: i, k
 
-      i = pick(r, find_cards(d, with_dimensions(2:3)))
+      i = pick(r, find_cards(d, with_dimensions(2:6)))
       if (i == 0) return
       card = 'TOLER'
+      if (name_of(d%line(i)) == 'JOINT' .and. chance(r, 0.4_wp)) &
+         card(9:16) = merge('BOTH    ', label(d%line(i), 1 + throw(r, 2)), chance(r, 0.5_wp))
       do k = 1, merge(3, 2, name_of(d%line(i)) == 'PRISM')
          if (chance(r, 0.6_wp)) write (card(16*k + 17:16*k + 32), '(es16.8e3)') between(r, 0.0_wp, 0.1_wp)
       end do
@@ -192,11 +195,11 @@ contains
       integer, intent(in) :: k
 
       select case (name_of(line))
-      case ('GROUND', 'LINK', 'BRANCH')
+      case ('GROUND', 'BRANCH')
          is_name = k == 1
       case ('POINT', 'POLE', 'CURVE')
          is_name = k <= 2
-      case ('REVOLUTE', 'PRISM', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
+      case ('LINK', 'REVOLUTE', 'PRISM', 'SLOT', 'LENGTH', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
          is_name = .true.
       case ('DRIVE')
          is_name = k >= 2 .and. label(line, k) /= 'RPM'

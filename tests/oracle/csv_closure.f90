@@ -70,16 +70,35 @@ contains
       integer, intent(in) :: k
       type(rows_t), intent(in) :: rows
       type(verdict_t), intent(inout) :: v
-      type(body_jet_t) :: moving(size(m%links))
+      type(rows_t) :: all_rows
 
       if (.not. any(rows%due)) return
       v%instants = v%instants + 1
       call check_time(m, k, rows%t, v)
       if (rows%known < 0) return
-      moving = rows%body
-      if (all(rows%given)) call check_closure(m, rows, v)
-      call check_rows(m, rows, moving, v)
+      all_rows = rows
+      call add_blocks(m, all_rows)
+      if (all(all_rows%given)) call check_closure(m, all_rows, v)
+      call check_rows(m, all_rows, all_rows%body, v)
    end subroutine check_instant
+
+   !> The block of a slot, which has no row, is at the point in the slot and turns with the link that has the slot.
+   subroutine add_blocks(m, rows)
+      type(mechanism_t), intent(in) :: m
+      type(rows_t), intent(inout) :: rows
+      type(jet_t) :: p(2)
+      integer :: i, carrier, block
+
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%pin == 0) cycle
+         carrier = m%points(m%pairs(i)%point_i)%link
+         block = m%points(m%pairs(i)%point_j)%link
+         rows%given(block) = rows%given(carrier) .and. rows%given(m%points(m%pairs(i)%pin)%link)
+         if (.not. rows%given(block)) cycle
+         p = place_jet(m, numbers_of(m), rows%body, m%pairs(i)%pin)
+         rows%body(block) = body_jet_t(p(1), p(2), rows%body(carrier)%phi)
+      end do
+   end subroutine add_blocks
 
    !> t_k = t0 + (t1 - t0) k/n, four roundings; the last and those of AT exactly.
    subroutine check_time(m, k, t, v)

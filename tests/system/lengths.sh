@@ -70,6 +70,46 @@ run plate
 equal 'a plate: C in its axes' "$(awk 'BEGIN { x = (4900 + 2500 - 3025)/140; printf "%.4f %.4f", x, sqrt(2500 - x*x) }')" \
    "$(awk '/^ C-XI/ { x = $2 } /^ C-ETA/ { printf "%.4f %.4f", x, $2 }' "$w/plate.lst")"
 
+# TOLER of a JOINT: the hole of each link by itself, all joints of a link at one place as one hole. Two rods on one pin A: as in a
+# deck of POINT cards, in which the crank has one point for both.
+drawn() {
+   card UNITS MM DEG S; card GROUND BASE; card LINK CRANK; card LINK ROD; card LINK ROD2; card LINK TOP; card LINK LOW
+   card JOINT O BASE CRANK 0.0 0.0; tol O; card JOINT A CRANK ROD 20.0 10.0; tol A; card JOINT A2 CRANK ROD2 20.0 10.0
+   card JOINT B TOP ROD 100.0 20.0; card JOINT B2 LOW ROD2 90.0 -30.0; card POINT G BASE '' 0.0 20.0; card POINT G2 BASE '' 0.0 -30.0
+   card PRISM G B GUIDE; card PRISM G2 B2 LOWER; rest
+}
+plain() {
+   card UNITS MM DEG S; card GROUND BASE; card LINK CRANK; card LINK ROD; card LINK ROD2; card LINK TOP; card LINK LOW
+   card POINT O0 BASE; tol O; card POINT O1 CRANK; tol O; card POINT AC CRANK '' 20.0 10.0; tol A; card POINT AR ROD '' 20.0 10.0; tol A
+   card POINT AR2 ROD2 '' 20.0 10.0; card POINT BR ROD '' 100.0 20.0; card POINT B TOP '' 100.0 20.0; card POINT BR2 ROD2 '' 90.0 -30.0
+   card POINT B2 LOW '' 90.0 -30.0; card REVOLUTE O0 O1 PO; card REVOLUTE AC AR PA; card REVOLUTE AC AR2 PA2; card REVOLUTE B BR PB
+   card REVOLUTE B2 BR2 PB2; card POINT G BASE '' 0.0 20.0; card POINT G2 BASE '' 0.0 -30.0; card PRISM G B GUIDE; card PRISM G2 B2 LOWER; rest
+}
+tol() { card TOLER '' '' '' 0.05 0.04; }
+rest() { card DRIVE ANGLE CRANK '' 0.0 60.0; card AT '' '' '' 0.0 0.5 1.0; card PRINT LINKS ROD; card PRINT LINKS ROD2; card PRINT PAIRS GUIDE; card PRINT PAIRS LOWER; card END; }
+drawn > "$w/drawn.deck"
+plain > "$w/plain.deck"
+run drawn
+run plain
+rows() { grep -E '^  (WORST|RSS) ' "$w/$1.lst"; }
+rows plain > "$w/plain.rows"
+rows drawn > "$w/drawn.rows"
+same 'holes of joints' "$w/plain.rows" "$w/drawn.rows"
+equal 'holes of joints: rows' 24 "$(wc -l < "$w/plain.rows" | tr -d ' ')"
+equal 'holes of joints: their names' 'A IN CRANK X,A IN CRANK Y,A IN ROD X,A IN ROD Y,O IN BASE X,O IN BASE Y,O IN CRANK X,O IN CRANK Y' \
+   "$(sed -n 's/.*%  \([AO] IN [A-Z]* [XY]\) .*/\1/p' "$w/drawn.lst" | sort -u | tr '\n' ',' | sed 's/,$//')"
+# A pin A of an in-line slider-crank: +-0.05 in both links, 0.05 sqrt(2); of one link 0.05; both holes together 0.
+inline() {
+   card UNITS MM DEG S; card GROUND BASE; card LINK CRANK; card LINK ROD; card LINK SLIDER; card JOINT O BASE CRANK 0.0 0.0
+   card JOINT A CRANK ROD 30.0 0.0; printf '%s\n' "$@"; card JOINT B SLIDER ROD 110.0 0.0; card POINT G BASE; card PRISM G B GUIDE
+   card DRIVE ANGLE CRANK '' '' 30.0; card AT '' '' '' 0.0; card PRINT POINTS B; card END
+}
+spread() { inline "$@" > "$w/inline.deck"; run inline; awk '/^  RSS/ { print $2; exit }' "$w/inline.lst"; }
+equal 'both holes' 0.07071 "$(spread "$(card TOLER '' '' '' 0.05)")"
+equal 'one hole' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.05)")"
+equal 'each hole its own' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.04)" "$(card TOLER CRANK '' '' 0.03)")"
+equal 'both holes together' 0.00000 "$(spread "$(card TOLER BOTH '' '' 0.05)")"
+
 # What is rejected.
 # error NAME MESSAGE: the first message of the deck on standard input
 error() {
@@ -112,4 +152,12 @@ plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C       C/' |
    error 'FROM is TO' 'E076 CARD 6 COLUMN 25 FIELD LABEL-C: "C" IS DRAWN AT THE PLACE OF THE OTHER JOINT: THE AXES HAVE NO DIRECTION'
 { card GROUND BASE; card LINK CRANK O T; card POINT O BASE; card POINT O1 CRANK; card POINT T CRANK '' 1.0; card REVOLUTE O O1 PO; echo "$turn"; echo "$hours"; } |
    error 'no drawing' 'E072 CARD 3 COLUMN 17 FIELD LABEL-B: "O" NEEDS A DRAWING, THAT IS JOINT CARDS: AXES ALONG A BAR BEGIN AT A JOINT'
+card TOLER BASE '' '' 0.1 | { read -r bar; inline "$bar" | sed '1d;$d'; } |
+   error 'a hole of another link' 'E044 CARD 8 COLUMN 9 FIELD LABEL-A: "BASE" IS NO LINK OF THE JOINT ABOVE: NAME ONE OF ITS LINKS, OR BOTH'
+inline "$(card TOLER ROD '' '' 0.1)" "$(card TOLER ROD '' '' 0.1)" | sed '1d;$d' |
+   error 'a hole twice' 'E042 CARD 9 COLUMN 1 FIELD NAME: "TOLER" IS A SECOND * OR TOLER CARD FOR THE SAME CARD'
+inline "$(card TOLER ROD '' '' 0.1)" "$(card TOLER '' '' '' 0.1)" | sed '1d;$d' |
+   error 'a hole and all' 'E042 CARD 9 COLUMN 1 FIELD NAME: "TOLER" IS A SECOND * OR TOLER CARD FOR THE SAME CARD'
+inline | sed -e 's/^DRIVE.*/&\nTOLER   CRANK                   0.1/' -e '1d;$d' |
+   error 'a link for a drive' 'E019 CARD 13 COLUMN 9 FIELD LABEL-A: "CRANK" IS IN A FIELD THAT THIS CARD DOES NOT USE'
 conclude

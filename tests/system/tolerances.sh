@@ -20,7 +20,8 @@ toleranced() {
       { print; name = substr($0, 1, 8); gsub(/ /, "", name) }
       index(forms, " " name " ") {
          three = name ~ /^(GROUND|PRISM|DRIVE)$/
-         printf "TOLER                           0.0005          0.0010%s\n", three ? "          0.0015" : ""
+         # Of a JOINT card both holes together: the drawing with other coordinates.
+         printf "%-32s0.0005          0.0010%s\n", "TOLER   " (name == "JOINT" ? "BOTH" : ""), three ? "          0.0015" : ""
       }'
 }
 # differences NAME DECK STEP ALLOWED: the sensitivities of the deck, as those of the `methods`, are central differences, in
@@ -105,12 +106,13 @@ differences 'a drawing' "$w/drawing.deck" 1e-7 1e-8
 # Numbers that are as drawn follow the drawing: direction, length and value of a driven cylinder; h of a guide at an angle,
 # on a link of the ground that has tolerances, with beta, and a driven slide; the value of a driven place.
 tolerance() { card TOLER '' '' '' "$@"; }
+both() { card TOLER BOTH '' '' "$@"; }
 bar=0.0005
 {
    card UNITS M DEG S; card GROUND BASE; card LINK ARM '' '' 0.25 0.5 20.0; card LINK BARREL; card LINK ROD '' '' '' '' 35.0
-   card JOINT O BASE ARM 0.125 0.25; tolerance $bar $bar
-   card JOINT B0 BASE BARREL 1.5 -0.75; tolerance $bar $bar
-   card JOINT B ROD ARM 2.25 1.5; tolerance $bar $bar
+   card JOINT O BASE ARM 0.125 0.25; both $bar $bar
+   card JOINT B0 BASE BARREL 1.5 -0.75; both $bar $bar
+   card JOINT B ROD ARM 2.25 1.5; both $bar $bar
    card POINT TIP ARM 3.0 0.5; card CYLINDER B0 B RAM; card DRIVE SLIDE RAM '' '' 0.25; card AT '' '' '' 0.5 1.5
    card PRINT ALL; card END
 } > "$w/cylinder.deck"
@@ -118,9 +120,9 @@ differences 'a drawn cylinder' "$w/cylinder.deck" 1e-7 1e-8
 drawn_slider() {
    card UNITS M DEG S; card GROUND BASE; card GROUND RAIL '' '' 0.25 0.5 10.0; tolerance $bar $bar $bar
    card LINK CRANK; card LINK ROD; card LINK SLIDER '' '' 3.0 0.5 40.0
-   card JOINT A0 BASE CRANK 0.0 0.125; tolerance $bar $bar
-   card JOINT A CRANK ROD 0.25 1.0; tolerance $bar $bar
-   card JOINT B SLIDER ROD 3.0 0.5; tolerance $bar $bar
+   card JOINT A0 BASE CRANK 0.0 0.125; both $bar $bar
+   card JOINT A CRANK ROD 0.25 1.0; both $bar $bar
+   card JOINT B SLIDER ROD 3.0 0.5; both $bar $bar
    card POINT R RAIL 0.125 0.375; tolerance $bar $bar
    card POINT S SLIDER 0.25 -0.125; tolerance $bar $bar
    card PRISM R S GUIDE -15.0; tolerance $bar
