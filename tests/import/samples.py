@@ -134,6 +134,14 @@ def samples():
             (SLIDER, 'Q', 1, 0, 0, 'CF', 'C', 'F'), (SLIDER | GROUND, 'P', 1, -2, 0)]
     yield 'yoke.pmks', pmks(yoke, [('YR', 'AB', 'AB'), ('YR', 'CF', 'CF'), ('YP', 'BQ', 'BQ'), ('YP', 'CP', 'CP')]), \
         lambda t: {'B': turned((1, 0), (0, 0), rate(10)*t), 'C': (math.cos(rate(10)*t), -2), 'F': (math.cos(rate(10)*t), 2)}
+    # A plate with pins in two parallel slots, lifted by a crank and a rod.
+    plate = [(GROUND | INPUT, 'A', 0, 0, 0), (0, 'B', 0, 1.2, 0), (0, 'C', 0.3, -3.4, 0), (0, 'E', 2.3, -3.4, 0),
+             (SLIDER | GROUND, 'P', 0.3, -3.4, 1.571), (SLIDER | GROUND, 'Q', 2.3, -3.4, 1.571)]
+
+    def plate_at(t):
+        places = on_guide(t)
+        return {**places, 'E': (2.3, places['C'][1])}
+    yield 'plate.pmks', pmks(plate, rods + [('YR', 'CE', 'CE'), ('YP', 'CP', 'CP'), ('YP', 'EQ', 'EQ')]), plate_at
     # A slot in a rocker, with a rider that has no block; two machines, each with its input.
     whitworth = [(GROUND | INPUT, 'A', 0, 0, 0), (SLIDER, 'B', 0, 1, 0, 'PT', 'P', 'T'), (GROUND, 'P', 0.25, -2, 0), (0, 'T', 0.1, 2, 0),
                  (GROUND | INPUT, 'G', 10, 0, 0, '', '', '', decimal(4)), (0, 'H', 11, 0, 0)]

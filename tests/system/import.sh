@@ -29,6 +29,7 @@ $ PINS BY THEIR IDS: A = PIN-A, B = PIN-B, C = PIN-C, E = PIN-E, D = PIN-D
 $NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|
 TITLE   blanks
 UNITS   IN      DEG     S
+METHOD  NEWTON                                  1.0E-3
 GROUND  BASE
 LINK    PIN-AB
 LINK    PIN-BCE
