@@ -37,6 +37,7 @@ parts() {
    slots|10|tests/system/slots.sh
    lengths|50|tests/system/lengths.sh
    what a drawing needs|30|tests/system/drawn.sh
+   tables become decks|15|tests/system/columns.sh
    extremes|42|tests/system/answers.sh
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40

@@ -74,7 +74,7 @@ contains
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: place(:, :)    !< (2, points) places of these points in the drawing
       real(wp) :: axes(3)
-      integer :: i
+      integer :: i, k
 
       do i = 1, size(m%links)
          associate (link => m%links(i))
@@ -90,6 +90,21 @@ contains
             if (point%link == 0 .or. .not. (point%drawn .or. point%moves)) cycle
             point%offset = rotated(place(:, i) - m%links(point%link)%position(:2), &
                direction(-m%links(point%link)%position(3)))
+         end associate
+      end do
+      ! The end of a bar lies on its axis, where its length says, without a rounding.
+      if (.not. allocated(m%lengths)) return
+      do i = 1, size(m%lengths)
+         associate (p => m%points(m%lengths(i)%point(1)), q => m%points(m%lengths(i)%point(2)))
+            if (p%link /= q%link .or. .not. all(m%links(q%link)%along)) cycle
+            do k = 1, size(m%points)
+               associate (from => m%points(m%links(q%link)%from), to => m%points(m%links(q%link)%to))
+                  if (m%points(k)%hole /= to%hole .or. m%points(k)%link /= q%link) cycle
+                  if (all([from%hole, to%hole] == m%lengths(i)%hole) .or. &
+                     all([to%hole, from%hole] == m%lengths(i)%hole)) &
+                     m%points(k)%offset = [m%lengths(i)%length, 0.0_wp]
+               end associate
+            end do
          end associate
       end do
    end subroutine put_axes

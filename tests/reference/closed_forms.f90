@@ -4,8 +4,11 @@ module closed_forms
    use structure, only: findings_t
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
-   use closed_forms_linkages, only: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
-   use closed_forms_sliders, only: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, cylinder, trammel
+   use closed_forms_linkages, only: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph, &
+      book_four_bar
+   use closed_forms_sliders, only: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, &
+      crank_shaper, cylinder, &
+      trammel
    use closed_forms_legs, only: andrews, jansen
    use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
    use closed_forms_robots, only: three_rrr, three_rrr_cranks, excavator, xy_table, scissor
@@ -28,9 +31,12 @@ module closed_forms
       integer :: links, revolute, prismatic, drives   !< links with the ground
       integer :: ground = 1
       integer :: redundant = 0                        !< pairs' equations that the others already hold
+      integer :: blocks = 0                           !< of slots: no link and no revolute pair of the tables
    end type count_t
 
    type(count_t), parameter :: counts(*) = [ &
+      count_t('book_four_bar', 4, 4, 0, 1), count_t('geneva_slot', 3, 2, 1, 1, blocks=1), &
+      count_t('crank_shaper', 5, 4, 2, 1, blocks=1), &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
       count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), &
       count_t('crank_rockers', 4, 4, 0, 1), &
@@ -170,6 +176,13 @@ contains
          links = drawing(1, t)
       case ('geneva')
          links = geneva(t)
+      case ('geneva_slot')
+         links = geneva(t)
+         links(4)%name = ''
+      case ('crank_shaper')
+         links = crank_shaper(t)
+      case ('book_four_bar')
+         links = book_four_bar(t)
       case ('points_meet')
          links = points_meet(t)
       case ('boom', 'leverage', 'jacobian')
@@ -258,8 +271,8 @@ contains
          f%revolute = counts(i)%revolute
          f%prismatic = counts(i)%prismatic
          f%drives = counts(i)%drives
-         f%coordinates = 3*f%links
-         f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
+         f%coordinates = 3*(f%links + counts(i)%blocks)
+         f%equations = 2*(f%revolute + f%prismatic + counts(i)%blocks) + 3*f%ground
          ! In every one of these mechanisms the freedoms are driven one by one; (13) counts each equation.
          f%degrees_of_freedom = f%drives - counts(i)%redundant
       end do

@@ -8,7 +8,8 @@ module closed_forms_linkages
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
-   public :: four_bar, crank_rockers, drawing, drawn_link, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   public :: four_bar, crank_rockers, drawing, drawn_link, rise_dwell, drag_link, peaucellier, five_bar, pantograph, &
+      book_four_bar
 
    !> Crank, coupler and rocker of the crank-rocker.
    real(qp), parameter :: sizes(3) = [1.0_qp, 3.5_qp, 3.0_qp]
@@ -29,6 +30,22 @@ contains
          links = crank_rocker(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), -1.0_qp, sizes)
       end if
    end function four_bar
+
+   !> The four-bar of a book by its lengths 30, 70, 65 and 90, open; the axes of each link lie along its bar.
+   pure function book_four_bar(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      type(jet_t) :: phi
+      type(place_t) :: a0, a, b, b0
+
+      phi = (30.0_qp + 60.0_qp*time_jet(t))*degree_q
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(90.0_qp, 0.0_qp)
+      a = polar(a0, 30.0_qp, phi)
+      b = third_corner(a, b0, constant_jet(70.0_qp**2), constant_jet(65.0_qp**2), 1.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
+               body('ROCKER', b0, direction(b0, b))]
+   end function book_four_bar
 
    !> The variant number `n` of the open crank-rocker: three cranks, each with its coupler, and two rockers for each.
    pure function crank_rockers(n, t) result(links)

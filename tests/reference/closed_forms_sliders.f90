@@ -8,7 +8,7 @@ module closed_forms_sliders
    use closed_forms_linkages, only: drawn_link
    implicit none
    private
-   public :: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, cylinder, trammel
+   public :: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, crank_shaper, cylinder, trammel
 
 contains
 
@@ -151,6 +151,26 @@ contains
          body_vector), &
                body('ROD', tail, direction(tail, ram)), body('RAM', ram, flat)]
    end function whitworth
+
+   !> Crank shaper: crank 0.75 about (0, 2), its pin in the slot of an arm about (0, 0), whose end at 4 drives by a rod of 2
+   !> the ram on y = 4.5. The block in the slot has no name.
+   pure function crank_shaper(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6)
+      type(jet_t) :: phi, arm, flat
+      type(place_t) :: o, centre, pin, tip, ram
+
+      phi = (90.0_qp + 36.0_qp*time_jet(t))*degree_q
+      flat = constant_jet(0.0_qp)
+      o = fixed_place(0.0_qp, 0.0_qp)
+      centre = fixed_place(0.0_qp, 2.0_qp)
+      pin = polar(centre, 0.75_qp, phi)
+      arm = direction(o, pin)
+      tip = polar(o, 4.0_qp, arm)
+      ram = on_level(tip, 2.0_qp, 4.5_qp, 1.0_qp)
+      links = [body('BASE', o, flat), body('CRANK', centre, phi), body('ARM', o, arm), &
+               body('ROD', tip, direction(tip, ram)), body('RAM', ram, flat), body('', pin, arm)]
+   end function crank_shaper
 
    !> A boom about (0, 0) lifted by a cylinder from (1, -1) to the boom's eye (2, 0.25). The cylinder's line misses
    !> its foot by h = 0.125: eye = foot + s e - h n, so the eye is at the distance sqrt(s^2 + h^2) from the foot, in

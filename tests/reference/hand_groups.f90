@@ -64,6 +64,9 @@ module hand_groups
       statement_t('drawing', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('transmission', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('geneva', 0, '*CRANK; WHEEL BLOCK'), &
+      statement_t('geneva_slot', 0, '*CRANK; WHEEL'), &
+      statement_t('crank_shaper', 0, '*CRANK; ARM; ROD RAM'), &
+      statement_t('book_four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('points_meet', 0, '*BLOCK; *CROSS'), &
       statement_t('boom', 0, '*BOOM BARREL ROD'), &
       statement_t('leverage', 0, '*ARM'), &
@@ -222,7 +225,8 @@ contains
       is_in = .false.
       from = merge(2, 1, g%driven)
       do k = 1, size(m%links)
-         is_in(k) = index(' '//text(from:)//' ', ' '//trim(m%links(k)%name)//' ') > 0
+         ! The block of a slot has no name.
+         is_in(k) = m%links(k)%name /= '' .and. index(' '//text(from:)//' ', ' '//trim(m%links(k)%name)//' ') > 0
       end do
       g%links = pack([(i, i=1, size(m%links))], is_in)
    end function group
