@@ -164,7 +164,8 @@ contains
       process_count = o%options%jobs
       work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
       if (process_count == 0) process_count = merge(processor_count(), 1, work > least_work)
-      if (o%options%check .or. any(o%asked([out_svg, out_animation, out_circuits, out_dxf])) .or. any(o%files%error /= 0)) &
+      if (o%options%check .or. any(o%asked([out_svg, out_animation, out_circuits, out_dxf])) &
+         .or. any(o%files%error /= 0)) &
          process_count = 1
       process_count = min(process_count, sum(max(1, sets%variants)))
    end function process_count
@@ -246,11 +247,11 @@ contains
       if (o%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
 
-   !> Exports set number `i` of the file for CAD, `m`, at the instants of the deck. Its analysis is its own, as that of a
-   !> picture.
+   !> Exports set number `i` of the file for CAD, `m`, at the instants of the deck. Its analysis is its own, as that
+   !> of a picture.
    subroutine export_set(m, i, o)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the set in the file, from 1
       type(writers_t), intent(inout) :: o
       type(set_analysis_t) :: a
       type(drawing_t) :: d

@@ -75,9 +75,9 @@ contains
       if (k == p%next) p%next = k + minval(p%every - mod(k, p%every))
    end function is_next
 
-   !> Prints instant `k`, counted from 0, to which `a` has advanced, in each output that has something of it. If rows are
-   !> not printed at it, an instant without remarks has nothing to print, unless p%each. Errors are estimated only for
-   !> what is shown.
+   !> Prints instant `k`, counted from 0, to which `a` has advanced, in each output that has something of it. If rows
+   !> are not printed at it, an instant without remarks has nothing to print, unless p%each. Errors are estimated only
+   !> for what is shown.
    subroutine print_instant(p, o, a, k, due)
       type(printing_t), intent(inout) :: p
       type(writers_t), intent(inout) :: o

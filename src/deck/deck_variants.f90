@@ -303,9 +303,10 @@ contains
       end subroutine read_values
    end subroutine build_variation
 
-   !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT cards
-   !> depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term of a
-   !> drive is defined depends on those of TIME; the last instant depends on the rate, if TIME counts turns. The block of a slot is where the cards put the point in it.
+   !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT
+   !> cards depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term
+   !> of a drive is defined depends on those of TIME; the last instant depends on the rate, if TIME counts turns. The
+   !> block of a slot is where the cards put the point in it.
    pure logical function stands_alone(set, form)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: form

@@ -153,8 +153,8 @@ contains
          end do
       end subroutine put_centres
 
-      !> Writes the names of points and links where they stand best at the first frame. Each keeps its distance from what
-      !> it names.
+      !> Writes the names of points and links where they stand best at the first frame. Each keeps its distance from
+      !> what it names.
       subroutine put_names()
          type(label_t), allocatable :: labels(:)
          real(wp) :: by(2, size(frame)), offset(2)

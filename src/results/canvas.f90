@@ -91,8 +91,8 @@ contains
       c%m => d%m
       c%s = s
 
-      ! What is drawn: all shapes at the position in full, those of moving links at the others, paths; and centrodes that
-      ! stay near. One that runs far away would take the room of all else.
+      ! What is drawn: all shapes at the position in full, those of moving links at the others, paths; and centrodes
+      ! that stay near. One that runs far away would take the room of all else.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
       list = shapes_of(d, 1.0_wp)
@@ -342,7 +342,8 @@ contains
    end function cell_of
 
    !> Finds the place of the `name` of what is at one of the pixels `p` (2, :), where it covers the least of what is
-   !> drawn, or is nearer to it than `clear` (pixels): of places on eight sides at several distances. It is noted as drawn.
+   !> drawn, or is nearer to it than `clear` (pixels): of places on eight sides at several distances. It is noted as
+   !> drawn.
    subroutine place_name(c, p, clear, name, label)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(:, :), clear

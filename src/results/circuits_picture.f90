@@ -237,8 +237,8 @@ contains
          end do
       end function first_equal
 
-      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `q` (2, :),
-      !> but for whole turns.
+      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `q` (2,
+      !> :), but for whole turns.
       pure logical function lies_on(p, q)
          real(wp), intent(in) :: p(:, :), q(:, :)
          real(wp) :: a(2), u(2), v(2), least

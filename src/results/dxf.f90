@@ -96,8 +96,8 @@ contains
       call put_pair(o, 0, 'EOF')
    end subroutine end_dxf
 
-   !> Writes the entities of the drawing `d` of a set, whose first frame is the first instant, and the `paths`. Layers of
-   !> the first set of the file have no number.
+   !> Writes the entities of the drawing `d` of a set, whose first frame is the first instant, and the `paths`. Layers
+   !> of the first set of the file have no number.
    subroutine put_dxf(o, d, paths, number)
       type(output_t), intent(inout) :: o
       type(drawing_t), intent(in) :: d
@@ -196,6 +196,7 @@ contains
       call put_number(o, 30 + which, 0.0_wp)
    end subroutine put_place
 
+   !> Writes a number with the group code `code`.
    subroutine put_number(o, code, x)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: code

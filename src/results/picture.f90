@@ -212,8 +212,8 @@ contains
       call add_lines(c, line, arrow_weight)
    end subroutine put_arrow_line
 
-   !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a line
-   !> with its place at the foot of the `page`.
+   !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a
+   !> line with its place at the foot of the `page`.
    subroutine put_centre(c, page, i)
       type(canvas_t), intent(inout) :: c
       type(page_t), intent(inout) :: page
@@ -262,8 +262,8 @@ contains
             call put_group(c%o, 'class="velocity" '//attribute('data-point', trim(c%m%points(point)%name)) &
                //' data-scale="'//full(scale)//'"', '')
             tip = p + scale*v(:, k)
-            call put_arrow_line(c, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), 'class="arrow"', &
-               'class="tip arrow"')
+            call put_arrow_line(c, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
+               'class="arrow"', 'class="tip arrow"')
             call put_end(c%o, 'g')
          end associate
       end do

@@ -25,8 +25,8 @@ module shapes
    end type element_t
 
    !> Links take these in turn; what belongs to the ground has its own.
-   character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a', &
-      '#7d8c1f', '#5a6b7b', '#e07a8b', '#1f3f7a', '#c2a83e']
+   character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', &
+      '#b0528a', '#7d8c1f', '#5a6b7b', '#e07a8b', '#1f3f7a', '#c2a83e']
    character(*), parameter :: ground_color = '#222', ground_block = '#dddddd'
    real(wp), parameter :: joint_radius = 4.5_wp, point_radius = 2.5_wp
    !> Half the length and width of a block. A guide goes on by so much beyond the places of its block, so that a block's
