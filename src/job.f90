@@ -21,7 +21,7 @@ module job
    use solver_log, only: log_head
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use svg, only: page_t, begin_page, end_page
-   use dxf, only: path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
+   use dxf, only: point_path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
    use picture, only: put_picture
    use animation, only: put_animation
    use circuits, only: circuits_t
@@ -255,7 +255,7 @@ contains
       type(writers_t), intent(inout) :: o
       type(set_analysis_t) :: a
       type(drawing_t) :: d
-      type(path_t), allocatable :: paths(:)
+      type(point_path_t), allocatable :: paths(:)
       integer :: k
 
       call make_set_analysis(with_all_links(m), a)

@@ -14,16 +14,16 @@ module dxf
    use text_output, only: output_t, put
    implicit none
    private
-   public :: path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
+   public :: point_path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
 
    !> The path of a point.
-   type :: path_t
+   type :: point_path_t
       integer :: request = 0                 !< the row of the point, among the requests of the set
       real(wp), allocatable :: p(:, :)       !< (2, instants) in the deck's coordinates
       logical, allocatable :: known(:)       !< (instants)
       type(motion_t), allocatable :: first(:)   !< (parts) the motions at the first instant; of the first path alone
       logical :: is_closed = .false.         !< the motion of the set closes; of the first path alone
-   end type path_t
+   end type point_path_t
 
    !> Significant digits of a number.
    integer, parameter :: digits = 12
@@ -36,7 +36,7 @@ contains
    subroutine new_paths(m, s, paths)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s    !< the motion of the set `m`
-      type(path_t), allocatable, intent(out) :: paths(:)
+      type(point_path_t), allocatable, intent(out) :: paths(:)
       integer :: i, count, instants
 
       instants = m%steps + 1
@@ -56,7 +56,7 @@ contains
 
    !> Adds instant number `k`, from 0, of the motion `s` to the `paths`; the last one tells whether the motion closes.
    subroutine note_paths(paths, s, k)
-      type(path_t), intent(inout) :: paths(:)
+      type(point_path_t), intent(inout) :: paths(:)
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(row_t) :: row
@@ -101,7 +101,7 @@ contains
    subroutine put_dxf(o, d, paths, number)
       type(output_t), intent(inout) :: o
       type(drawing_t), intent(in) :: d
-      type(path_t), intent(in) :: paths(:)
+      type(point_path_t), intent(in) :: paths(:)
       integer, intent(in) :: number          !< of the set in the file, from 1
       character(:), allocatable :: layer
       real(wp), allocatable :: p(:, :)
@@ -145,7 +145,7 @@ contains
    subroutine put_path(o, layer, path, closes)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: layer
-      type(path_t), intent(in) :: path
+      type(point_path_t), intent(in) :: path
       logical, intent(in) :: closes
       integer :: first, last, k
 
