@@ -142,7 +142,7 @@ pictures: $(BUILD)/kinmat
 # time takes half a minute, and saves 2.5 per cent of a step.
 shared: $(BUILD)/libkinmat.so.2
 $(BUILD)/libkinmat.so.2: bindings/kinmat.map $(BUILD)/release/libkinmat.a
-	$(call say,LD,$(@F))$(FC) $(COMMON) $(release) $(no_lto) -shared -Wl,-soname,$(@F) -Wl,--version-script=$< -Wl,-u,kinmat_read -o $@ $(BUILD)/release/libkinmat.a $(LIBS)
+	$(call say,LD,$(@F))$(FC) $(COMMON) $(release) $(no_lto) -shared -Wl,--no-undefined -Wl,-soname,$(@F) -Wl,--version-script=$< -Wl,-u,kinmat_read -o $@ $(BUILD)/release/libkinmat.a $(LIBS)
 
 # A program of one's own with the modules.
 example: $(BUILD)/example

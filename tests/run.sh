@@ -18,8 +18,8 @@ parts() {
    cards and options together|1000|tests/system/together.sh
    the command|480|tests/system/command.sh
    what is installed|22|tests/system/install.sh
-   the library for C and Python|120|tests/system/library.sh
-   drawings of other programs|66|tests/system/import.sh
+   the library for C and Python|140|tests/system/library.sh
+   drawings of other programs|50|tests/system/import.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|255|tests/system/output.sh
    unit tests|500|"$MAKE" --no-print-directory unit
