@@ -332,7 +332,7 @@ $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
 documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib/pkgconfig share/kinmat share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
-	install -m 755 $(BUILD)/kinmat contrib/kinmat-import $(DESTDIR)$(PREFIX)/bin
+	install -m 755 $(BUILD)/kinmat $(wildcard contrib/kinmat-*) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 755 $(BUILD)/libkinmat.so.2 $(DESTDIR)$(PREFIX)/lib
