@@ -23,7 +23,7 @@ LIBS   ?= -lklu -llapack -lblas
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized \
-   -ffp-contract=off
+   -ffp-contract=off $(COVERAGE)
 # real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
 # Two parts at the link are enough for two processors, and have less to exchange than the many of the default.
 # Neighbours are not computed in pairs: to load as a pair what was stored one by one takes up to 9 per cent of a step.
@@ -113,7 +113,7 @@ modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1)))
 hot  := $(filter-out picture% animation canvas drawing svg circuit% set_circuits ranges dwells,\
    $(call modules_in,base linear mechanism blocks continuation perturbed proof rows answers $(if $(filter single,$(KIND)),,results)))
 warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
-less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
+less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O% -fPIC,$(RELEASE))))
 $(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
 $(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)
 # Loops over lanes are of few turns: without counting them, and without calls to copy so little, a step takes a tenth less.

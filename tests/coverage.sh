@@ -3,10 +3,9 @@
 # Files below 90 per cent come first. BUILD: the directory of the builds; each is compiled again, without optimization.
 cover=$BUILD/coverage
 : "${MAKE:=make}"
-flags='-O0 --coverage'
 tests/run.sh --list | grep -vE '^(real128|single precision|speed against error|results of the methods|what is installed|the stand-in|the sources|the closed forms|the documents|estimates of errors|proofs|nothing false|the library|drawings|the digits|the method of 1987|what is hard|the tool of mutants)' \
    > "$BUILD/coverage.parts"
-"$MAKE" --no-print-directory BUILD="$cover" RELEASE="$flags" DEBUG="$flags" "$cover/kinmat" "$cover/debug/kinmat" "$cover/debug/fuzz" "$cover/tests/unit" \
+"$MAKE" --no-print-directory BUILD="$cover" COVERAGE=--coverage RELEASE=-O0 DEBUG=-O0 "$cover/kinmat" "$cover/debug/kinmat" "$cover/debug/fuzz" "$cover/tests/unit" \
    "$cover/release/read_listing" $(for name in circuits_by_chance twins_by_chance dwells_by_chance random_blocks fuzz_mechanisms extremes_by_chance print_expected; do echo "$cover/release/$name"; done) || exit 3
 find "$cover" -name '*.gcda' -exec rm {} +
 mkdir -p "$cover/expected" && cp expected/*.lst "$cover/expected"
@@ -14,7 +13,7 @@ PARTS=$BUILD/coverage.parts BUILD=$cover tests/run.sh > "$BUILD/coverage.log" 2>
 tail -n 1 "$BUILD/coverage.log"
 # A line is run if one of the builds runs it.
 for build in release debug; do
-   find "$cover/$build" -name '*.gcda' | xargs -r gcov -t 2> "$BUILD/coverage.err"
+   find "$cover/$build" -name '*.gcno' | xargs -r gcov -t 2> "$BUILD/coverage.err"
 done | awk -F: '
    $3 == "Source" || $2 + 0 == 0 { if ($3 == "Source") { file = $4; ours = file ~ /^src\// } next }
    !ours || $1 ~ /-[ ]*$/ { next }
