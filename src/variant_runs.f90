@@ -41,19 +41,19 @@ contains
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
-      logical :: full, has_ratios
+      logical :: full, has_more              ! tables; ratios or cylinders
       integer :: n, k
 
       n = first
       full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
-      has_ratios = any([(any(m%parts(k)%requests%drive > 0), k=1, m%count)])
+      has_more = any([(any(m%parts(k)%requests%drive > 0) .or. any(m%parts(k)%pairs%is_cylinder), k=1, m%count)])
       layout = new_layout(m)
       summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
          call put_variant_heads(o%files(out_listing), summary)
       end if
-      if (are_together(m, full .or. has_ratios, o)) then
+      if (are_together(m, full .or. has_more, o)) then
          call run_together()
       else
          do while (n <= last)
@@ -168,11 +168,11 @@ contains
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables or ratios,
-   !> or not: then as many are solved together as there are lanes.
+   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables, ratios
+   !> or cylinders, or not: then as many are solved together as there are lanes.
    pure logical function are_together(m, not_have, o)
       class(settings_t), intent(in) :: m
-      logical, intent(in) :: not_have        !< the set has tables or ratios, which lanes do not have
+      logical, intent(in) :: not_have        !< the set has tables, ratios or cylinders, which lanes do not have
       class(outputs_t), intent(in) :: o
 
       are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. m%closing > 0.0_wp .or. &

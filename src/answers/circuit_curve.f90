@@ -10,7 +10,7 @@
 module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
-   use mechanism, only: mechanism_t, drive_x, drive_y
+   use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
    use drive_path, only: drive_path_t
    use separations, only: separation
    use scales, only: is_length
@@ -19,10 +19,11 @@ module circuit_curve
    use closure_equations, only: residual, jacobian, remainder, find_drive_values
    use root_distance, only: coordinates_t, new_coordinates, measure_slides, distance, forms_by_inverse, kantorovich, &
       change_along
+   use cylinders, only: cylinder_t, cylinders_of, cylinder_length
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
-   public :: of_value, of_slope, of_bend, of_size
+   public :: of_value, of_slope, of_bend, of_size, of_gap
    public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, &
       same_place, same, reversed
 
@@ -37,15 +38,17 @@ module circuit_curve
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
 
-   !> The numbers of a position on the curve: the drive's value, its first and second derivative, and the largest
-   !> coordinate in lengths.
+   !> The numbers of a position on the curve: the drive's value, its first and second derivative, the largest coordinate
+   !> in lengths, and the shortest length of a cylinder in the deck's unit.
    enum, bind(c)
-      enumerator :: of_value = 0, of_slope, of_bend, of_size
+      enumerator :: of_value = 0, of_slope, of_bend, of_size, of_gap
    end enum
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
       type(system_t) :: driven                !< with the drive that is free as well: its row is the last
+      type(cylinder_t), allocatable :: cylinders(:)
+      logical :: drives_cylinder = .false.    !< the free drive is that of the length of one
       real(wp), allocatable :: held(:)        !< (drives) the values of those that are held, and 0 of the free one
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
@@ -61,7 +64,7 @@ module circuit_curve
       real(wp), allocatable :: q(:, :)        !< (3, links) x, y, phi
       real(wp), allocatable :: tangent(:)     !< (coordinates) unit vector
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
-      real(wp) :: value(of_value:of_size) = 0.0_wp
+      real(wp) :: value(of_value:of_gap) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
       real(wp) :: room = 0.0_wp               !< within it no other curve comes near, whatever the direction
       logical :: is_dead = .false.            !< the drive turns back here
@@ -81,6 +84,8 @@ contains
       integer :: i
 
       c%closure = new_system(m)
+      c%cylinders = cylinders_of(m, .false.)
+      if (m%drives(drive)%kind == drive_slide) c%drives_cylinder = m%pairs(m%drives(drive)%subject)%is_cylinder
       c%driven = c%closure
       call find_drive_values(c%closure, drive_path_t(m%drives), t, f)
       c%first = f(1, drive)
@@ -262,6 +267,18 @@ contains
       same_place = maxval(separation(a, b, 1.0_wp)) <= same
    end function same_place
 
+   !> Finds the shortest length of a cylinder at the position `q` (3, links), in the deck's unit.
+   pure real(wp) function shortest(c, q)
+      type(curve_t), intent(in) :: c
+      real(wp), intent(in) :: q(:, :)
+      real(wp) :: position(3, size(q, 2))
+      integer :: k
+
+      position = deck_position(c, q)
+      shortest = minval([(cylinder_length(c%cylinders(k), position(:, c%cylinders(k)%i), &
+         position(:, c%cylinders(k)%j)), k=1, size(c%cylinders))])
+   end function shortest
+
    !> The point `p` near the position `q` (3, links) at which `border` (coordinates) times the difference from `q` is 0.
    !> Its tangent has the sense of `border`.
    subroutine find_point(c, q, border, p, ok)
@@ -295,6 +312,7 @@ contains
       p%value(of_slope) = dot_product(row, p%tangent)
       p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
       p%value(of_size) = maxval(abs(p%q(:2, :)))
+      if (size(c%cylinders) > 0) p%value(of_gap) = shortest(c, p%q)
       call find_reach(c, along, p)
    end subroutine find_point
 

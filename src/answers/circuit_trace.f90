@@ -4,13 +4,14 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, of_value, of_slope, of_bend, of_size, step_along, step_between, &
+   use circuit_curve, only: curve_t, curve_point_t, of_value, of_slope, of_bend, of_size, of_gap, step_along, &
+      step_between, &
       lies_between, offset_from, reversed
    use drives, only: halve, middle_of
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, trace, least_step, find_root, end_closed, end_far, end_lost
+   public :: circuit_t, trace, least_step, find_root, end_closed, end_far, end_lost, end_shut
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
@@ -22,9 +23,10 @@ module circuit_trace
    !> sense in which the drive moves.
    real(wp), parameter :: unsure = 16.0_wp*epsilon(1.0_wp)
 
-   !> How a circuit ends: it closes, a slide goes to infinity, or it can be followed no further.
+   !> How a circuit ends: it closes, a slide goes to infinity, it can be followed no further, or a cylinder has the
+   !> length 0.
    enum, bind(c)
-      enumerator :: end_closed = 1, end_far, end_lost
+      enumerator :: end_closed = 1, end_far, end_lost, end_shut
    end enum
 
    type :: circuit_t
@@ -114,7 +116,15 @@ contains
          closes = .false.
          if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
          if (closes) b = again
-         if (b%value(of_size) > c%far) then
+         if (b%value(of_gap) <= 0.0_wp) then
+            closes = .false.
+            circuit%ends(2) = end_shut
+            call find_root(c, a, b, of_gap, 0.0_wp, again, ok)
+            if (ok) b = again
+            ! Nothing is passed there.
+            if (circuit%points(n)%is_change) n = n - 1
+            if (c%drives_cylinder) b%value(of_value) = 0.0_wp
+         else if (b%value(of_size) > c%far) then
             circuit%ends(2) = end_far
             call find_root(c, a, b, of_size, c%far, again, ok)
             if (ok) b = again

@@ -15,7 +15,7 @@ module circuits
    use analysis, only: analysis_t, make_analysis, advance
    use assemblies, only: assemblies_t, assembly_t, find_assemblies
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      of_size, step_between, lies_between, same_place, same
+      of_size, of_gap, step_between, lies_between, same_place, same
    use circuit_trace, only: circuit_t, trace, least_step, end_closed
    use ranges, only: held_at, put_estimate
    implicit none
@@ -188,7 +188,8 @@ contains
       if (.not. needed .and. (found%are_more .or. signal_received() > 0)) return
       call start_point(found%curve, position, p, ok)
       if (.not. ok) return
-      if (.not. needed .and. (p%room < least_step .or. p%value(of_size) > found%curve%far)) return
+      if (.not. needed .and. (p%room < least_step .or. p%value(of_size) > found%curve%far .or. &
+         p%value(of_gap) <= same*found%curve%closure%length)) return
       call locate(found, p, i, k)
       if (i > 0) return
       found%are_more = found%are_more .or. .not. needed .and. (n > max_circuits .or. found%work > max_work)

@@ -11,6 +11,7 @@ module ranges
    use drives, only: drive_motion
    use drive_path, only: lead
    use scales, only: is_length, characteristic_length
+   use cylinders, only: cylinders_of
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
@@ -110,6 +111,7 @@ contains
       first = new_motion(size(d%links))
       now = first
       call make_analysis(a, d)
+      a%engine%cylinders = cylinders_of(d, .true.)
       value = d%drives(r%drive)%polynomial(1)
       call lead(a%engine%path, r%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
       call advance(a, 0.0_wp, first)

@@ -8,7 +8,8 @@
 module first_instant
    use kinds, only: wp
    use planar, only: without_turns
-   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent
+   use cylinders, only: cylinder_length
+   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent, ended_elsewhere
    use motion, only: motion_t, new_motion
    use blocks, only: largest_known, blocks_below, own_unknowns
    use block_state, only: set_values, values_of, add_turns
@@ -82,8 +83,9 @@ contains
       rest = nothing_gathered
       if (is_solved(c)) call solve_each(e, pack([(i, i=1, size(found))], &
          [(all(e%blocks%needed /= i), i=1, size(found))]), .false., rest)
-      is_complete = is_solved(c) .and. is_solved(rest)
       places = places_of(e)
+      is_complete = is_solved(c) .and. is_solved(rest)
+      if (is_complete) is_complete = has_lengths(e, [(i, i=1, size(e%cylinders))])
 
       ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
       turn = 0.0_wp
@@ -296,7 +298,7 @@ contains
       call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, found%ending)
       if (is_solved(found%ending)) call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
       if (e%blocks%list(i)%direct) return
-      if (is_solved(found%ending)) then
+      if (size(found%distance) > 0) then
          found%beyond = separation_of(e%blocks, e%geometry, i, e%state, found%ending) - angles
          if (about_equal*found%beyond >= budget) return
          found%beyond = unbounded
@@ -316,6 +318,7 @@ contains
       call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, found%ending)
       if (is_solved(found%ending)) then
          call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
+         if (size(found%distance) == 0) found%ending%ended = ended_elsewhere
       else
          call set_values(e%blocks, i, least, e%state)
          call find_closure_error(e%blocks, e%geometry, i, e%state, found%ending)
@@ -325,7 +328,8 @@ contains
 
       !> Puts the position `x` in its place among those found, unless it is there already. Its angles are brought within
       !> half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that with
-      !> the greater first value: rounding shall not choose.
+      !> the greater first value: rounding shall not choose. A position with a cylinder whose length is not above
+      !> 0 is none.
       subroutine note_position(x, is_singular)
          real(wp), intent(in) :: x(:)
          logical, intent(in) :: is_singular
@@ -342,6 +346,7 @@ contains
          end associate
          call set_values(e%blocks, i, y, e%state)
          call add_turns(e%blocks, e%geometry, i, e%state)
+         if (.not. has_lengths(e, pack([(k, k=1, size(e%cylinders))], last_places(e, places) == i))) return
          y = values_of(e%blocks, i, e%state)
          square = squares_of(e, guess)
          angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
@@ -357,6 +362,35 @@ contains
          found%distance = [found%distance(:k - 1), distance, found%distance(k:)]
       end subroutine note_position
    end subroutine find_candidates
+
+   !> (cylinders) The block after which the length of each cylinder of `e` is known; 0: ground alone.
+   pure function last_places(e, places) result(last)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      integer :: last(size(e%cylinders)), k
+
+      last = [(maxval(places(:, [e%cylinders(k)%i, e%cylinders(k)%j])), k=1, size(last))]
+   end function last_places
+
+   !> Tells whether those of the cylinders of `e` that have the numbers `list` have lengths above 0 at its values.
+   function has_lengths(e, list) result(has)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: list(:)
+      logical :: has
+      type(motion_t) :: q
+      logical :: finite
+      integer :: k
+
+      has = .true.
+      if (size(list) == 0) return
+      q = new_motion(size(e%estimate, 2))
+      call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
+      do k = 1, size(list)
+         associate (one => e%cylinders(list(k)))
+            has = has .and. cylinder_length(one, q%position(:, one%i), q%position(:, one%j)) > 0.0_wp
+         end associate
+      end do
+   end function has_lengths
 
    !> (2, links) The block that finds the angle of each link of `e`, and the block after which its place is known; 0:
    !> none.

@@ -4,6 +4,7 @@ module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, has_guide
    use scales, only: is_length
+   use cylinders, only: cylinder_t, cylinders_of
    use motion, only: motion_t, new_motion
    use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
@@ -63,6 +64,7 @@ module block_engine
       type(blocks_t), allocatable :: blocks
       type(geometry_t), allocatable :: geometry
       type(drive_path_t) :: path                        !< of its drives
+      type(cylinder_t), allocatable :: cylinders(:)     !< its cylinders
       real(wp), allocatable :: estimated(:)             !< (0:unknowns) from the deck's positions
       real(wp), allocatable :: estimate(:, :)           !< (3, links) places from the chain's origin, angles of the deck
       type(choice_t), allocatable :: choice(:)          !< (blocks) of their positions at the first instant
@@ -93,6 +95,7 @@ contains
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_path(m, e%blocks, e%geometry, e%path)
+      e%cylinders = cylinders_of(m, .false.)
       call begin_state(e, m)
    end subroutine make_block_engine
 
@@ -143,6 +146,7 @@ contains
       x%tolerance = m%tolerance
       call put_chain(m, b, x, x%chain)
       call put_path(m, b, x, path)
+      e%cylinders = cylinders_of(m, .false.)
    end subroutine put_geometry
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,

@@ -28,12 +28,13 @@
 !> | lost, beyond | is beyond a limit    | pass_over | beyond    | that it is beyond                                 |
 module analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t, method_newton, drive_slide
    use structure, only: structure_t
-   use drive_path, only: moving_drives, time_beside
+   use drive_path, only: moving_drives, time_beside, drive_at
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
+      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end, &
+      diagnostic_stroke, mark_stroke
    use convergence, only: convergence_t, nothing_gathered, is_solved, ended_inconsistent, ended_unsought, &
       ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
@@ -42,7 +43,10 @@ module analysis
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use at_bifurcation, only: go_by_value, leave
-   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, &
+   use scales, only: is_length
+   use cylinders, only: cylinder_length, is_out_of_stroke
+   use following, only: lengths_followed, following_t, &
+      step_record_t, step_blocked, step_creeps, step_there, step_stands, &
       step_rests, begin_following, continue_to, go_on_from, go_back, place_t, note_place, return_to, passed_of, &
       limit_t, limit_before, branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
@@ -135,6 +139,7 @@ contains
       call reach(a, t, step, list)
       if (step%ending >= step_there) then
          call arrive(a, step, list, found)
+         if (size(a%engine%cylinders) > 0) call flag_strokes(a, found)
       else
          call stop_at(a, t, step, found)
       end if
@@ -409,6 +414,7 @@ contains
          if (step%ending == step_creeps) &
             ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
          list = limit_diagnostic(a%engine, ahead, step%ending == step_creeps)
+         if (a%follows .and. size(a%engine%cylinders) > 0) call find_length_limit(a, t, list)
          if (size(list) == 0 .and. a%follows .and. step%ending == step_blocked) &
             list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
       end if
@@ -531,4 +537,63 @@ contains
       redundancy_error = -1.0_wp
       if (a%engine%blocks%redundant > 0) redundancy_error = a%max_closure_error
    end function redundancy_error
+
+   !> Puts the limit at which the length of a cylinder comes to its bound in the place of `list`, if the motion that is
+   !> followed on the way to `t` is that near.
+   subroutine find_length_limit(a, t, list)
+      type(analysis_t), intent(in) :: a
+      real(wp), intent(in) :: t              !< time
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t) :: limit
+      real(wp) :: lengths(0:2, size(a%engine%cylinders)), f(3), left, nearest
+      integer :: d, k, side
+
+      lengths = lengths_followed(a%following_t)
+      nearest = near_part*abs(t - a%place%t)
+      do k = 1, size(a%engine%cylinders)
+         associate (bounds => a%engine%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
+            do side = 1, 2
+               left = huge(left)
+               if (abs(rate) > 0.0_wp .and. bounds(side) < huge(1.0_wp)) left = (bounds(side) - length)/rate
+               ! It may begin out of its stroke.
+               if ((length - bounds(1))*(length - bounds(2)) >= 0.0_wp .and. left < huge(left)) left = 0.0_wp
+               if (left*sign(1.0_wp, t - a%t) < 0.0_wp .or. abs(left) > nearest) cycle
+               nearest = abs(left)
+               limit = diagnostic_t(kind=diagnostic_limit, pair=a%engine%cylinders(k)%pair, t=a%t + left, &
+                  value=bounds(side), other=bounds(side) > 0.0_wp)
+            end do
+         end associate
+      end do
+      if (limit%pair == 0) return
+      do d = 1, size(a%engine%path%laws)
+         f = drive_at(a%engine%path, d, limit%t)
+         if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+         limit%drive = d
+         if (abs(f(2)) > 0.0_wp) exit
+      end do
+      associate (law => a%engine%path%laws(limit%drive))
+         limit%is_angle = .not. is_length(law)
+         f = drive_at(a%engine%path, limit%drive, limit%t)
+         if (law%kind /= drive_slide .or. law%subject /= limit%pair) limit%value = f(1)
+      end associate
+      list = [limit]
+   end subroutine find_length_limit
+
+   !> Flags the motion `found`, which is complete, where a cylinder is out of its stroke.
+   subroutine flag_strokes(a, found)
+      type(analysis_t), intent(in) :: a
+      type(motion_t), intent(inout) :: found
+      real(wp) :: length
+      integer :: k
+
+      if (found%known < 2 .or. found%mark /= mark_none) return
+      do k = 1, size(a%engine%cylinders)
+         associate (one => a%engine%cylinders(k))
+            length = cylinder_length(one, found%position(:, one%i), found%position(:, one%j))
+            if (.not. is_out_of_stroke(one%stroke, length)) cycle
+            found%mark = mark_stroke
+            call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)
+         end associate
+      end do
+   end subroutine flag_strokes
 end module analysis

@@ -9,11 +9,14 @@
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: diagnostic_t, diagnostic_dead_end
+   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_dead_end
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, limit_substep, examine
    use drive_path, only: drive_at
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
-   use block_engine, only: block_engine_t, engine_state_t, accept
+   use block_engine, only: block_engine_t, engine_state_t, accept, followed_state
+   use block_state, only: state_t
+   use link_motion, only: move_links
+   use cylinders, only: cylinder_t, cylinder_motion, stays_within
    use first_instant, only: solve_instant
    use block_branches, only: pass, branch_requests_t, new_branch_requests
    implicit none
@@ -21,7 +24,7 @@ module following
    public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, follow_from, &
       place_t, note_place, return_to, passed_of
    public :: step_blocked, step_creeps, step_there, step_stands, step_rests
-   public :: limit_t, limit_before, largest_correction
+   public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -38,6 +41,9 @@ module following
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
    integer, parameter :: max_longer = 8
+
+   !> Lengths change by so many times as much as drives leave their chords, at most.
+   real(wp), parameter :: off_chord = 2.0_wp
 
    integer, parameter :: branch_none = 0      !< nothing is verified
    integer, parameter :: branch_first = 1     !< chosen by the deck's estimated position
@@ -182,6 +188,8 @@ contains
       if (accepted .and. f%engine%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
          call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
+      ! Before a change point is passed: at the length 0 links may be in line.
+      if (accepted .and. size(f%engine%cylinders) > 0) call keep_lengths(f, t, accepted)
       if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
          call pass_change_points(f, t, step)
       accepted = accepted .and. f%convergence%keeps_signs
@@ -189,6 +197,62 @@ contains
       step%branch%substeps = step%branch%substeps + 1
       step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, f%convergence%kantorovich_ratio)
    end subroutine attempt
+
+   !> Finds the lengths (0:2, cylinders) at the motion that is followed, with their derivatives.
+   function lengths_followed(f) result(lengths)
+      type(following_t), intent(in) :: f
+      real(wp) :: lengths(0:2, size(f%engine%cylinders))
+      type(state_t) :: s
+
+      call followed_state(f%engine, s)
+      lengths = lengths_of(f, s)
+   end function lengths_followed
+
+   !> Finds the lengths (0:2, cylinders) in the state `s`.
+   function lengths_of(f, s) result(lengths)
+      type(following_t), intent(in) :: f
+      type(state_t), intent(in) :: s
+      real(wp) :: lengths(0:2, size(f%engine%cylinders))
+      type(motion_t) :: q
+      logical :: finite
+      integer :: k
+
+      associate (e => f%engine)
+         q = new_motion(size(e%estimate, 2))
+         call move_links(e%geometry%chain, s, e%geometry%equations%length, q, finite, .true.)
+         do k = 1, size(e%cylinders)
+            associate (i => e%cylinders(k)%i, j => e%cylinders(k)%j)
+               lengths(:, k) = cylinder_motion(e%cylinders(k), &
+                  reshape([q%position(:, i), q%velocity(:, i), q%acceleration(:, i)], [3, 3]), &
+                  reshape([q%position(:, j), q%velocity(:, j), q%acceleration(:, j)], [3, 3]))
+            end associate
+         end do
+      end associate
+   end function lengths_of
+
+   !> Finds whether the substep to `t` keeps all cylinders within the bounds of their lengths, also between its ends:
+   !> otherwise it is not `accepted`. A drive that leaves its chord could take a length out of them and back.
+   subroutine keep_lengths(f, t, accepted)
+      type(following_t), intent(in) :: f
+      real(wp), intent(in) :: t              !< time
+      logical, intent(inout) :: accepted
+      real(wp), dimension(0:2, size(f%engine%cylinders)) :: first, last
+      real(wp) :: away
+      integer :: k
+
+      first = lengths_followed(f)
+      last = lengths_of(f, f%engine%state)
+      if (f%convergence%singular) last(1:, :) = 0.0_wp
+      away = off_chord*f%engine%state%excursion*f%engine%geometry%equations%length
+      do k = 1, size(f%engine%cylinders)
+         associate (bounds => f%engine%cylinders(k)%bounds)
+            accepted = stays_within(bounds, first(:1, k), last(:1, k), t - f%t)
+            if (accepted .and. away > 0.0_wp) accepted = min(first(0, k), last(0, k)) - away > bounds(1) &
+               .and. max(first(0, k), last(0, k)) + away < bounds(2)
+            if (.not. accepted) return
+         end associate
+      end do
+   end subroutine keep_lengths
 
    !> Adds to the Kantorovich ratio of the motion found last at `t` what the drives add by leaving their chords, or by
    !> not going as they did: a position predicted from their rates is then near another branch, perhaps. A bound at

@@ -217,7 +217,17 @@ contains
                pair = pair_t(pair_prismatic, pair%name, i, j, numbers(1), numbers(2), numbers(3), &
                   [.false., .not. card%given(2:) .and. has_drawing(set)])
             end if
-            if (card%form == form_cylinder) pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true.)
+            if (card%form == form_cylinder) then
+               pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true., is_cylinder=.true.)
+               where (card%given(:2)) pair%stroke = card%real(:2)
+               if (card%given(1) .and. .not. card%real(1) > 0.0_wp) then
+                  call add_card_error(set, number_range, k, real_1, 'ABOVE 0.0')
+               else if (card%given(2) .and. .not. card%real(2) > 0.0_wp) then
+                  call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
+               else if (.not. pair%stroke(1) < pair%stroke(2)) then
+                  call add_card_error(set, cylinder_stroke, k, real_2)
+               end if
+            end if
          end associate
          if (set%cards(k)%form == form_slot) call build_block(n, j)
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &

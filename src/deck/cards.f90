@@ -68,7 +68,7 @@ module cards
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
       form_t('LLL', 2, .false., 'SLOT    POINT-I POINT-J PAIR    ALPHA           H'), &
-      form_t('LLL', 0, .false., 'CYLINDERPOINT-P POINT-Q PAIR'), &
+      form_t('LLL', 2, .false., 'CYLINDERPOINT-P POINT-Q PAIR    LEAST           GREATEST'), &
       form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &

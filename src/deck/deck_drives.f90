@@ -9,6 +9,7 @@ module deck_drives
    use card_reader, only: parsed_card_t, refuse_field
    use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
    use splines, only: new_spline
+   use drives, only: drive_motion
    use drawn_values, only: drawn_drive
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards
@@ -255,6 +256,10 @@ contains
             end if
          end associate
       end do
+      if (set%errors%count > 0) return
+      do k = 1, set%count
+         if (set%cards(k)%form == form_drive) call check_cylinder(set, k)
+      end do
 
    contains
 
@@ -268,4 +273,18 @@ contains
          call add_card_error(set, code, k, label_a, trim(adjustl(text)))
       end subroutine add_instant_error
    end subroutine check_terms
+
+   !> Checks that the cylinder that the DRIVE card `k` drives, if it does, has a length above 0 at the first instant.
+   subroutine check_cylinder(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp) :: f(3)
+
+      associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
+         if (drive%kind /= drive_slide) return
+         if (.not. m%pairs(drive%subject)%is_cylinder) return
+         f = drive_motion(drive, instant(m, 0))
+         if (.not. f(1) > 0.0_wp) call add_card_error(set, cylinder_begins, k, label_b)
+      end associate
+   end subroutine check_cylinder
 end module deck_drives

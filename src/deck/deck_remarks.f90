@@ -15,6 +15,7 @@ module deck_remarks
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
    use cards
    use input_errors, only: link_unused, add_remark
+   use cylinders, only: is_out_of_stroke
    implicit none
    private
    public :: check_unused, check_angles, check_drives, check_drawing, build_echo, drawn_text
@@ -250,7 +251,7 @@ contains
                   text = real_text(card, i)
                else
                   text = merge('0.0', '   ', all(card%form /= [form_at, form_vary]) .and. &
-                     (card%form /= form_method .or. i == 1))
+                     card%form /= form_cylinder .and. (card%form /= form_method .or. i == 1))
                   if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
                if (card%form == form_link) then
@@ -334,6 +335,10 @@ contains
             end if
             if (abs(opening) > drawn_digits*length) text = drawn_text(opening)//' '//trim(m%length_unit)
          end associate
+         if (m%pairs(i)%is_cylinder) then
+            if (is_out_of_stroke(m%pairs(i)%stroke, norm2(drawn_way(m, m%pairs(i))))) call add_card_remark(set, &
+               remark_stroke, k, label_c, drawn_text(norm2(drawn_way(m, m%pairs(i))))//' '//trim(m%length_unit))
+         end if
          if (text /= '') call add_card_remark(set, remark_open, k, merge(label_a, label_c, &
             set%cards(k)%form == form_joint), text)
       end do

@@ -306,7 +306,7 @@ contains
    !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT
    !> cards depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term
    !> of a drive is defined depends on those of TIME; the last instant depends on the rate, if TIME counts turns. The
-   !> block of a slot is where the cards put the point in it.
+   !> block of a slot is where the cards put the point in it. Whether a law begins with a length above 0 depends on it.
    pure logical function stands_alone(set, form)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: form
@@ -315,9 +315,11 @@ contains
       case (form_ground, form_link, form_point, form_prism, form_slot)
          stands_alone = .not. has_drawing(set) .and. set%number_of(form_slot) == 0
       case (form_time)
-         stands_alone = sum(set%number_of([form_add, form_rise])) == 0 .and. .not. set%mechanism%turns > 0.0_wp
+         stands_alone = sum(set%number_of([form_add, form_rise])) == 0 .and. .not. (set%mechanism%turns > 0.0_wp .or. &
+            any(set%mechanism%pairs%is_cylinder))
       case default
-         stands_alone = form == form_drive .and. .not. set%mechanism%turns > 0.0_wp
+         stands_alone = form == form_drive .and. .not. (set%mechanism%turns > 0.0_wp .or. &
+            any(set%mechanism%pairs%is_cylinder))
       end select
    end function stands_alone
 

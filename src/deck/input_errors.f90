@@ -101,6 +101,9 @@ module input_errors
       pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK OR OF GROUND', own_layout), &
       cylinder_drawing = error_code_t(65, 'A CYLINDER NEEDS A DRAWING, THAT IS JOINT CARDS; OTHERWISE USE PRISM'), &
       cylinder_points = error_code_t(69, 'BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'), &
+      cylinder_stroke = error_code_t(78, 'IS NOT ABOVE THE LEAST LENGTH: GIVE THE LEAST LENGTH FIRST'), &
+      cylinder_begins = error_code_t(109, &
+         'THE CYLINDER BEGINS AT A LENGTH OF 0 OR LESS: FOR A SLIDE THROUGH 0 USE PRISM'), &
       word_unknown = error_code_t(70, 'IS NOT ONE OF', own_layout), &
       is_ground = error_code_t(71, 'IS GROUND: NAME WHAT MOVES'), &
       drive_one_link = error_code_t(74, 'IS NAMED TWICE: NAME TWO LINKS'), &

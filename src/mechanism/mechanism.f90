@@ -99,6 +99,7 @@ module mechanism
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
+      enumerator :: remark_stroke               !< a cylinder is drawn beyond its stroke
       enumerator :: remark_alpha                !< the axes of a guide's link are turned against those of the drawing
       enumerator :: remark_rest                 !< no drive moves; `text` names one of them, or several
       enumerator :: remark_turns                !< a drive turns once or more between two instants
@@ -151,6 +152,8 @@ module mechanism
       logical :: drawn(3) = .false.          !< alpha, h, beta: it is the one of the drawing, not of its card
       !> Prismatic, of a SLOT card: the number of the point of link j that moves in the slot. Q is a point of the block.
       integer :: pin = 0
+      logical :: is_cylinder = .false.       !< its slide is a length above 0
+      real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< of a cylinder: its least and greatest length
    end type pair_t
 
    !> What a measure is made of.
@@ -489,6 +492,10 @@ contains
       wanted = m%ranges .or. m%circuits .or. m%proves .or. m%assemblies .or. allocated(m%tolerances)
       do i = 1, size(m%requests)
          wanted(request_links(m, m%requests(i))) = .true.
+      end do
+      ! The length of a cylinder can end a motion.
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%is_cylinder) wanted(pair_links(m, m%pairs(i))) = .true.
       end do
    end function wanted_links
 

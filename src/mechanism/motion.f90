@@ -8,7 +8,9 @@ module motion
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
       enumerator :: diagnostic_inconsistent = 1 !< an equation of `pair` or `drive` has the closure error `value`
-      enumerator :: diagnostic_limit            !< at `t`, where `drive` is `value`, the motion of `links` has its limit
+      !> At `t`, where `drive` is `value`, the motion of `links` has its limit, or the cylinder `pair` its length 0;
+      !> `other`: the end of its stroke.
+      enumerator :: diagnostic_limit
       enumerator :: diagnostic_far_estimate     !< the estimated angle of links(1) was off by `value`
       enumerator :: diagnostic_second           !< another assembly of `links` is about as near
       enumerator :: diagnostic_incomplete       !< a nearer assembly of `links` may exist
@@ -24,6 +26,7 @@ module motion
       enumerator :: diagnostic_begins           !< a motion begins, and positions before do not say in which assembly
       enumerator :: diagnostic_surplus          !< a drive is too many, one of those with the numbers `links`
       enumerator :: diagnostic_turned           !< up to `t` LINE number `measure` has turned by `value` in one step
+      enumerator :: diagnostic_stroke           !< the cylinder `pair` has the length `value`, out of its stroke
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 
@@ -55,6 +58,7 @@ module motion
       enumerator :: mark_singular       !< position found, Jacobian singular: no unique velocities
       enumerator :: mark_overflow       !< a result is beyond the range of the real kind
       enumerator :: mark_inconsistent   !< redundant equations contradict one another
+      enumerator :: mark_stroke         !< all is known, and a cylinder is out of its stroke
    end enum
 
    !> What a position with a singular Jacobian is, the worst last.

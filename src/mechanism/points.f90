@@ -12,7 +12,7 @@ module points
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use pair_geometry, only: pair_motion
    use planar, only: pi, degree, direction, rotated, point_of, add_rotating, cross
-   use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular
+   use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular, mark_stroke
    implicit none
    private
    public :: row_t, column_of_ratio, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, &
@@ -90,7 +90,7 @@ contains
       row%kind = request%kind
       row%form = form_of(m, request)
       ! Mostly all is known of all links. Without an allocation, but for measures.
-      if (q%known < 2 .or. allocated(q%link_known)) then
+      if (q%known < 2 .or. q%mark == mark_stroke .or. allocated(q%link_known)) then
          if (request%kind == request_measure) then
             call find_known(m, q, request_links(m, request), row%known, row%mark)
          else
@@ -196,6 +196,7 @@ contains
       integer, intent(inout) :: mark         !< why the rest is not
       integer :: k
 
+      if (q%mark == mark_stroke) mark = q%mark
       do k = 1, size(links)
          if (m%links(links(k))%ground .or. known_of(q, links(k)) >= known) cycle
          known = known_of(q, links(k))

@@ -5,6 +5,7 @@ module assemblies
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, plane_origin
+   use cylinders, only: cylinder_length, is_out_of_stroke
    use separations, only: separation
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
@@ -26,11 +27,15 @@ module assemblies
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
 
+   !> A cylinder shorter than this part of the characteristic length may have the length 0.
+   real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
+
    !> An assembly.
    type :: assembly_t
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
       integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
       logical :: is_proved = .false.            !< near it there is exactly one solution, see `position_proof`
+      logical :: is_out = .false.               !< a cylinder is out of its stroke
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate: the root of the sum of `squared_distances`
    end type assembly_t
 
@@ -48,6 +53,7 @@ module assemblies
       type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
       logical :: are_more = .false.                    !< than max_assemblies
       integer :: chosen = 0                            !< the number of that in which a run begins; 0: none of them
+      integer :: negative = 0                          !< with a cylinder of negative length: they are not in the list
       logical :: is_missed = .false.                   !< a run begins at a position that is none of them
       logical :: is_known = .true.                     !< they are all that there are, but for `moves` of blocks
    end type assemblies_t
@@ -203,14 +209,25 @@ contains
       type(assemblies_t), intent(inout) :: a
       type(assembly_t) :: one
       type(motion_t) :: q
+      real(wp) :: length
       logical :: finite
       integer :: i, k
 
       q = new_motion(size(e%estimate, 2))
       call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
+      one%is_proved = is_proved
+      do i = 1, size(e%cylinders)
+         associate (c => e%cylinders(i))
+            length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
+            ! A length of 0 within rounding is kept, and nothing is proved of its sign.
+            if (abs(length) <= zero_length*e%geometry%span) one%is_proved = .false.
+            one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, length)
+         end associate
+         if (length < -zero_length*e%geometry%span) a%negative = a%negative + 1
+         if (length < -zero_length*e%geometry%span) return
+      end do
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
-      one%is_proved = is_proved
       one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%geometry%span)))
       k = count(a%list%distance <= one%distance*(1.0_wp + alike))
       a%list = [a%list(:k), one, a%list(k + 1:)]

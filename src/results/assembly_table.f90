@@ -46,6 +46,7 @@ contains
             do k = 1, size(a%blocks)
                call put_block(o, m, k, a%blocks(k))
             end do
+            if (a%negative > 0) call put(o, ' --- '//phrase(say_negative, m%polish)//' '//whole(a%negative))
             if (a%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' '//whole(max_assemblies))
             if (a%is_missed) call put(o, ' *** '//phrase(say_first_missed, m%polish))
             if (size(a%list) == 0) call put(o, '   '//phrase(say_none, m%polish))
@@ -103,6 +104,7 @@ contains
             text = text//merge('.', signs(one%sign_of(a%blocks(i)%block)), a%blocks(i)%is_redundant)
          end do
          text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
+         if (one%is_out) text = text//'   '//phrase(say_out_of_stroke, m%polish)
          if (k == a%chosen) text = text//'   '//phrase(say_chosen, m%polish)
          call put(o, '')
          call put(o, text)

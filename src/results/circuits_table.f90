@@ -4,7 +4,7 @@ module circuits_table
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_limit
    use independent, only: set_t
-   use circuit_trace, only: end_closed, end_far, end_lost
+   use circuit_trace, only: end_closed, end_far, end_lost, end_shut
    use circuits, only: circuits_t, circuit_branch_t, turns_of
    use set_circuits, only: known
    use ranges_table, only: side_words
@@ -21,7 +21,7 @@ module circuits_table
    !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
    integer, parameter :: column_ends(3) = [9, 17, 31]
    !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
-   type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_not_limited, say_lost]
+   type(phrase_t), parameter :: end_words(end_far:end_shut) = [say_not_limited, say_lost, say_shut]
    !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
    integer, parameter :: meeting_digits = 6
 

@@ -34,7 +34,8 @@ module csv
    public :: table_t, table_column_t, new_table, table_head, table_instant, find_table_row, table_width
    public :: drive_columns, dotted
 
-   character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
+   character(12), parameter :: marks(0:5) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', &
+      'STROKE']
    !> The mark where nothing is missing but known digits.
    character(*), parameter :: mark_unknown = 'UNKNOWN'
    logical, parameter :: all_known(3, 0:2) = .true.

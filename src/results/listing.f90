@@ -29,8 +29,8 @@ module listing
    public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remarks_text
 
    !> Why there is not all of a motion, by its mark.
-   type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
-      [phrase_t(), say_no_position, phrase_t(), say_overflow, say_contradiction]
+   type(phrase_t), parameter :: mark_words(mark_none:mark_stroke) = &
+      [phrase_t(), say_no_position, phrase_t(), say_overflow, say_contradiction, say_out_of_stroke]
    !> The same of mark_singular, by what the position is.
    type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
       [say_singular, say_change_point, say_dead_point]
@@ -39,7 +39,8 @@ module listing
    !> is off.
    integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10), error_digits = 3
    !> What concerns the results.
-   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
+   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, &
+      diagnostic_stroke, diagnostic_mobile, &
       diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end]
    !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
@@ -47,7 +48,7 @@ module listing
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_title_long:remark_more) = &
       [say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_jumps, say_open, say_alpha, say_rests, say_fast, say_more]
+      say_radians, say_jumps, say_open, say_drawn_stroke, say_alpha, say_rests, say_fast, say_more]
 
 contains
 
@@ -339,6 +340,11 @@ contains
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
 
+      if (r%pair > 0) then
+         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(r%pair)%name)//': ' &
+            //phrase(merge(say_out_of_stroke, say_length_0, r%other), m%polish)
+         return
+      end if
       text = links(m, r)//' '//phrase(say_at_limit, m%polish)
       if (r%in_line) text = text//', '//phrase(say_in_line, m%polish)
    end function at_limit
@@ -355,8 +361,12 @@ contains
       case (diagnostic_inconsistent)
          text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_limit)
-         text = owner()//' = '//measure(m, r, value_digits)
-         if (r%links(1) > 0) text = text//', '//at_limit(m, r)
+         text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(r%drive)))//' = ' &
+            //measure(m, r, value_digits)
+         if (r%links(1) + r%pair > 0) text = text//', '//at_limit(m, r)
+      case (diagnostic_stroke)
+         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(r%pair)%name)//': '//phrase(say_length, m%polish) &
+            //' '//measure(m, r, value_digits)
       case (diagnostic_far_estimate)
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_second)
@@ -427,7 +437,7 @@ contains
       character(:), allocatable :: text
 
       text = measure(m, r, value_digits)
-      if (r%links(1) == 0) return
+      if (r%links(1) + r%pair == 0) return
       text = text//'   '//at_limit(m, r)
    end function limit_words
 

@@ -58,6 +58,14 @@ module phrases
       say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: DRIVE ONE OF THEM', &
          'RUCH NIEOKRESLONY, NAPEDZAJ JEDNO Z NICH'), &
       say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
+      say_out_of_stroke = phrase_t('OUT OF STROKE', 'POZA SKOKIEM'), &
+      say_cylinder = phrase_t('CYLINDER', 'SILOWNIK'), &
+      say_length = phrase_t('LENGTH', 'DLUGOSC'), &
+      say_length_0 = phrase_t('LENGTH 0, FOR A SLIDE THROUGH 0 USE PRISM', 'DLUGOSC 0, DLA SUWU PRZEZ 0 UZYJ PRISM'), &
+      say_drawn_stroke = phrase_t('IS DRAWN OUT OF STROKE, ITS LENGTH IS', 'JEST NARYSOWANY POZA SKOKIEM, DLUGOSC'), &
+      say_shut = phrase_t('LENGTH 0', 'DLUGOSC 0'), &
+      say_negative = phrase_t('ASSEMBLIES WITH A CYLINDER OF NEGATIVE LENGTH, NOT LISTED:', &
+         'MONTAZE Z SILOWNIKIEM O UJEMNEJ DLUGOSCI, POMINIETE:'), &
       say_give_closing = phrase_t('FOR ROUNDED NUMBERS GIVE METHOD, REAL-2, A CLOSING TOLERANCE', &
          'DLA LICZB ZAOKRAGLONYCH PODAJ METHOD, REAL-2, TOLERANCJE ZAMKNIECIA'), &
       say_not_better = phrase_t('NO NUMBER IS KNOWN BETTER THAN THE CLOSURE ERROR, IN CHARACTERISTIC LENGTHS OR RAD:', &

@@ -38,7 +38,7 @@ contains
                do side = low, high
                   words = limit_words(m, r%limit(side))
                   ! Where no limit is told rounding is too coarse to follow the motion farther.
-                  if (r%has_limit(side) .and. r%limit(side)%links(1) == 0) &
+                  if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &
                      words = words//'   '//phrase(say_close, m%polish)
                   if (r%has_limit(side)) then
                      call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))

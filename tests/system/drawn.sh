@@ -71,4 +71,65 @@ done
 with four_bar "$(card METHOD DENSE '' '' '' 1.0E-3)" > "$w/deck"
 equal 'a closing tolerance and METHOD DENSE' 'COLUMN 49  FIELD REAL-2: "1.0E-3" REQUIRES METHOD NEWTON' \
    "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/.*E087  CARD [0-9]*  //p' | head -n 1)"
+# turns STEPS TURNS T0 RATE CARD...: a crank whose run is counted in turns
+turns() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK OTHER
+   card JOINT O BASE CRANK 0.0 0.0; card JOINT P BASE OTHER 1.0 0.0
+   card DRIVE ANGLE CRANK '' 10.0 "$4"; card TIME "$1" TURNS '' "$3" "$2"
+   shift 4
+   printf '%s\n' "$@"
+   card END
+}
+other="$(card DRIVE ANGLE OTHER '' 5.0)"
+turns 4 1.5 2.0 -90.0 "$other" > "$w/deck"
+equal 'one and a half turns: times and angles' '2 -170;3.5 -305;5 -440;6.5 -575;8 -710;' \
+   "$("$kinmat" --no-listing --csv - "$w/deck" | awk -F, '$4 == "LINK" && $5 == "CRANK" { printf "%.12g %.12g;", $3, $8 }')"
+turns 2 0.25 0.0 -90.0 "$other" | sed '/^DRIVE   ANGLE   CRANK/a VARY    R2      LIST            -90.0           45.0            0.0' > "$w/deck"
+equal 'turns of a rate that varies' 'E077' "$("$kinmat" --summary - --no-listing "$w/deck" 2>&1 | grep -o 'E077' | sort -u)"
+for wrong in "$(card DRIVE ANGLE OTHER '' 5.0 1.0)" "$other
+$(card ADD HARMONIC '' '' 1.0 1.0)"; do
+   turns 4 1.5 0.0 90.0 "$wrong" > "$w/deck"
+   case $wrong in *ADD*) expected=0 ;; *) expected=1 ;; esac
+   "$kinmat" "$w/deck" > "$w/out" 2>&1
+   equal "turns beside: $wrong" $expected "$(grep -c E077 "$w/out")"
+done
+
+# boom STROKE1 STROKE2 CARD...: a boom on a cylinder from F (2, -1) to E (1.5, 1), with the boom's bearing at 0
+boom() {
+   card UNITS M DEG S; card GROUND BASE; card LINK BOOM; card LINK BARREL; card LINK ROD
+   card JOINT O BASE BOOM 0.0 0.0; card JOINT F BASE BARREL 2.0 -1.0; card JOINT E ROD BOOM 1.5 1.0
+   card CYLINDER F E RAM "$1" "$2"
+   shift 2
+   printf '%s\n' "$@"
+   card END
+}
+# Lengths by the law of cosines: L**2 = |F|**2 + |E|**2 - 2 |F| |E| cos(angle between).
+boom 1.8 2.4 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card TIME 6 '' '' 0.0 6.0)" "$(card PRINT PAIRS RAM)" RANGE ASSEMBLY CIRCUITS > "$w/deck"
+"$kinmat" -o "$w/out" --csv "$w/csv" "$w/deck"
+equal 'a stroke: status' 2 $?
+equal 'a stroke: marks' '' "$(awk -F, '$4 == "PAIR" { b = atan2(1, 1.5) + $3*atan2(1, 1)*2/9 - atan2(-1, 2); l = sqrt(5 + 3.25 - 2*sqrt(5*3.25)*cos(b))
+   mark = l > 2.4 || l < 1.8 ? "STROKE" : ""; d = $6 - l; if (d*d > 1e-24 || mark != $15) print $3, $6, l, $15 }' "$w/csv")"
+equal 'a stroke: RANGE' '  MIN  -8.674586115 DEG   CYLINDER RAM: OUT OF STROKE
+  MAX  11.75515298 DEG   CYLINDER RAM: OUT OF STROKE' "$(sed -n '/^ ANGLE BOOM/,/^$/p' "$w/out" | grep -E 'MIN|MAX' | cut -c2-)"
+equal 'a stroke: assemblies' '1 1' "$(grep -c '^ ASSEMBLY ' "$w/out") $(sed -n 's/^ --- ASSEMBLIES WITH A CYLINDER.*: //p' "$w/out")"
+equal 'a stroke: circuits' ' 1       1       1             TURNS FULLY, CLOSES AFTER 1 TURN' "$(grep 'TURNS FULLY' "$w/out")"
+# A step over the length 0, with both sides solved, is not made: both eyes at one radius.
+through() {
+   card UNITS M DEG S; card GROUND BASE; card LINK GATE; card LINK BARREL; card LINK ROD
+   card JOINT O BASE GATE 0.0 0.0; card JOINT F BASE BARREL 2.0 0.0; card JOINT E ROD GATE 1.2 1.6
+   card CYLINDER F E CYL "$1"; shift
+   printf '%s\n' "$@"
+   card END
+}
+through '' "$(card DRIVE SLIDE CYL '' '' -0.3)" "$(card TIME 10 '' '' 0.0 10.0)" RANGE CIRCUITS "$(card LANG PL)" > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'length 0: status' 2 $?
+equal 'length 0: the limit' 1 "$(grep -c 'SILOWNIK CYL: DLUGOSC 0, DLA SUWU PRZEZ 0 UZYJ PRISM' "$w/out" | awk '{ print ($1 > 0) }')"
+equal 'length 0: RANGE and circuits' '0.000000000 4.000000000' "$(awk '/ZAKRES(Y)? / { on = 1 } on && /^   (MIN|MAX)/ { printf "%s ", $2 }' "$w/out" | sed 's/ $//')"
+through '' "$(card DRIVE SLIDE CYL '' -0.5 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
+equal 'a law that begins below 0' E109 "$("$kinmat" "$w/deck" 2>&1 | grep -o E109 | sort -u)"
+through 2.0 "$(card DRIVE SLIDE CYL '' '' 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
+equal 'a drawing out of its stroke' 1 "$("$kinmat" --check "$w/deck" 2>&1 | grep -c 'IS DRAWN OUT OF STROKE')"
+boom 2.4 1.8 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
+equal 'a stroke the other way round' E078 "$("$kinmat" "$w/deck" 2>&1 | grep -o E078 | sort -u)"
 conclude

@@ -1,0 +1,100 @@
+!> Cylinders: prismatic pairs whose slide is a length above 0, within a stroke or without one.
+module cylinders
+   use kinds, only: wp
+   use planar, only: direction, rotated, point_of, add_rotating
+   use mechanism, only: mechanism_t
+   use instant_centres, only: seen_from
+   implicit none
+   private
+   public :: cylinder_t, cylinders_of, cylinder_length, cylinder_motion, stays_within, is_out_of_stroke
+
+   !> A cylinder. Lengths are in the deck's unit.
+   type :: cylinder_t
+      integer :: pair = 0                    !< its number
+      integer :: i = 0, j = 0                !< the numbers of its links
+      real(wp) :: p(2) = 0.0_wp, q(2) = 0.0_wp   !< its points in the axes of their links
+      real(wp) :: along(2) = 0.0_wp          !< the direction of the guide in the axes of link i
+      real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< its least and greatest length
+      real(wp) :: bounds(2) = [0.0_wp, huge(1.0_wp)]   !< between them its length stays in a motion that is followed
+   end type cylinder_t
+
+contains
+
+   !> Finds the cylinders of `m`. `by_stroke`: their strokes bound their lengths; otherwise lengths are above 0.
+   pure function cylinders_of(m, by_stroke) result(list)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: by_stroke
+      type(cylinder_t), allocatable :: list(:)
+      integer :: k
+
+      allocate (list(0))
+      do k = 1, size(m%pairs)
+         if (.not. m%pairs(k)%is_cylinder) cycle
+         associate (pair => m%pairs(k), p => m%points(m%pairs(k)%point_i), q => m%points(m%pairs(k)%point_j))
+            list = [list, cylinder_t(k, p%link, q%link, p%offset, q%offset, direction(pair%alpha), &
+               pair%stroke)]
+            if (by_stroke) list(size(list))%bounds = pair%stroke
+         end associate
+      end do
+   end function cylinders_of
+
+   !> Finds the length of a cylinder, below 0 if Q lies behind P.
+   pure real(wp) function cylinder_length(one, i, j) result(length)
+      type(cylinder_t), intent(in) :: one
+      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+
+      length = dot_product(rotated(one%along, direction(i(3))), point_of(j, one%q) - point_of(i, one%p))
+   end function cylinder_length
+
+   !> Finds the length of a cylinder with its derivatives (0:2).
+   pure function cylinder_motion(one, i, j) result(length)
+      type(cylinder_t), intent(in) :: one
+      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)   !< x, y (length) and phi (rad) of its links, with derivatives
+      real(wp) :: length(0:2), q(2, 0:2), r(2, 0:2), arm(2)
+
+      q = j(:2, :)
+      arm = rotated(one%q, direction(j(3, 0)))
+      call add_rotating(arm(1), arm(2), j(3, 1), j(3, 2), q(:, 0), q(:, 1), q(:, 2))
+      r = seen_from(i, q)
+      r(:, 0) = r(:, 0) - one%p
+      length = matmul(one%along, r)
+   end function cylinder_motion
+
+   !> Tells whether a length stays within `bounds` from the motion `first` (0:1) to the motion `last`, so much time
+   !> later: its cubic does, which has their values and rates.
+   pure logical function stays_within(bounds, first, last, time) result(stays)
+      real(wp), intent(in) :: bounds(2)      !< length
+      real(wp), intent(in) :: first(0:1), last(0:1)   !< length, length a unit of time
+      real(wp), intent(in) :: time
+      real(wp) :: c(0:3), u(2), discriminant
+      integer :: k
+
+      stays = last(0) > bounds(1) .and. last(0) < bounds(2)
+      if (.not. stays) return
+      c = [first(0), time*first(1), 3.0_wp*(last(0) - first(0)) - time*(2.0_wp*first(1) + last(1)), &
+         2.0_wp*(first(0) - last(0)) + time*(first(1) + last(1))]
+      ! Its least and greatest value: c1 + 2 c2 u + 3 c3 u**2 = 0, by the form that loses no digits.
+      discriminant = c(2)**2 - 3.0_wp*c(1)*c(3)
+      if (discriminant < 0.0_wp) return
+      discriminant = -(c(2) + sign(sqrt(discriminant), c(2)))
+      u = -1.0_wp
+      if (abs(c(3)) > 0.0_wp) u(1) = discriminant/(3.0_wp*c(3))
+      if (abs(discriminant) > 0.0_wp) u(2) = c(1)/discriminant
+      do k = 1, 2
+         if (.not. (u(k) > 0.0_wp .and. u(k) < 1.0_wp)) cycle
+         associate (length => c(0) + u(k)*(c(1) + u(k)*(c(2) + u(k)*c(3))))
+            stays = stays .and. length > bounds(1) .and. length < bounds(2)
+         end associate
+      end do
+   end function stays_within
+
+   !> Tells whether a length is beyond a stroke by more than rounding.
+   pure logical function is_out_of_stroke(stroke, length) result(is)
+      real(wp), intent(in) :: stroke(2)      !< least and greatest length
+      real(wp), intent(in) :: length
+      !> A length that a card gives is known to some roundings.
+      real(wp), parameter :: rounded = 64.0_wp*epsilon(1.0_wp)
+
+      is = length < stroke(1)*(1.0_wp - rounded) .or. length > stroke(2) + rounded*min(stroke(2), length)
+   end function is_out_of_stroke
+end module cylinders
