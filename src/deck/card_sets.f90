@@ -170,7 +170,7 @@ contains
          ends = 0
          do label = label_b, label_c
             if (set%cards(k)%label(label) == '') then
-               call add_card_error(set, field_blank, k, label)
+               cycle
             else if (.not. has_drawing(set)) then
                if (set%names_certain) call add_card_error(set, bar_drawing, k, label)
                return
@@ -185,6 +185,9 @@ contains
                end associate
             end if
          end do
+         ! A long name goes on in the field of FROM: it has an error of its own.
+         label = findloc(set%cards(k)%label(label_b:), '        ', dim=1)
+         if (label > 0 .and. set%names_certain) call add_card_error(set, field_blank, k, label_a + label)
          if (any(ends == 0)) return
          associate (link => set%mechanism%links(n), p => set%mechanism%points(ends(1))%place, &
             q => set%mechanism%points(ends(2))%place)
