@@ -146,7 +146,6 @@ contains
       x%tolerance = m%tolerance
       call put_chain(m, b, x, x%chain)
       call put_path(m, b, x, path)
-      e%cylinders = cylinders_of(m, .false.)
    end subroutine put_geometry
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
@@ -159,6 +158,7 @@ contains
       is_done = e%blocks%solvable
       if (is_done) call put_geometry(m, e%blocks, e%geometry, e%path, is_done)
       if (.not. is_done) return
+      e%cylinders = cylinders_of(m, .false.)
       call put_estimate(e, m)
       call begin_state(e, m)
    end subroutine renew_block_engine
