@@ -58,9 +58,17 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example shared pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants coverage drawings sizes expected install install-kinds clean
+.PHONY: all help run pictures shared example kinds install install-kinds clean
+
+#: all              build the command: build/kinmat
 all: $(BUILD)/kinmat
 
+#: help             list the targets
+# Lists the targets: the lines that begin with #: here and in tests/tests.mk.
+help:
+	@sed -n 's/^#: /make /p' Makefile tests/tests.mk
+
+#: run              print the paper's example at two instants
 # The paper's example at two instants.
 run: $(BUILD)/kinmat
 	@$(BUILD)/kinmat docs/first.deck
@@ -94,9 +102,9 @@ $(BUILD)/$(1):
 endef
 
 # What the documents say of messages, cards and options, for --explain, --ruler and --help. The file is left alone if nothing has changed in it.
-$(BUILD)/document_texts.f90: docs/texts.awk docs/messages.md docs/cards.md docs/command.md
+$(BUILD)/document_texts.f90: docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md
 	@mkdir -p $(BUILD)
-	@awk -f docs/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+	@awk -f docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: Makefile $(sources) $(helpers) $(suites) tests/depends.awk
@@ -128,22 +136,22 @@ $(patsubst %,$(BUILD)/release/%.o,$(step)): private release += $(step_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(step)): private timed += $(step_flags)
 $(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)
 $(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) $(command))): private timed := $(less)
-# The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
-$(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-vectorize,$(RELEASE))
-
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	$(quiet)cp $< $@
 
+#: pictures         draw docs/pictures again
 # The pictures of the documents, drawn anew.
 pictures: $(BUILD)/kinmat
-	docs/pictures.sh $< docs/pictures
+	docs/tools/pictures.sh $< docs/pictures
 
-# The library for C and Python: the eight functions of bindings/kinmat.map, and no other symbol. To optimize it at link
+#: shared           build the library for C and Python: build/libkinmat.so.2
+# The library for C and Python: the eight functions of contrib/kinmat.map, and no other symbol. To optimize it at link
 # time takes half a minute, and saves 2.5 per cent of a step.
 shared: $(BUILD)/libkinmat.so.2
-$(BUILD)/libkinmat.so.2: bindings/kinmat.map $(BUILD)/release/libkinmat.a
+$(BUILD)/libkinmat.so.2: contrib/kinmat.map $(BUILD)/release/libkinmat.a
 	$(call say,LD,$(@F))$(FC) $(COMMON) $(release) $(no_lto) -shared -Wl,--no-undefined -Wl,-soname,$(@F) -Wl,--version-script=$< -Wl,-u,kinmat_read -o $@ $(BUILD)/release/libkinmat.a $(LIBS)
 
+#: example          build and run docs/example.f90
 # A program of one's own with the modules.
 example: $(BUILD)/example
 	$(BUILD)/example
@@ -151,6 +159,7 @@ example: $(BUILD)/example
 $(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
 	$(call say,FC,$<)$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
 
+#: kinds            build kinmat-quad (real128) and kinmat-single (real32) in addition
 # Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
 
@@ -159,187 +168,28 @@ $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
 	$(quiet)cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
 .PHONY: always
 
-$(BUILD)/quad/release/kind_errors $(BUILD)/single/release/kind_errors: $(BUILD)/%/release/kind_errors: $(BUILD)/kinmat-% always
-	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
-
-# Closed forms in real128 print the listings that the program must print, byte for byte.
-decks      := $(sort $(wildcard input/*.deck))
-references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
-$(BUILD)/expected/%.lst: input/%.deck $(BUILD)/release/print_expected
-	@mkdir -p $(BUILD)/expected
-	$(call say,EXPECTED,$<)$(BUILD)/release/print_expected $< > $@.new && mv $@.new $@
-
-expected: $(references)
-	cp $(references) expected/
-
-# The closed forms against the decks: closure, velocities and accelerations of every pair and drive, in real128.
-forms: $(BUILD)/release/check_forms
-	$< $(decks)
-
-# The program's own estimates of its errors against the closed forms.
-errors: $(BUILD)/release/error_estimates
-	$< $(decks)
-
-# What PROVE proves of them: every step but those of a list, and no bound below the true error.
-proofs: $(BUILD)/release/proof_bounds
-	$< $(decks)
-
-# Attempts to have something false proved.
-fool-proofs: $(BUILD)/release/fool_proofs
-	$< 100000
-
-check: $(BUILD)/kinmat $(references)
-	BUILD=$(BUILD) tests/system/check.sh
-
-# The results of a build against the closed forms in real128, at the level of its kind.
-kind-check: $(BUILD)/kinmat $(BUILD)/release/kind_errors
-	BUILD=$(BUILD) KIND=$(KIND) tests/system/kind.sh
-
-quad-check single-check: %-check:
-	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* kind-check
-
-# Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
-bench: $(BUILD)/timed/bench
-	BUILD=$(BUILD) tests/bench/bench.sh
-
-bench-short: $(BUILD)/release/bench
-	BUILD=$(BUILD) tests/bench/bench.sh short
-
-# Whole runs of this program against the program at the commit REF: make bench-against REF=HEAD~1
-bench-against: $(BUILD)/kinmat
-	BUILD=$(BUILD) REF='$(REF)' tests/bench/bench_against.sh
-
-# Answers of this program against those of the program at the commit REF, on N random decks beside those at hand.
-compare-against: $(BUILD)/kinmat $(BUILD)/debug/fuzz $(BUILD)/release/fuzz_mechanisms
-	BUILD=$(BUILD) REF='$(REF)' N='$(or $(N),3000)' SEED='$(or $(SEED),1)' tests/bench/compare_against.sh
-
-# Time and error of other programs beside this one: they come from the index of Python packages.
-bench-peers: $(BUILD)/kinmat $(BUILD)/timed/bench
-	BUILD=$(BUILD) tests/bench/peers.sh
-
-# Counts of assemblies by PHCpack, for tests/system/assemblies.sh (Debian's package phcpack): a quarter of an hour.
-assembly-peers: $(BUILD)/release/random_blocks
-	BUILD=$(BUILD) tests/oracle/assembly_peers.sh 1 100 > tests/validation/assemblies.txt.new
-	mv tests/validation/assemblies.txt.new tests/validation/assemblies.txt
-
-# The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
-study-1987: $(BUILD)/timed/matrix_1987
-	$< tables
-	OPENBLAS_NUM_THREADS=1 $< times
-	$< picture > $(BUILD)/matrix_1987.txt
-	mkdir -p docs
-	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='docs/matrix_1987.png'" tests/study/matrix_1987.gp
-
-# Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
-hard: $(BUILD)/kinmat $(addprefix $(BUILD)/release/,hard print_expected)
-	BUILD=$(BUILD) tests/oracle/hard.sh full
-
-hard-short: $(BUILD)/release/hard
-	BUILD=$(BUILD) tests/oracle/hard.sh short
-
-# Circuits of 300 four-bars, crank-sliders and six-bars and of 500 symmetric mechanisms made by chance against closed forms.
-circuits: $(addprefix $(BUILD)/release/,circuits_by_chance twins_by_chance)
-	$(BUILD)/release/circuits_by_chance
-	$(BUILD)/release/twins_by_chance 500
-
-# 300 drawings made by chance with LENGTH cards and axes along bars, against closed forms.
-lengths: $(addprefix $(BUILD)/,kinmat release/lengths_by_chance)
-	$(BUILD)/release/lengths_by_chance deck 300 | $(BUILD)/kinmat --no-listing --csv - | $(BUILD)/release/lengths_by_chance check 300
-
-# Dwells of 6000 random mechanisms on their dead and change points, against closed forms.
-dwells: $(BUILD)/release/dwells_by_chance
-	$< 6000
-
-# Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
-# docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
-study: kinds $(BUILD)/timed/study_ratio
-	BUILD=$(BUILD) tests/study/study.sh
-
-# Speed against error of one small deck: what must be so whatever the clock says.
-study-short: kinds $(BUILD)/debug/kinmat
-	OPENBLAS_NUM_THREADS=1 BUILD=$(BUILD) tests/study/study_short.sh
-
-# Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
-NUMBERS ?= 20000000
-digits: $(BUILD)/release/compare_digits
-	$< $(NUMBERS)
-
-# Decks made by chance: FUZZ of them, from seed FUZZ_FIRST on.
-FUZZ       ?= 100000
-FUZZ_FIRST ?= 1
-fuzz: $(BUILD)/fuzz/fuzz
-	BUILD=$(BUILD) tests/fuzz/fuzz.sh $(FUZZ) $(FUZZ_FIRST)
-
-fuzz-short: $(BUILD)/debug/fuzz
-	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
-
-# Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on; all by METHOD, if that is given.
-fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
-	FUZZ_METHOD=$(METHOD) BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
-
-# Extremes of 3000 laws of RISE and 400 fast cranks against closed forms; of N mechanisms made by chance, from seed SEED on,
-# against runs in steps 16 times finer.
-fuzz-extremes: $(addprefix $(BUILD)/,kinmat release/extremes_by_chance release/fuzz_mechanisms)
-	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh --laws 3000 400 $(or $(SEED),1)
-	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh $(or $(N),200) $(or $(SEED),1)
-
-# Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on; and of runs and assemblies.
-relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
-	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
-	BUILD=$(BUILD) tests/system/assembly_relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
-
-# Tolerances against N decks with all numbers off by chance.
-tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
-	BUILD=$(BUILD) tests/system/tolerances.sh $(or $(N),10000)
-
-# Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
-mutants: $(BUILD)/release/print_expected
-	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
-
-# How many lines of src/ the tests run, file by file.
-coverage:
-	BUILD=$(BUILD) FC='$(FC)' MAKE='$(MAKE)' tests/coverage.sh
-
-# Drawings of PMKS+ and Linkage in the directory DIR, with positions from elsewhere: make drawings DIR=...
-drawings: $(BUILD)/libkinmat.so.2
-	LIBKINMAT=$(abspath $<) python3 -B tests/import/drawings.py '$(DIR)'
-
-# Lines of code, types, thresholds and names of src/, with their limits.
-sizes:
-	@awk -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $(sources) $(included)
-
-TEST_LIB     := $(BUILD)/debug/libkinmat.a
-TEST_MODULES := $(BUILD)/debug
-# Without the tables of a debugger: a failure has its line all the same.
-TEST_FLAGS   := $(COMMON) $(filter-out -g,$(DEBUG))
-TEST_LIBS    := $(LIBS)
-TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
-include tests/pfunit/tests.mk
-
-# What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance random_blocks
-test: $(addprefix $(BUILD)/,kinmat libkinmat.so.2 example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
-   quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
-	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh
+decks := $(sort $(wildcard input/*.deck))
+include tests/tests.mk
 
 # The man page: the text of --help in another form.
-$(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
-	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
+$(BUILD)/kinmat.1: $(BUILD)/kinmat docs/tools/man.awk
+	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/tools/man.awk > $@.new && mv $@.new $@
 
 # The command with its man page; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat; the
 # library for C, with its header and what pkg-config reads: gcc ... -lkinmat; kinmat.py, which finds that library; the
 # documents, in folders of the same names as here, so that their links lead somewhere, with the decks.
 documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
+#: install          install command, libraries, documents under PREFIX (/usr/local)
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib/pkgconfig share/kinmat share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
 	install -m 755 $(BUILD)/kinmat $(wildcard contrib/kinmat-*) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 755 $(BUILD)/libkinmat.so.2 $(DESTDIR)$(PREFIX)/lib
-	install -m 644 bindings/libkinmat.so $(DESTDIR)$(PREFIX)/lib
-	install -m 644 bindings/kinmat.h $(DESTDIR)$(PREFIX)/include
-	install -m 644 bindings/kinmat.py $(DESTDIR)$(PREFIX)/share/kinmat
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$($< --version | sed 's/^KINMAT //; s/,.*//')|" bindings/kinmat.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/kinmat.pc
+	install -m 644 contrib/libkinmat.so $(DESTDIR)$(PREFIX)/lib
+	install -m 644 contrib/kinmat.h $(DESTDIR)$(PREFIX)/include
+	install -m 644 contrib/kinmat.py $(DESTDIR)$(PREFIX)/share/kinmat
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$($< --version | sed 's/^KINMAT //; s/,.*//')|" contrib/kinmat.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/kinmat.pc
 	chmod 644 $(DESTDIR)$(PREFIX)/lib/pkgconfig/kinmat.pc
 	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
 	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/example.c docs/plot.gp docs/first.deck $(documents)/docs
@@ -350,8 +200,10 @@ install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	sed 's|@PREFIX@|$(PREFIX)|' $(BUILD)/kinmat.1 > $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
 	chmod 644 $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
 
+#: install-kinds    install all three kinds
 install-kinds: install kinds
 	install -m 755 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single $(DESTDIR)$(PREFIX)/bin
 
+#: clean            remove build/
 clean:
 	rm -rf $(BUILD)

@@ -1,4 +1,4 @@
-!> KINMAT for C, by eight functions: bindings/kinmat.h says what each does. A handle is a set and where it is in its
+!> KINMAT for C, by eight functions: contrib/kinmat.h says what each does. A handle is a set and where it is in its
 !> motion; nothing else is kept, so that threads with a handle each do not meet.
 !>
 !> Decks are read one at a time: gfortran keeps the length of the text that a function returns in static memory.

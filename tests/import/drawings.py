@@ -8,7 +8,7 @@ import math
 import os
 import sys
 
-sys.path.insert(0, 'bindings')
+sys.path.insert(0, 'contrib')
 import kinmat
 
 sys.dont_write_bytecode = True

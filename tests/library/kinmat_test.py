@@ -9,7 +9,7 @@ import threading
 if '--lists' in sys.argv:
     sys.argv.remove('--lists')
     sys.modules['numpy'] = None
-sys.path.insert(0, 'bindings')
+sys.path.insert(0, 'contrib')
 import kinmat
 
 command, decks = sys.argv[1], sys.argv[2:]

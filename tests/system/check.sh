@@ -82,11 +82,11 @@ equal 'one wrong digit is seen' 'C10 x at 0: 8.295523e-01 is off by 3.88' \
 
 # The pictures of the documents are those that the program draws, or drawn by hand.
 drawn=$w/drawn
-docs/pictures.sh "$kinmat" "$drawn" > "$w/pictures.txt" 2>&1
+docs/tools/pictures.sh "$kinmat" "$drawn" > "$w/pictures.txt" 2>&1
 equal 'pictures: status' 0 $?
 for picture in "$drawn"/*.svg; do same "docs/pictures/${picture##*/}" "docs/pictures/${picture##*/}" "$picture"; done
 equal 'pictures: those that nobody draws' '' "$(for picture in docs/pictures/*.svg; do
-   [ -e "$drawn/${picture##*/}" ] || sed -n 's/^# Drawn by hand: //p' docs/pictures.sh | tr -d ',.' | grep -qw "$(basename "$picture" .svg)" \
+   [ -e "$drawn/${picture##*/}" ] || sed -n 's/^# Drawn by hand: //p' docs/tools/pictures.sh | tr -d ',.' | grep -qw "$(basename "$picture" .svg)" \
       || echo "$picture"
 done)"
 

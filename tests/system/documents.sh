@@ -15,7 +15,7 @@
 documents=$(find README.md docs -name '*.md' | LC_ALL=C sort)
 names=$(cd "${kinmat%/*}" && pwd)
 PATH=$names:$PWD/contrib:$PATH
-PYTHONPATH=$PWD/bindings
+PYTHONPATH=$PWD/contrib
 LIBKINMAT=$names/libkinmat.so.2
 PYTHONDONTWRITEBYTECODE=1
 export PATH PYTHONPATH LIBKINMAT PYTHONDONTWRITEBYTECODE

@@ -9,12 +9,12 @@ place=$(cd "$BUILD" && pwd)
 LD_LIBRARY_PATH=$place
 LIBKINMAT=$place/libkinmat.so.2
 export LD_LIBRARY_PATH LIBKINMAT
-equal 'symbols of the library' "$(grep -oE '^[a-z].*[*]kinmat_[a-z]+|^(int|void|kinmat) .*kinmat_[a-z]+[(]' bindings/kinmat.h | grep -oE 'kinmat_[a-z]+' | sort)" \
+equal 'symbols of the library' "$(grep -oE '^[a-z].*[*]kinmat_[a-z]+|^(int|void|kinmat) .*kinmat_[a-z]+[(]' contrib/kinmat.h | grep -oE 'kinmat_[a-z]+' | sort)" \
    "$(nm -D --defined-only "$LIBKINMAT" | sed 's/.* //' | sort)"
-gcc -std=c99 -Wall -Wextra -pedantic -Werror -O1 -Ibindings -o "$w/library" tests/library/library.c "$LIBKINMAT" -lpthread -lm > "$w/err" 2>&1
+gcc -std=c99 -Wall -Wextra -pedantic -Werror -O1 -Icontrib -o "$w/library" tests/library/library.c "$LIBKINMAT" -lpthread -lm > "$w/err" 2>&1
 equal 'a program in C is compiled' '' "$(cat "$w/err")"
 printf '#include "kinmat.h"\nint main() { return kinmat_version() == 0; }\n' > "$w/header.cpp"
-if command -v g++ > /dev/null; then equal 'the header in C++' '' "$(g++ -Wall -Wextra -pedantic -fsyntax-only -Ibindings "$w/header.cpp" 2>&1)"; fi
+if command -v g++ > /dev/null; then equal 'the header in C++' '' "$(g++ -Wall -Wextra -pedantic -fsyntax-only -Icontrib "$w/header.cpp" 2>&1)"; fi
 
 # Every deck of one set without VARY: the same bytes as --table, and the same status.
 decks=$(grep -c '^END' input/*.deck | sed -n 's/:1$//p' | xargs grep -L '^VARY')

@@ -36,7 +36,7 @@ COUPLER  ROCKER|links solved together: a dyad
 ^ CONTINUATION|every step is certified
 ^ END OF SET|no instant is flagged: exit status 0
 END
-sed '1a TITLE   FOUR-BAR LINKAGE' "$deck" | "$kinmat" | awk -v notes="$notes" -f docs/listing.awk > "$to/listing.svg" || exit 1
+sed '1a TITLE   FOUR-BAR LINKAGE' "$deck" | "$kinmat" | awk -v notes="$notes" -f docs/tools/listing.awk > "$to/listing.svg" || exit 1
 first docs/tutorial.md > "$deck"; draw "$deck" --svg tutorial || exit 1
 for name in yoke jansen cardan drawn_cylinder; do
    sed '/^END/q' "input/$name.deck" > "$deck"; draw "$deck" --svg "$name" || exit 1

@@ -1,5 +1,5 @@
 # The texts of docs/messages.md, docs/cards.md and docs/command.md as a Fortran module, for --explain, --ruler and --help. Usage:
-# awk -f docs/texts.awk docs/messages.md docs/cards.md docs/command.md.
+# awk -f docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md.
 # plain(cell): the cell without the marks of Markdown
 function plain(cell,   link) {
    while (match(cell, /\[[^]]*\]\([^)]*\)/)) {
@@ -100,7 +100,7 @@ END {
       "  kinmat --no-listing --svg four_bar.svg --table four_bar.csv four_bar.deck\n  kinmat --explain E101\n" \
       "Documents: README.md and docs/, installed in PREFIX/share/doc/kinmat, where\n" \
       "PREFIX is /usr/local unless make install was given another.")
-   print "!> Messages, fields of cards and options as the documents explain them: made by docs/texts.awk from"
+   print "!> Messages, fields of cards and options as the documents explain them: made by docs/tools/texts.awk from"
    print "!> docs/messages.md, docs/cards.md and docs/command.md."
    print "module document_texts\n   implicit none\n   private\n   public :: message_cell, help_on\n"
    print "   integer, parameter, public :: message_count = " messages
