@@ -131,7 +131,7 @@ $(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
 # Procedures of a step, and of a row of the listing, are called a few times each: they are put into one another at any length.
 step_flags := --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
-step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation) numerals known_digits listing_tables listing)
+step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation) number_format masked_numbers listing_tables listing)
 $(patsubst %,$(BUILD)/release/%.o,$(step)): private release += $(step_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(step)): private timed += $(step_flags)
 $(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)

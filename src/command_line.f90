@@ -1,7 +1,7 @@
 !> The command's words: what to read, what to write, which sets. What the documents say of messages, as lines for a
 !> terminal: --explain.
 module command_line
-   use numerals, only: whole
+   use number_format, only: whole
    use failures, only: failure_t, fail, status_rejected, capitals
    use cards, only: forms, form_name, find_form, form_unknown
    use document_texts, only: message_cell, message_count

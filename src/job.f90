@@ -4,7 +4,7 @@ module job
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant, with_all_links
-   use structure, only: findings_t, check_structure, find_groups
+   use structure, only: structure_report_t, check_structure, find_groups
    use deck, only: read_deck
    use system_calls, only: watch_signals, signal_received, write_bytes
    use text_output, only: flush_output, turn_lost
@@ -48,7 +48,7 @@ contains
       character(:), allocatable, intent(out) :: message !< lines for standard error
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
-      type(findings_t), allocatable, save :: findings(:)
+      type(structure_report_t), allocatable, save :: findings(:)
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
       integer :: i, processes, count_sets
@@ -174,7 +174,7 @@ contains
    subroutine run_sets(sets, findings, o)
       type(writers_t), intent(inout) :: o
       type(mechanism_t), intent(inout) :: sets(o%first:)
-      type(findings_t), intent(inout) :: findings(o%first:)
+      type(structure_report_t), intent(inout) :: findings(o%first:)
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
@@ -274,7 +274,7 @@ contains
    subroutine run_set(m, i, first, last, findings, o)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i, first, last  !< numbers of the set and of variants
-      type(findings_t), intent(inout) :: findings
+      type(structure_report_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       type(failure_t), allocatable :: failure
       type(counts_t) :: counts

@@ -10,7 +10,7 @@ module kinmat_c
    use failures, only: failure_t, fail, status_solved, status_rejected, status_flagged, status_system
    use mechanism, only: mechanism_t, instant, instant_count
    use deck, only: read_deck_text
-   use structure, only: findings_t, check_structure
+   use structure, only: structure_report_t, check_structure
    use set_motion, only: is_flagged
    use rows, only: finished_row_t, find_rows
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
@@ -105,7 +105,7 @@ contains
       character(:), allocatable, intent(out) :: report   !< all errors of cards; '' if there are none
       type(failure_t), allocatable, intent(out) :: failure
       type(mechanism_t), allocatable :: sets(:)
-      type(findings_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: findings(:)
       integer :: i
 
       call read_deck_text(text, sets, report, failure)

@@ -1,7 +1,7 @@
 !> The run of one motion: solve an instant, print an instant; nothing else is kept for later.
 module motion_run
    use mechanism, only: instant
-   use structure, only: findings_t
+   use structure, only: structure_report_t
    use command_line, only: out_listing
    use outputs, only: is_over
    use shares, only: write_in_turn
@@ -22,7 +22,7 @@ contains
    !> Solves and prints the set a%now, instant by instant.
    subroutine run_motion(a, findings, full, o, counts, asked)
       type(set_analysis_t), intent(inout) :: a
-      type(findings_t), intent(inout) :: findings
+      type(structure_report_t), intent(inout) :: findings
       logical, intent(in) :: full            !< with tables
       type(writers_t), intent(inout) :: o
       class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those

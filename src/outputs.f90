@@ -5,7 +5,7 @@ module outputs
    use failures, only: failure_t, fail, status_rejected
    use text_output, only: output_t, open_output, check_apart, close_output, abandon_output
    use system_calls, only: identity_t, identity_of, signal_received
-   use numerals, only: whole
+   use number_format, only: whole
    use command_line, only: options_t, out_shared, out_table, out_last
    implicit none
    private

@@ -14,7 +14,7 @@
 module shares
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_system, status_signal
-   use numerals, only: whole
+   use number_format, only: whole
    use processes, only: waitpid, no_hang, usleep, fork_process, interrupt_child, memfd_create, lseek, &
       from_here, change_lock, locked, unlocked
    use system_calls, only: signal_received, signal_pipe, last_error, reason_of

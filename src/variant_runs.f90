@@ -5,7 +5,7 @@ module variant_runs
    use failures, only: status_flagged
    use mechanism, only: settings_t, mechanism_t
    use independent, only: set_t
-   use structure, only: findings_t, find_structure, faults_text
+   use structure, only: structure_report_t, find_structure, faults_text
    use deck, only: build_variant
    use deck_variants, only: variation_t
    use command_line, only: out_listing, out_csv, out_log, out_summary
@@ -106,7 +106,7 @@ contains
       subroutine start(r, row)
          type(lane_run_t), intent(inout) :: r
          type(variant_row_t), intent(inout) :: row
-         type(findings_t) :: findings
+         type(structure_report_t) :: findings
          logical :: is_done
 
          call build_variant(v, row%number, r%m, row%rejected)
@@ -126,7 +126,7 @@ contains
       !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
       subroutine check_variant(variant, findings, row)
          type(mechanism_t), intent(in) :: variant
-         type(findings_t), intent(out) :: findings
+         type(structure_report_t), intent(out) :: findings
          type(variant_row_t), intent(inout) :: row
          character(:), allocatable :: faults
 
@@ -140,7 +140,7 @@ contains
       subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant
          type(variant_row_t), intent(inout) :: row
-         type(findings_t) :: findings
+         type(structure_report_t) :: findings
          type(set_analysis_t) :: a
          type(answers_t) :: asked
 

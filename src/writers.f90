@@ -18,7 +18,7 @@ module writers
    use set_analysis, only: set_analysis_t, sample_set, set_certificates, set_closing_diagnostics
    use analysis, only: redundancy_error
    use phrases, only: phrase_t, phrase
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off

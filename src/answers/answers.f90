@@ -7,7 +7,7 @@ module answers
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: note_instant
    use dwells, only: dwell_t, find_dwells
-   use tolerance_shares, only: shares_t, note_tolerances
+   use tolerance_contributions, only: shares_t, note_tolerances
    use ranges, only: range_t
    use circuits, only: circuits_t
    use set_circuits, only: find_ranges, find_all_circuits

@@ -5,20 +5,20 @@
 !> such curve here. Lengths are those of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
-!> singular at change points alone. K and D of `root_distance`, taken from B, bound how fast B^-1 B changes in any
+!> singular at change points alone. K and D of `uniqueness_radius`, taken from B, bound how fast B^-1 B changes in any
 !> direction and along t; `find_reach` takes from them how long a step cannot jump to another circuit.
 module circuit_curve
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
    use drive_path, only: drive_path_t
    use separations, only: separation
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve
-   use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
+   use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, add_to_links
    use closure_equations, only: residual, jacobian, remainder, find_drive_values
-   use root_distance, only: coordinates_t, new_coordinates, measure_slides, distance, forms_by_inverse, kantorovich, &
-      change_along
+   use uniqueness_radius, only: coordinates_t, new_coordinates, measure_slides, distance, forms_by_inverse, &
+      kantorovich, change_along
    use cylinders, only: cylinder_t, cylinders_of, cylinder_length
    implicit none
    private
@@ -54,7 +54,7 @@ module circuit_curve
       real(wp) :: first = 0.0_wp              !< its value at the first instant
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
       real(wp) :: far = 100.0_wp
-      type(pose_t) :: pose                    !< of the position found last
+      type(configuration_t) :: configuration   !< of the position found last
       type(coordinates_t) :: nonlinear        !< in which the equations are not linear
       type(factors_t) :: factors
    end type curve_t
@@ -94,7 +94,7 @@ contains
       c%held = [f(1, others), 0.0_wp]
       c%driven%drives = c%closure%drives([others, drive])
       c%closure%drives = c%driven%drives(:size(others))
-      c%pose = new_pose(c%closure, m)
+      c%configuration = new_configuration(c%closure, m)
       c%factors = new_factors(c%closure%n)
       c%nonlinear = new_coordinates(c%closure)
    end subroutine make_curve
@@ -106,7 +106,7 @@ contains
       is_redundant = 2*size(c%closure%pairs) + size(c%closure%drives) > c%closure%n - 1
    end function is_redundant
 
-   !> Newton's method from `c%pose`, with the row `border` at rest. `c%factors` are those of the equations' Jacobian
+   !> Newton's method from `c%configuration`, with the row `border` at rest. `c%factors` are those of the Jacobian
    !> there, with `border` in the place of the `row` of the free drive.
    subroutine correct(c, border, row, ok)
       type(curve_t), intent(inout) :: c
@@ -118,7 +118,7 @@ contains
 
       before = huge(before)
       do i = 1, max_iterations
-         call residual(c%driven, c%pose, c%held, r)
+         call residual(c%driven, c%configuration, c%held, r)
          r(c%closure%n) = 0.0_wp
          call factor_there()
          if (.not. ok) return
@@ -126,9 +126,9 @@ contains
          change = maxval(abs(r))
          ok = change <= 1.0_wp
          if (.not. ok) return
-         call add_to_links(c%closure, -r, c%pose%q)
-         call set_pose(c%closure, c%pose)
-         ok = change <= converged*max(1.0_wp, maxval(abs(c%pose%q)))
+         call add_to_links(c%closure, -r, c%configuration%q)
+         call set_configuration(c%closure, c%configuration)
+         ok = change <= converged*max(1.0_wp, maxval(abs(c%configuration%q)))
          if (ok) return
          ok = change <= stalled
          if (ok .and. change > 0.5_wp*before) exit
@@ -138,9 +138,9 @@ contains
 
    contains
 
-      !> Factors the bordered Jacobian at `c%pose`.
+      !> Factors the bordered Jacobian at `c%configuration`.
       subroutine factor_there()
-         call jacobian(c%driven, c%pose, c%factors%a)
+         call jacobian(c%driven, c%configuration, c%factors%a)
          row = c%factors%a(c%closure%n, :)
          c%factors%a(c%closure%n, :) = border
          call factor(c%factors, info)
@@ -255,7 +255,7 @@ contains
          associate (k => c%closure%column(i))
             if (k == 0) cycle
             x(k:k + 2) = b(:, i) - a(:, i)
-            if (turns_off) x(k + 2) = without_turns(x(k + 2))
+            if (turns_off) x(k + 2) = wrap_angle(x(k + 2))
          end associate
       end do
    end function offset_from
@@ -288,11 +288,11 @@ contains
       logical, intent(out) :: ok
       real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2))
 
-      c%pose%q = q
-      call set_pose(c%closure, c%pose)
+      c%configuration%q = q
+      call set_configuration(c%closure, c%configuration)
       call correct(c, border, row, ok)
       if (.not. ok) return
-      p%q = c%pose%q
+      p%q = c%configuration%q
 
       x = 0.0_wp
       x(c%closure%n) = 1.0_wp
@@ -301,13 +301,13 @@ contains
 
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
-      call remainder(c%driven, c%pose, along, x)
+      call remainder(c%driven, c%configuration, along, x)
       p%value(of_bend) = x(c%closure%n)
       x(c%closure%n) = 0.0_wp
       call solve(c%factors, x)
       p%bend = dot_product(p%tangent, x)*p%tangent - x
 
-      call residual(c%driven, c%pose, c%held, x)
+      call residual(c%driven, c%configuration, c%held, x)
       p%value(of_value) = x(c%closure%n)
       p%value(of_slope) = dot_product(row, p%tangent)
       p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
@@ -328,10 +328,10 @@ contains
       real(wp), allocatable :: y(:, :)
       real(wp) :: k, change, speed, bend, powers(3), least
 
-      call measure_slides(c%closure, c%pose, c%nonlinear)
+      call measure_slides(c%closure, c%configuration, c%nonlinear)
       y = forms_by_inverse(c%nonlinear, c%factors, p%tangent)
-      k = kantorovich(c%closure, c%nonlinear, y, c%pose)
-      change = change_along(c%closure, c%nonlinear, y, c%pose, along)
+      k = kantorovich(c%closure, c%nonlinear, y, c%configuration)
+      change = change_along(c%closure, c%nonlinear, y, c%configuration, along)
       speed = distance(c%nonlinear, p%tangent)
       bend = distance(c%nonlinear, p%bend)
       ! Where nothing turns a step is as long as the mechanism is far.

@@ -8,7 +8,7 @@ module circuit_trace
       step_between, &
       lies_between, offset_from, reversed
    use drives, only: halve, middle_of
-   use pose, only: add_to_links
+   use configuration, only: add_to_links
    implicit none
    private
    public :: circuit_t, trace, least_step, find_root, end_closed, end_far, end_lost, end_shut

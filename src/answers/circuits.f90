@@ -9,7 +9,7 @@
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, singular_dead
    use analysis, only: analysis_t, make_analysis, advance

@@ -9,7 +9,7 @@
 !> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
 module column_search
    use kinds, only: wp
-   use known_digits, only: nothing_known
+   use masked_numbers, only: nothing_known
    use points, only: row_t, known_at
    use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at
@@ -90,14 +90,14 @@ contains
 
       associate (track => x%tracks(c))
          call find_node(s, track, t, track%nodes(track%filled + 1), always)
-         if (track%filled == 2) call look_for_turns(track)
+         if (track%filled == 2) call look_for_extreme(track)
       end associate
    end subroutine find_next
 
    !> Finds whether a number of the `track` may have an extreme between its first and its third node: a rate, an
    !> acceleration or a jerk has another sign there, or than when it had a clear one last, or an acceleration is not
    !> simple.
-   subroutine look_for_turns(track)
+   subroutine look_for_extreme(track)
       type(track_t), intent(inout) :: track
       real(wp) :: jerk(2), noise(3), f(3), low, high
       integer :: i, k
@@ -144,7 +144,7 @@ contains
             last = v(n)
          end do
       end subroutine compare
-   end subroutine look_for_turns
+   end subroutine look_for_extreme
 
    !> The parts between three nodes have one length, and are searched together.
    pure logical function is_pair(track, a, middle, b)

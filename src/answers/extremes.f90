@@ -2,20 +2,20 @@
 !> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use planar, only: pi, in_degrees, without_turns
+   use plane_vectors, only: pi, in_degrees, wrap_angle
    use mechanism, only: mechanism_t, request_t, request_measure
    use scales, only: characteristic_length, characteristic_rate, is_length
    use separations, only: closes, closes_to
    use drives, only: joints_of, largest_frequency
    use points, only: row_t, is_fixed, column_of_ratio
    use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
-   use digits_in_doubt, only: safe_growth
+   use significance_check, only: safe_growth
    use independent, only: set_t
    use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, track_t, end_t, gap_t, value_at_t, least, greatest, outward, &
+   public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
       rows_asked, new_extremes, offer, offer_sample, note_velocity, note_interval, is_cyclic, is_covered, &
       varies, strokes_t, strokes_of, settle_ratios, badly_known, alike, never_better
 
@@ -90,9 +90,9 @@ module extremes
    end type track_t
 
    !> An interval of time.
-   type :: gap_t
+   type :: uncovered_interval_t
       real(wp) :: from = 0.0_wp, to = 0.0_wp
-   end type gap_t
+   end type uncovered_interval_t
 
    !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
    !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
@@ -107,8 +107,8 @@ module extremes
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
-      type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
-      type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
+      type(uncovered_interval_t), allocatable :: gaps(:)   !< (any number) in which not all is known, in the run's order
+      type(uncovered_interval_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
@@ -338,9 +338,9 @@ contains
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
    !> more than `apart_by` apart are one.
    pure subroutine note_interval(list, way, from, to, apart_by)
-      type(gap_t), allocatable, intent(inout) :: list(:)
+      type(uncovered_interval_t), allocatable, intent(inout) :: list(:)
       real(wp), intent(in) :: way, from, to, apart_by
-      type(gap_t), allocatable :: joined(:)
+      type(uncovered_interval_t), allocatable :: joined(:)
       logical :: apart(size(list)), before(size(list))
       real(wp) :: low, high
       integer :: n
@@ -352,7 +352,7 @@ contains
       n = count(before)
       allocate (joined(count(apart) + 1))
       joined(:n) = list(:n)
-      joined(n + 1) = gap_t(way*low, way*high)
+      joined(n + 1) = uncovered_interval_t(way*low, way*high)
       joined(n + 2:) = list(size(list) - size(joined) + n + 2:)
       call move_alloc(joined, list)
    end subroutine note_interval
@@ -408,7 +408,7 @@ contains
             if (mod(n, in_period) /= 0) cycle
             period = x%run*in_period/n
             change = all_of(in_period + 1:)%value - all_of(:n - in_period)%value
-            if (c%is_angle) change = without_turns(change)
+            if (c%is_angle) change = wrap_angle(change)
             if (all(abs(change) <= closes_to*c%size_of(0)) .and. all(abs(all_of(in_period + 1:)%t &
                - all_of(:n - in_period)%t - period) <= closes_to*abs(x%run))) exit
          end do

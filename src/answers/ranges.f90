@@ -4,7 +4,7 @@
 module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
    use separations, only: motions_apart, closes

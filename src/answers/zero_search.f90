@@ -94,7 +94,7 @@ contains
    end function guess
 
    !> The column `c` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
-   subroutine look_at_column(s, c, t, sample, with_errors)
+   subroutine evaluate_column(s, c, t, sample, with_errors)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
       real(wp), intent(in) :: t
@@ -106,7 +106,7 @@ contains
       call rows_at(s, [c%request], t, row, with_errors, error, growth)
       sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), known_at(row(1)), &
          row(1)%state == points_coincide, growth)
-   end subroutine look_at_column
+   end subroutine evaluate_column
 
    !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
    !> opposite signs there. Newton's method, in a bracket that is halved where it does not get on. Where a time between
@@ -141,7 +141,7 @@ contains
             jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > large_part*c%noise(0)/noise_part
             exit
          end if
-         call look_at_column(s, c, t, at)
+         call evaluate_column(s, c, t, at)
          if (at%meets .and. order <= max(0, at%known + 1)) then
             ! A length whose points coincide turns there, and a direction jumps.
             zero = at
@@ -185,7 +185,7 @@ contains
       end do
       if (jumps) then
          ! A direction, where two points pass one another.
-         call look_at_column(s, c, t, zero)
+         call evaluate_column(s, c, t, zero)
          zero%t_error = abs(ends(2) - ends(1)) + epsilon(1.0_wp)*maxval(abs(ends))
          zero%error = 0.0_wp
          return
@@ -215,7 +215,7 @@ contains
          t = first
          ! What is so near an end is as good as there.
          if (min(abs(t - a%t), abs(b%t - t)) <= beside_end*abs(length)) return
-         call look_at_column(s, c, t, at)
+         call evaluate_column(s, c, t, at)
          if (at%known < 2) return
          slope = abs(on_curve(c, 4, t))
          if (slope > 0.0_wp) then
@@ -239,7 +239,7 @@ contains
             u = min(max((t - c%range(1))/step, 2.0_wp), (c%range(2) - c%range(1))/step - 2.0_wp) - (t - c%range(1))/step
             t = t + u*step
             do k = -2, 2
-               call look_at_column(s, c, t + k*step, at)
+               call evaluate_column(s, c, t + k*step, at)
                if (at%known < 2) exit
                f(k) = at%f(2)
             end do
@@ -294,7 +294,7 @@ contains
 
       do i = 1, 2
          ! An estimate of errors takes nine solutions.
-         call look_at_column(s, c, t, zero, i == 2)
+         call evaluate_column(s, c, t, zero, i == 2)
          open = zero%error(order)
          if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(order)
          zero%t_error = abs(ends(2) - ends(1))

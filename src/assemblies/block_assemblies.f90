@@ -3,7 +3,7 @@
 module block_assemblies
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use blocks, only: blocks_t, geometry_t, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
@@ -167,7 +167,7 @@ contains
       pure real(wp) function apart(x, y)
          real(wp), intent(in) :: x(:), y(:)
 
-         apart = maxval(merge(abs(without_turns(x - y)), abs(x - y), &
+         apart = maxval(merge(abs(wrap_angle(x - y)), abs(x - y), &
             own_unknowns(b, i) <= b%orientations))
       end function apart
    end subroutine find_positions

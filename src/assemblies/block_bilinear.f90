@@ -6,7 +6,7 @@
 module block_bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use planar, only: length_of
+   use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, loop_projection, loop_angles
    use block_state, only: state_t, given
    use block_equations, only: find_known_parts

@@ -9,7 +9,7 @@
 !> Coordinates are homogeneous, x . u = 1 and y . v = 1 with u and v by chance: paths to infinity have ends as others.
 module homotopy
    use, intrinsic :: iso_fortran_env, only: dp => real64
-   use planar, only: pi
+   use plane_vectors, only: pi
    use lapack, only: zgesv
    use bilinear, only: bilinear_t, path_start_t, path_end_t, ends_t, finiteness, infinity_level
    implicit none

@@ -5,13 +5,13 @@ module block_diagnostics
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_far_estimate, diagnostic_singular, &
       diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use scales, only: is_length
    use blocks, only: blocks_below, largest_known, own_unknowns
    use block_rank, only: redundant_rows, moving_unknowns
    use block_state, only: largest_drive_rate
    use block_engine, only: block_engine_t, mark_singular_links
-   use singular_place, only: block_singularity
+   use singular_position, only: block_singularity
    implicit none
    private
    public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, &
@@ -70,7 +70,7 @@ contains
             if (e%choice(i)%is_incomplete) list = [list, new_diagnostic(diagnostic_incomplete, links_of(e, i))]
          end associate
       end do
-      off = without_turns(found%position(3, :) - e%estimate(3, :))
+      off = wrap_angle(found%position(3, :) - e%estimate(3, :))
       link = maxloc(abs(off), mask=e%blocks%is_found, dim=1)
       if (link == 0) return
       if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &

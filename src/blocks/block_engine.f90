@@ -16,8 +16,8 @@ module block_engine
       own_unknowns
    use block_numbers, only: put_numbers
    use block_state, only: state_t, unknown_t, new_state, set_direction, set_values, add_turns
-   use block_solver, only: workspace_t, new_workspace, solve_block, solve_direct
-   use singular_place, only: settle
+   use block_solver, only: workspace_t, new_workspace, solve_block, solve_explicit
+   use singular_position, only: settle
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
       missing_all
@@ -433,7 +433,7 @@ contains
          call note_block(e%blocks, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
          if (.not. e%blocks%list(i)%direct) cycle
          if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
-            call solve_direct(e%blocks, e%geometry, i, e%state)
+            call solve_explicit(e%blocks, e%geometry, i, e%state)
       end do
       s = e%state
       do k = 1, e%blocks%unknowns
@@ -468,7 +468,7 @@ contains
       do k = 1, size(e%blocks%needed)
          i = e%blocks%needed(k)
          if (e%blocks%list(i)%direct) then
-            call solve_direct(e%blocks, e%geometry, i, s)
+            call solve_explicit(e%blocks, e%geometry, i, s)
          else if (e%history%filled == 0) then
             call set_values(e%blocks, i, e%estimated(own_unknowns(e%blocks, i)), s)
          end if

@@ -9,7 +9,7 @@ module block_rank
    use block_equations, only: assemble_dense
    implicit none
    private
-   public :: values_t, decomposed, redundant_rows, surplus_drives, moving_unknowns, try_to_move, jacobian_of, &
+   public :: svd_t, decomposed, redundant_rows, surplus_drives, moving_unknowns, try_to_move, jacobian_of, &
       relative_sign, residual_of, curvature_of, gauss_newton_step
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
@@ -25,11 +25,11 @@ module block_rank
    integer, parameter :: max_rows = 1500
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
-   type :: values_t
+   type :: svd_t
       integer :: rows = 0, n = 0, rank = 0        !< equations, unknowns, singular values that are not small
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
-   end type values_t
+   end type svd_t
 
    !> The cosine between columns of two Jacobians, and the product of those between their ranges, that are not too far.
    real(wp), parameter :: min_cosine = 0.7_wp
@@ -45,7 +45,7 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       integer, allocatable :: list(:)
-      type(values_t) :: v
+      type(svd_t) :: v
       integer, allocatable :: order(:)
       integer :: k, n, c, at
 
@@ -87,7 +87,7 @@ contains
       !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
       real(wp), parameter :: least_part = 1.0e-3_wp
       logical :: are(drives)
-      type(values_t) :: v
+      type(svd_t) :: v
       integer :: k
 
       are = .false.
@@ -123,7 +123,7 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       logical, intent(out) :: moves(b%list(i)%last - b%list(i)%first + 1)
-      type(values_t) :: v
+      type(svd_t) :: v
       real(wp) :: start(size(moves)), direction(size(moves)), residual
       integer :: k
 
@@ -229,7 +229,7 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: residual
-      type(values_t) :: v
+      type(svd_t) :: v
       real(wp), allocatable :: values(:)
       integer :: k
 
@@ -248,7 +248,7 @@ contains
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
-      type(values_t) :: v
+      type(svd_t) :: v
       type(state_t) :: there
       real(wp), allocatable :: a(:)
       real(wp) :: work(8*(b%list(i)%shape%rows + b%list(i)%shape%n) + 64)

@@ -17,14 +17,14 @@ module block_solver
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
-   use planar, only: length_of
+   use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
       slide_t, known_to, loop_projection
    use block_state, only: state_t, set_direction
    use block_equations, only: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, solve_direct, second_order_bounds
+   public :: workspace_t, new_workspace, solve_block, solve_explicit, second_order_bounds
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -89,7 +89,7 @@ contains
 
       associate (block => b%list(i))
          if (block%direct) then
-            call solve_direct(b, x, i, s)
+            call solve_explicit(b, x, i, s)
             c%ended = ended_converged
             return
          end if
@@ -101,7 +101,7 @@ contains
    end subroutine solve_block
 
    !> Solves block `i`, a drive's own unknown: nothing to iterate.
-   pure subroutine solve_direct(b, x, i, s)
+   pure subroutine solve_explicit(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
@@ -111,7 +111,7 @@ contains
          call find_direct(row, x%rows(b%list(i)%first_row), s%drive_value, s%u(row%other), s%u(u))
          call set_direction(b, u, s)
       end associate
-   end subroutine solve_direct
+   end subroutine solve_explicit
 
    !> Solves `block`, number `i`, which is not direct, by Newton's method: on plain arrays, whose descriptors are read
    !> once. `solve_block` shows what they are of.

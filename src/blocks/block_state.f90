@@ -2,7 +2,7 @@
 module block_state
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, loop_state_t
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use blocks, only: blocks_t, geometry_t, loop_angles
    implicit none
    private
@@ -106,7 +106,7 @@ contains
          end if
          if (joins == to) cycle
          where (group == joins)
-            turns = turns + (off - without_turns(off))
+            turns = turns + (off - wrap_angle(off))
             group = to
          end where
       end do

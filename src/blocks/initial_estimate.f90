@@ -9,11 +9,11 @@
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted, members
-   use planar, only: direction, pi, without_turns
+   use disjoint_sets, only: sorted_t, sorted, members
+   use plane_vectors, only: direction, pi, wrap_angle
    use pair_geometry, only: way_of, opening_of, slide_of
    use mechanism, only: mechanism_t, has_guide
-   use links_tree, only: tree_t, axes_t
+   use spanning_tree, only: spanning_tree_t, axes_t
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
@@ -88,7 +88,7 @@ contains
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
    function estimated_directions(m, t, a, span) result(phi)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       real(wp), intent(in) :: span
       real(wp), dimension(size(m%links)) :: phi, u, v, w
@@ -113,9 +113,9 @@ contains
       do sweep = 1, max_sweeps
          w = v
          call minimize_closure_errors()
-         if (maxval(abs(without_turns(v - w))) <= good_part) exit
+         if (maxval(abs(wrap_angle(v - w))) <= good_part) exit
       end do
-      v = u + without_turns(v - u)
+      v = u + wrap_angle(v - u)
       is_far = abs(v - u) > far_angle
       if (.not. any(is_far)) return
       ! Of what is open, only what small changes of other angles do not close contradicts an angle; what they open does

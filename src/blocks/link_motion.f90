@@ -5,10 +5,10 @@
 !> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
 module link_motion
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, add_rotating
+   use plane_vectors, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: place_on_tree
+   use spanning_tree, only: place_on_tree
    use blocks, only: blocks_t, geometry_t, chain_t, chain_link_t
    use block_state, only: unknown_t, state_t
    implicit none

@@ -38,9 +38,9 @@ module predictor
    real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
    !> One unknown in the last three motions, the latest first; of its values the latest alone.
-   type :: past_t
+   type :: unknown_history_t
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
-   end type past_t
+   end type unknown_history_t
 
    !> The last three motions.
    type :: history_t
@@ -49,7 +49,7 @@ module predictor
       integer :: filled = 0                             !< motions that are there, 0 to 3
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
       real(wp) :: uncertain(0:2) = 0.0_wp               !< their accelerations, in parts of velocities in a unit of time
-      type(past_t), allocatable :: past(:)              !< (0:unknowns)
+      type(unknown_history_t), allocatable :: past(:)              !< (0:unknowns)
    end type history_t
 
 contains

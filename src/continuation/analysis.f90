@@ -39,10 +39,10 @@ module analysis
       ended_elsewhere
    use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
       get_ratios, get_driven_links, set_drive_values, solve_each
-   use first_instant, only: measure_closure_error
+   use initial_assembly, only: measure_closure_error
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
-   use at_bifurcation, only: go_by_value, leave
+   use change_point_passage, only: go_by_value, leave
    use scales, only: is_length
    use cylinders, only: cylinder_length, is_out_of_stroke
    use following, only: lengths_followed, following_t, &

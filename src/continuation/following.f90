@@ -10,15 +10,15 @@ module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_dead_end
-   use drive_excursion, only: drive_excursion_t, new_drive_excursion, limit_substep, examine
+   use drive_deviation, only: drive_deviation_t, new_drive_excursion, limit_substep, examine
    use drive_path, only: drive_at
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use block_engine, only: block_engine_t, engine_state_t, accept, followed_state
    use block_state, only: state_t
    use link_motion, only: move_links
    use cylinders, only: cylinder_t, cylinder_motion, stays_within
-   use first_instant, only: solve_instant
-   use block_branches, only: pass, branch_requests_t, new_branch_requests
+   use initial_assembly, only: solve_instant
+   use branch_switching, only: pass, branch_requests_t, new_branch_requests
    implicit none
    private
    public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, follow_from, &
@@ -91,7 +91,7 @@ module following
       logical :: follows = .false.               !< a regular motion is followed, found at `t`
       real(wp) :: t = 0.0_wp                     !< time
       type(place_t) :: place                     !< where the step that was divided last began
-      type(drive_excursion_t) :: drives          !< how far the drives leave their chords
+      type(drive_deviation_t) :: drives          !< how far the drives leave their chords
    end type following_t
 
    !> A step of the continuation, from one instant to another.

@@ -7,7 +7,7 @@ module card_reader
    use input_errors
    use failures, only: capitals
    use numbers, only: read_real, read_whole
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: parsed_card_t, read_card, read_star, refuse_field, find_long_label

@@ -11,7 +11,7 @@ module card_sets
    use drawn_lengths, only: put_axes, same_place_tolerance
    use name_table, only: name_table_t, put_name, find_name
    use names, only: subject_name
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: card_set_t, begin_set, begin_mechanism, build_bodies, define_name, has_drawing, joint_points, look_up, &

@@ -14,7 +14,7 @@ module deck
    use deck_source, only: source_t, open_source, source_of, next_card
    use failures, only: failure_t, fail, status_rejected
    use input_errors
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: read_deck, read_deck_text, build_variant

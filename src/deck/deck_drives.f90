@@ -3,7 +3,7 @@
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism
    use scales, only: is_length
    use card_reader, only: parsed_card_t, refuse_field

@@ -9,7 +9,7 @@ module deck_lengths
    use input_errors
    use deck_remarks, only: drawn_text
    use drawn_values, only: drawn_place
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: build_lengths

@@ -10,7 +10,7 @@ module deck_options
    use cards
    use input_errors
    use name_table, only: name_table_t, put_name, find_name
-   use numerals, only: whole
+   use number_format, only: whole
    use independent, only: part_of_links
    implicit none
    private

@@ -3,14 +3,14 @@
 !> with JOINT cards, whose drawing is the mechanism: numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
-   use planar, only: pi, in_degrees, without_turns
+   use plane_vectors, only: pi, in_degrees, wrap_angle
    use mechanism
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_place
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
    use names, only: drive_name, listed
    use scales, only: solver_length
-   use numerals, only: rounded
+   use number_format, only: rounded
    use deck_variants, only: number_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
    use cards
@@ -325,10 +325,10 @@ contains
             else
                opening = drawn_opening(m, pair)
                associate (phi => m%links(pair_links(m, pair))%position(3))
-                  turn = without_turns(phi(2) - phi(1) - pair%beta)
+                  turn = wrap_angle(phi(2) - phi(1) - pair%beta)
                end associate
                if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) text = angle_text(turn)
-               turn = without_turns(link%position(3))
+               turn = wrap_angle(link%position(3))
                if (abs(turn) > same_direction .and. set%cards(k)%form /= form_cylinder .and. .not. link%along(3)) &
                   call add_remark(set%errors, remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
                   angle_text(pair%alpha)//', '//angle_text(pair%alpha + turn))

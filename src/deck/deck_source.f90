@@ -5,7 +5,7 @@ module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use cards, only: card_t, card_columns
-   use numerals, only: whole
+   use number_format, only: whole
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of
    implicit none
    private

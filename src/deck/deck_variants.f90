@@ -13,7 +13,7 @@ module deck_variants
    use cards
    use input_errors
    use numbers, only: read_whole
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, take_values, &

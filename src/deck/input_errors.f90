@@ -5,7 +5,7 @@ module input_errors
    use kinds, only: wp, label_length
    use mechanism, only: remark_t, remark_more
    use cards
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: error_code_t, input_errors_t, add_error, add_field_error, error_report, add_remark, near_name

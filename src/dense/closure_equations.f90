@@ -1,7 +1,7 @@
 !> The closure equations (14) of a mechanism: residual, Jacobian and acceleration remainder.
 !>
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
-!> paper's own iteration: where the pose is frozen, its slopes are the coefficients of (16) and the matrix is A of (20).
+!> paper's own iteration: where the configuration is frozen, its slopes are the coefficients of (16) and the matrix is A of (20).
 !> The one file that knows the kinds of pairs and of drives.
 !>
 !> Revolute pair of links i and j: the joint is point P of link i and point Q of link j. With the body vectors
@@ -25,20 +25,20 @@
 !> it costs one equation and one unknown a pair and prints nothing that the projection does not.
 module closure_equations
    use kinds, only: wp
-   use planar, only: pi, rotated, quarter_turn, cross
+   use plane_vectors, only: pi, rotated, quarter_turn, cross
    use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use drive_path, only: drive_path_t, drive_at
-   use pose, only: system_t, pose_t, normal_angle, secants
+   use configuration, only: system_t, configuration_t, normal_angle, secants
    implicit none
    private
    public :: residual, jacobian, remainder, find_drive_values, closure_error, normal, projection_row
 
 contains
 
-   !> Residual (n) of all equations at pose `p`; `driven` (drives): the drives' values.
+   !> Residual (n) of all equations at configuration `p`; `driven` (drives): the drives' values.
    pure subroutine residual(s, p, driven, r)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: driven(:)
       real(wp), intent(out) :: r(:)
       integer :: k
@@ -68,10 +68,10 @@ contains
       end do
    end subroutine residual
 
-   !> Jacobian (n, n) of the residual at pose `p`, or the matrix A of (20) where the pose is in the frozen form.
+   !> Jacobian (n, n) of the residual at configuration `p`, or the matrix A of (20) where the configuration is in the frozen form.
    pure subroutine jacobian(s, p, a)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(out) :: a(:, :)
       real(wp) :: coefficients(3)
       integer :: k, row
@@ -115,7 +115,7 @@ contains
    !> `v` (3, links).
    pure subroutine remainder(s, p, v, gamma)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: v(:, :)
       real(wp), intent(out) :: gamma(:)
       integer :: k
@@ -185,10 +185,10 @@ contains
       end associate
    end subroutine place
 
-   !> P - Q (2) of pair `k` in the pose `p`.
+   !> P - Q (2) of pair `k` in the configuration `p`.
    pure function closure_error(s, p, k) result(d)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp) :: d(2)
 
@@ -200,7 +200,7 @@ contains
    !> Normal n of the guide of pair `k`.
    pure function normal(s, p, k) result(n)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp) :: n(2)
 
@@ -210,7 +210,7 @@ contains
    !> Minus the direction e of the guide of pair `k`: the slide is the projection of P - Q on it.
    pure function along(s, p, k) result(f)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp) :: f(2)
 
@@ -225,7 +225,7 @@ contains
    !> columns alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(s, p, k, f, psi, zeros) result(row)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp), intent(in) :: f(2), psi, zeros(2)
       real(wp) :: row(6), g(3), d(2), secant(2)
@@ -245,7 +245,7 @@ contains
    !> Acceleration remainder of the projection of prismatic pair `k` on `f` (2), at velocities `v` (3, links).
    pure real(wp) function projection_remainder(s, p, v, k, f) result(gamma)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: v(:, :), f(2)
       integer, intent(in) :: k
       real(wp) :: velocity(2)
@@ -263,7 +263,7 @@ contains
    !> phi_j'^2 w.
    pure function turning_part(s, p, v, k) result(gamma)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: v(:, :)
       integer, intent(in) :: k
       real(wp) :: gamma(2)

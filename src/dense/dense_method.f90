@@ -16,7 +16,7 @@ module dense_method
    use block_state, only: state_t
    use block_engine, only: block_engine_t, get_motion, followed_state
    use link_motion, only: move_links
-   use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
+   use configuration, only: system_t, configuration_t, new_system, new_configuration, add_to_links
    use closure_equations, only: find_drive_values, remainder
    use position_iteration, only: solve_position
    implicit none
@@ -40,7 +40,7 @@ module dense_method
       integer :: order = order_of_paper           !< of the predictor, 0 to 2
       real(wp) :: tolerance = 0.0_wp              !< relative; 0: the limit of rounding
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
-      type(pose_t) :: pose                        !< the position that is searched for
+      type(configuration_t) :: configuration                        !< the position that is searched for
       type(factors_t) :: factors
    end type dense_t
 
@@ -55,7 +55,7 @@ contains
       d%method = m%method
       if (m%predictor /= own_predictor) d%order = min(m%predictor, order_of_paper)
       d%tolerance = m%tolerance
-      d%pose = new_pose(d%system, m)
+      d%configuration = new_configuration(d%system, m)
       d%factors = new_factors(d%system%n)
       allocate (d%drive_values(3, size(m%drives)))
    end subroutine make_dense
@@ -103,8 +103,8 @@ contains
       start(:2, :) = start(:2, :)/d%system%length
 
       do k = 1, max_starts
-         d%pose%q = start
-         call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%pose, &
+         d%configuration%q = start
+         call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%configuration, &
             d%factors, c)
          if (is_solved(c) .and. .not. c%singular) then
             call pivot_range(shape_t(d%system%n, d%system%n), d%factors%a, d%factors%pivots, least, largest, &
@@ -124,7 +124,7 @@ contains
       if (.not. is_solved(c)) return
 
       c%singular = c%singular .or. any(e%is_singular(e%blocks%needed))
-      found%position = d%pose%q
+      found%position = d%configuration%q
       if (.not. c%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
          ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f' and f'' are zero in the rows of pairs.
@@ -134,7 +134,7 @@ contains
             call solve_factored(d%factors, b)
             found%velocity = 0.0_wp
             call add_to_links(s, b, found%velocity)
-            call remainder(s, d%pose, found%velocity, b)
+            call remainder(s, d%configuration, found%velocity, b)
             b = -b
             b(first:) = b(first:) + d%drive_values(3, :)
             call solve_factored(d%factors, b)
@@ -156,7 +156,7 @@ contains
       real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 
-      off = abs(d%pose%q - there)
+      off = abs(d%configuration%q - there)
       off(:2, :) = off(:2, :)*(d%system%length/e%geometry%span)
       largest = maxval(off)
       is = .true.

@@ -19,7 +19,7 @@ module position_iteration
    use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged
    use block_solver, only: rounding_level, angle_limit
    use predictor, only: largest_change
-   use pose, only: system_t, pose_t, set_pose, choose_references, add_to_links
+   use configuration, only: system_t, configuration_t, set_configuration, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    implicit none
    private
@@ -47,14 +47,14 @@ contains
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
       logical, intent(in) :: is_matrix
-      type(pose_t), intent(inout) :: p
+      type(configuration_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
       real(wp) :: r(s%n), start(size(p%q, 2)), before, highest
       logical :: stays
       integer :: info
 
-      call set_pose(s, p)
+      call set_configuration(s, p)
       if (is_matrix) call choose_references(s, p)
       start = p%q(3, :)
       before = huge(before)
@@ -87,7 +87,7 @@ contains
             c%ended = ended_diverged
             exit
          end if
-         call set_pose(s, p)
+         call set_configuration(s, p)
          if (c%residual <= max(rounding_level, tolerance) .and. c%step <= max(step_tolerance, tolerance)) then
             c%ended = ended_converged
             exit
@@ -97,7 +97,7 @@ contains
       if (.not. is_matrix) return
 
       p%frozen = .false.
-      call set_pose(s, p)
+      call set_configuration(s, p)
       if (.not. is_solved(c)) return
       call jacobian(s, p, f%a)
       call factor(f, info)

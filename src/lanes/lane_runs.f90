@@ -7,7 +7,7 @@ module lane_runs
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
    use motion, only: mark_none
    use predictor, only: is_even
-   use drive_excursion, only: judge_step
+   use drive_deviation, only: judge_step
    use analysis, only: come_back
    use set_analysis, only: set_analysis_t, advance_set, take_state
    use column_search, only: find_next
@@ -18,7 +18,7 @@ module lane_runs
    use system_calls, only: signal_received
    use lane_sines, only: width
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
-   use lane_steps, only: judgement_t, solve_lanes, accept_lanes, keep_lane
+   use lane_steps, only: step_check_t, solve_lanes, accept_lanes, keep_lane
    implicit none
    private
    public :: lane_run_t, begin_run, run_lanes, width
@@ -39,7 +39,7 @@ module lane_runs
       type(set_analysis_t) :: s
       integer :: at = -1                    !< the last instant solved
       integer :: patience = first_patience
-      logical :: is_laned = .false.         !< a lane has it
+      logical :: in_simd_lane = .false.         !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
 
@@ -53,7 +53,7 @@ contains
       r%at = -1
       r%patience = first_patience
       r%is_over = .false.
-      r%is_laned = .false.
+      r%in_simd_lane = .false.
       r%counts = counts_t()
    end subroutine begin_run
 
@@ -61,24 +61,24 @@ contains
    subroutine run_lanes(runs, l)
       type(lane_run_t), intent(inout) :: runs(:)
       type(lanes_t), intent(inout) :: l
-      type(judgement_t) :: j
+      type(step_check_t) :: j
       real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
-      logical :: is_laned, searches
+      logical :: in_simd_lane, searches
 
       do i = 1, size(runs)
          call take_over(runs(i), l, i)
       end do
       ! Lanes that no variant has do what one of them does: their numbers must be numbers.
-      if (any(runs%is_laned)) then
-         k = findloc(runs%is_laned, .true., dim=1)
+      if (any(runs%in_simd_lane)) then
+         k = findloc(runs%in_simd_lane, .true., dim=1)
          do i = 1, width
-            is_laned = .false.
-            if (i <= size(runs)) is_laned = runs(i)%is_laned
-            if (.not. is_laned) call load_run(runs(k), l, i, is_laned)
+            in_simd_lane = .false.
+            if (i <= size(runs)) in_simd_lane = runs(i)%in_simd_lane
+            if (.not. in_simd_lane) call load_run(runs(k), l, i, in_simd_lane)
          end do
       end if
-      do while (any(runs%is_laned) .and. signal_received() == 0)
+      do while (any(runs%in_simd_lane) .and. signal_received() == 0)
          ! Step k ends at t0 + span (at + k)/all_steps, as `instant` has it. Lanes without a variant stay where they
          ! are.
          steps = huge(steps)
@@ -88,7 +88,7 @@ contains
          all_steps = 1.0_wp
          goes_on = 0.0_wp
          do i = 1, size(runs)
-            if (.not. runs(i)%is_laned) cycle
+            if (.not. runs(i)%in_simd_lane) cycle
             associate (m => runs(i)%m)
                t0(i) = m%t0
                span(i) = m%t1 - m%t0
@@ -105,14 +105,14 @@ contains
             call accept_lanes(l, t)
          end do
          do i = 1, size(runs)
-            if (.not. runs(i)%is_laned) cycle
+            if (.not. runs(i)%in_simd_lane) cycle
             call count_instants(runs(i), k - 1)
             call look_at_step(runs(i), l, i, j, t(i))
          end do
          call accept_lanes(l, t)
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
-               if (r%is_laned .and. r%asked%extremes_asked) then
+               if (r%in_simd_lane .and. r%asked%extremes_asked) then
                   searches = is_searched(x, r%s, 1)
                   if (searches) call give_back(r, l, i)
                   call search_instant(x, r%s, 1, r%at, searches)
@@ -130,7 +130,7 @@ contains
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i               !< its number
-      type(judgement_t), intent(in) :: j
+      type(step_check_t), intent(in) :: j
       real(wp), intent(inout) :: t           !< time
       logical :: is_refused, counts
 
@@ -149,7 +149,7 @@ contains
       end if
 
       call give_back(r, l, i)
-      r%is_laned = .false.
+      r%in_simd_lane = .false.
       call by_engine(r, r%at + merge(r%patience, 1, is_refused))
       call keep_lane(l, i)
       t = l%t(i, l%slot(0))
@@ -163,7 +163,7 @@ contains
       r%at = r%at + n
       r%counts%solved = r%counts%solved + n
       r%is_over = r%at == instant_count(r%m) - 1
-      r%is_laned = .not. r%is_over
+      r%in_simd_lane = .not. r%is_over
    end subroutine count_instants
 
    !> Lane `i` takes over `r`, unless it has it or `r` is over, as soon as it can; until then the engine solves it.
@@ -172,9 +172,9 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i               !< its number
 
-      do while (.not. (r%is_over .or. r%is_laned) .and. signal_received() == 0)
-         call load_run(r, l, i, r%is_laned)
-         if (r%is_laned) return
+      do while (.not. (r%is_over .or. r%in_simd_lane) .and. signal_received() == 0)
+         call load_run(r, l, i, r%in_simd_lane)
+         if (r%in_simd_lane) return
          if (r%at >= 2) r%patience = 2*r%patience
          call by_engine(r, r%at + r%patience)
       end do

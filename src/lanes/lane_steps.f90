@@ -15,17 +15,17 @@ module lane_steps
    use lane_equations, only: set_lane_direction, find_lane_direct, find_lane_known, assemble_lanes, lane_accelerations
    implicit none
    private
-   public :: judgement_t, solve_lanes, accept_lanes, keep_lane
+   public :: step_check_t, solve_lanes, accept_lanes, keep_lane
 
    !> What takes more iterations is refused.
    integer, parameter :: max_iterations = 5
    !> What each lane's motion is worth.
-   type :: judgement_t
+   type :: step_check_t
       real(wp) :: refused(width) = 0.0_wp      !< above 0: it is no continuation that lanes can certify
       real(wp) :: correction(width) = 0.0_wp   !< the largest change of a predicted value, rad or unit of length
       real(wp) :: ratio(width) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
       real(wp) :: growth(width) = 0.0_wp       !< of that ratio with them
-   end type judgement_t
+   end type step_check_t
 
 contains
 
@@ -33,7 +33,7 @@ contains
    subroutine solve_lanes(l, t, j)
       type(lanes_t), intent(inout) :: l
       real(wp), intent(in) :: t(width)
-      type(judgement_t), intent(out) :: j
+      type(step_check_t), intent(out) :: j
       integer :: k, i
 
       call set_drives(l, t)
@@ -76,7 +76,7 @@ contains
    subroutine predict_lanes(l, t, j)
       type(lanes_t), intent(inout) :: l
       real(wp), intent(in) :: t(width)
-      type(judgement_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: j
       real(wp) :: step(width)
       integer :: k, u
 
@@ -109,7 +109,7 @@ contains
    subroutine solve_block(l, i, n, j)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
-      type(judgement_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: j
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
       real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width), &
          start(width, max_order), change(width)
@@ -142,7 +142,7 @@ contains
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
       real(wp), intent(inout) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width)
-      type(judgement_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: j
       real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
 
@@ -196,7 +196,7 @@ contains
       integer, intent(in) :: n, before, next
       real(wp), intent(in) :: a(width, max_order**2), exchanged(width), change(width)
       type(lane_block_t), intent(inout) :: block
-      type(judgement_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: j
       real(wp) :: largest(width), sign_of(width)
       integer :: l
 

@@ -4,7 +4,7 @@
 !> An address (`card_number_t`) is four integers: it stays as it is if the number or the deck's units change.
 module card_numbers
    use kinds, only: wp, label_length
-   use planar, only: pi, degree, direction, rotated, point_of
+   use plane_vectors, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
       number_drive, number_knot, number_time, number_length, number_hole, term_harmonic, term_power, term_table, &
       term_kinds
@@ -13,7 +13,7 @@ module card_numbers
    use drawn_values, only: follow_drawing
    use drawn_lengths, only: put_lengths
    use names, only: drive_name
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: unit_t, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &

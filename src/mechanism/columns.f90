@@ -2,7 +2,7 @@
 !> module says which numbers a row of a kind has, what they are called, or whether one exists.
 module columns
    use kinds, only: wp, label_length
-   use planar, only: degree
+   use plane_vectors, only: degree
    use scales, only: is_length
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_measure, &
       request_pole, request_curve, request_ratio, has_guide

@@ -1,7 +1,7 @@
 !> Cylinders: prismatic pairs whose slide is a length above 0, within a stroke or without one.
 module cylinders
    use kinds, only: wp
-   use planar, only: direction, rotated, point_of, add_rotating
+   use plane_vectors, only: direction, rotated, point_of, add_rotating
    use mechanism, only: mechanism_t
    use instant_centres, only: seen_from
    implicit none

@@ -3,7 +3,7 @@
 !> are drawn at one place of a body are one hole, which moves as one.
 module drawn_lengths
    use kinds, only: wp
-   use planar, only: pi, direction, rotated, point_of, cross
+   use plane_vectors, only: pi, direction, rotated, point_of, cross
    use mechanism, only: mechanism_t
    implicit none
    private

@@ -2,7 +2,7 @@
 !> blank number means "as drawn".
 module drawn_values
    use kinds, only: wp
-   use planar, only: point_of, pi
+   use plane_vectors, only: point_of, pi
    use pair_geometry, only: way_of, opening_of, slide_of
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none

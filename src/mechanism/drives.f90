@@ -16,7 +16,7 @@
 module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    use splines, only: spline_t, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola, term_kinds

@@ -2,7 +2,7 @@
 !> on another: each is solved as a mechanism of its own, in its own numbers and its own lengths. What the set keeps are
 !> its settings, and where its rows and drives are, in the order of the cards.
 module independent
-   use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
+   use disjoint_sets, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &

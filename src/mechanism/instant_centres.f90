@@ -3,7 +3,7 @@
 !> unit.
 module instant_centres
    use kinds, only: wp
-   use planar, only: pi, rotated, quarter_turn, cross
+   use plane_vectors, only: pi, rotated, quarter_turn, cross
    implicit none
    private
    public :: centre_t, pole_of, curve_of, seen_from

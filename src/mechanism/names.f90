@@ -3,7 +3,7 @@ module names
    use kinds, only: label_length
    use mechanism, only: mechanism_t, drive_t, drive_words, driven_kinds, drive_relangle, request_link, request_point, &
       request_measure
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: drive_name, subject_name, listed, more

@@ -5,7 +5,7 @@
 !> (Q - P) . e, eq. (3) and (4), and it is closed where (P - Q) . n = h, eq. (9).
 module pair_geometry
    use kinds, only: wp
-   use planar, only: direction, quarter_turn, point_of
+   use plane_vectors, only: direction, quarter_turn, point_of
    use mechanism, only: mechanism_t, pair_t, has_guide
    use instant_centres, only: seen_from
    implicit none

@@ -11,7 +11,7 @@ module points
    use columns, only: columns_of_rows, forms, form_of, of_length
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use pair_geometry, only: pair_motion
-   use planar, only: pi, degree, direction, rotated, point_of, add_rotating, cross
+   use plane_vectors, only: pi, degree, direction, rotated, point_of, add_rotating, cross
    use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular, mark_stroke
    implicit none
    private

@@ -2,7 +2,7 @@
 !> the digits of the listing the same in millimetres and in kilometres.
 module scales
    use kinds, only: wp
-   use planar, only: point_of
+   use plane_vectors, only: point_of
    use drives, only: drive_rate
    use mechanism, only: settings_t, mechanism_t, drive_t, has_guide, drive_x, drive_y, drive_slide, plane_origin, &
       used_points

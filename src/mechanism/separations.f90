@@ -1,7 +1,7 @@
 !> How far two positions or two motions of a mechanism are apart, and whether a motion closes.
 module separations
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use mechanism, only: mechanism_t
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
@@ -21,7 +21,7 @@ contains
       real(wp), intent(in) :: length         !< the unit of the result, in the deck's unit
       real(wp) :: apart(2)
 
-      apart = [maxval(abs(p(:2, :) - q(:2, :)))/length, maxval(abs(without_turns(p(3, :) - q(3, :))))]
+      apart = [maxval(abs(p(:2, :) - q(:2, :)))/length, maxval(abs(wrap_angle(p(3, :) - q(3, :))))]
    end function separation
 
    !> Finds how far two motions are apart at most: places, angles but for whole turns, and velocities, in characteristic

@@ -19,7 +19,7 @@ module changed_rows
    use link_motion, only: move_links, mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
+   public :: perturbed_t, base_position_t, find_place, make_ready, put_changes, rows_with
 
    !> A mechanism with changed numbers: a geometry of the structure that the mechanism itself has.
    type :: perturbed_t
@@ -35,7 +35,7 @@ module changed_rows
 
    !> The position at hand, what solves from it for one changed mechanism after another, and what the rows show that
    !> were found last.
-   type :: at_hand_t
+   type :: base_position_t
       type(unknown_t), allocatable :: start(:)   !< (0:unknowns) slides in the deck's unit
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
@@ -50,7 +50,7 @@ module changed_rows
       logical :: jams = .false.
       !> Redundant equations: the largest closure error (unit of the loop, rad), and what there is room for.
       real(wp) :: opened = 0.0_wp, room = huge(1.0_wp)
-   end type at_hand_t
+   end type base_position_t
 
    !> Of a mechanism with so many links at most the changed ones are kept from instant to instant, each with its
    !> numbers; a larger one has one spare set of numbers, and needs less memory.
@@ -70,7 +70,7 @@ contains
    subroutine find_place(e, q, place)
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
-      type(at_hand_t), intent(inout) :: place
+      type(base_position_t), intent(inout) :: place
       integer :: k
 
       place%only_driven = q%known < 0
@@ -92,7 +92,7 @@ contains
    subroutine make_room(b, drives, place)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: drives
-      type(at_hand_t), intent(inout) :: place
+      type(base_position_t), intent(inout) :: place
 
       place%state = new_state(b, drives)
       place%work = new_workspace(b)
@@ -136,7 +136,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(perturbed_t), intent(in) :: p
       real(wp), intent(in) :: t
-      type(at_hand_t), intent(inout) :: place
+      type(base_position_t), intent(inout) :: place
       type(row_t), intent(inout) :: rows(:)
       type(structure_t) :: other
       type(drive_path_t) :: path
@@ -169,7 +169,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(at_hand_t), intent(inout) :: place
+      type(base_position_t), intent(inout) :: place
       type(convergence_t) :: c
       integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite

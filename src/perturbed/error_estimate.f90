@@ -6,11 +6,11 @@ module error_estimate
    use motion, only: motion_t
    use points, only: row_t, find_row, known_at, difference, is_fixed
    use instant_centres, only: centre_finite, centre_starting, points_coincide
-   use known_digits, only: nothing_known, errors_a_digit
-   use digits_in_doubt, only: sizes_t, sizes_of, find_growth
+   use masked_numbers, only: nothing_known, errors_a_digit
+   use significance_check, only: sizes_t, sizes_of, find_amplification
    use block_engine, only: block_engine_t
-   use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
-   use rounded_numbers, only: directions, own_directions, caution, own_caution, calculation_caution, &
+   use changed_rows, only: perturbed_t, base_position_t, find_place, make_ready, put_changes, rows_with
+   use rounded_numbers, only: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
       put_off, put_sums_off
    implicit none
    private
@@ -49,7 +49,7 @@ module error_estimate
    type :: estimator_t
       type(sizes_t) :: sizes
       real(wp) :: closure = 0.0_wp           !< closure error at most in its run (characteristic lengths, rad), or 0
-      type(at_hand_t) :: place
+      type(base_position_t) :: place
       !> (0:directions + own_directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in
       !> each direction by `many` or `few` roundings; off in each further direction by one.
       type(perturbed_t), allocatable :: perturbed(:)
@@ -80,7 +80,7 @@ contains
 
       found%taken = .false.
       found%asked = always
-      call find_growth(s%sizes, m, engine, q, found%growth, found%in_doubt)
+      call find_amplification(s%sizes, m, engine, q, found%growth, found%in_doubt)
       found%in_doubt = found%in_doubt .or. s%closure > 0.0_wp
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
@@ -96,13 +96,13 @@ contains
       s%place%stays = .false.
       call find_largest_changes(many, s%place%is_singular, is_small)
       if (.not. is_small) call find_largest_changes(few, .true., is_small)
-      found%own = caution*min(found%changes, nothing_known/caution)
+      found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
       if (told .and. .not. s%place%is_singular) then
          call find_own_changes()
          ! As far as they exceed the largest change by numbers alone, the calculation has made them.
          associate (own => found%own, by_numbers => found%changes)
-            own = max(own_caution*own, &
-               calculation_caution*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
+            own = max(own_safety_factor*own, &
+               calculation_safety_factor*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
          end associate
       end if
       call add_sums()
@@ -292,12 +292,12 @@ contains
             error(:, 0) = abs(row%value(:, 0))
             if (request%kind == request_point) error(:, 0) = max(error(:, 0), norm2(m%points(request%subject)%offset), &
                norm2(m%links(m%points(request%subject)%link)%position(:2)))
-            error(:, 0) = merge(caution*epsilon(1.0_wp)*error(:, 0), 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
+            error(:, 0) = merge(safety_factor*epsilon(1.0_wp)*error(:, 0), 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
             return
          end if
          if (s%asked) error = nothing_known
          if (.not. s%taken) return
-         error = merge(nothing_known, caution*s%changes(:, :, i), max(s%changes(:, :, i), s%by_closure(:, :, i)) &
+         error = merge(nothing_known, safety_factor*s%changes(:, :, i), max(s%changes(:, :, i), s%by_closure(:, :, i)) &
             >= nothing_known)
          where (error < nothing_known) error = hypot(error, s%by_closure(:, :, i)*closure_errors_a_digit/errors_a_digit)
          if (.not. is_centre(request%kind)) &

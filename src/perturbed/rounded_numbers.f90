@@ -19,18 +19,19 @@
 module rounded_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, has_guide, term_kinds, &
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number, put_table
    use motion, only: motion_t, known_of
-   use links_tree, only: tree_t, axes_t
+   use spanning_tree, only: spanning_tree_t, axes_t
    implicit none
    private
-   public :: directions, own_directions, caution, own_caution, calculation_caution, put_off, put_sums_off
+   public :: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
+      put_off, put_sums_off
 
    integer, parameter :: directions = 8, own_directions = 20
-   real(wp), parameter :: caution = 2.35_wp, own_caution = 1.91_wp, calculation_caution = 4.90_wp
+   real(wp), parameter :: safety_factor = 2.35_wp, own_safety_factor = 1.91_wp, calculation_safety_factor = 4.90_wp
 
    !> The hash: numbers modulo a prime, multiplied as in Park and Miller's generator.
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
@@ -46,7 +47,7 @@ contains
    !> time are as they stand.
    subroutine put_off(m, t, axes, k, roundings, length, off, time_off)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
@@ -154,7 +155,7 @@ contains
    !> than an angular velocity times a length, what is summed up to an acceleration has the square of one. A coordinate
    !> that is zero and rests stays so, but for angles, which may cancel. Links that turn as one turn as one.
    subroutine put_sums_off(t, length, k, roundings, q)
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       real(wp), intent(in) :: length, roundings
       integer, intent(in) :: k
       type(motion_t), intent(inout) :: q

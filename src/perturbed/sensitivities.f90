@@ -6,13 +6,13 @@ module sensitivities
    use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, number_drive, term_kinds
    use drives, only: joint_distance
    use card_numbers, only: number_value, set_number
-   use known_digits, only: nothing_known
+   use masked_numbers, only: nothing_known
    use motion, only: motion_t
    use points, only: row_t, find_row
    use instant_centres, only: points_coincide
    use block_engine, only: block_engine_t
-   use digits_in_doubt, only: sizes_t
-   use rounded_numbers, only: caution
+   use significance_check, only: sizes_t
+   use rounded_numbers, only: safety_factor
    use error_estimate, only: error_estimate_t, estimator_t
    use changed_rows, only: find_place, make_ready, put_changes, rows_with
    use convergence, only: inconsistent_level
@@ -104,7 +104,7 @@ contains
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
                   where (rounding < nothing_known) error = merge(growth_of_both, growth_of_one, side == 0) &
-                     *caution*rounding*abs(one%unit/step)
+                     *safety_factor*rounding*abs(one%unit/step)
                end associate
             end do
          end associate

@@ -3,14 +3,14 @@
 !> Where all are known, a run begins in the one that is nearest to the deck's estimate.
 module assemblies
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use mechanism, only: mechanism_t, plane_origin
    use cylinders, only: cylinder_length, is_out_of_stroke
    use separations, only: separation
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
-   use first_instant, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
+   use initial_assembly, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
    use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -124,7 +124,7 @@ contains
          do i = 1, size(m%links)
             if (m%links(i)%ground) cycle
             associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
-               estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
+               estimate = [found(:2) + plane_origin(m), estimate(3) + wrap_angle(found(3) - estimate(3))]
             end associate
          end do
       end if

@@ -7,7 +7,7 @@
 !> last place; all other operations round to nearest.
 module ball_numbers
    use kinds, only: wp
-   use planar, only: length_of, real_vector_t => vector_t
+   use plane_vectors, only: length_of, real_vector_t => vector_t
    use mechanism, only: mechanism_t, has_guide, plane_origin
    use blocks, only: blocks_t, geometry_t, loop_angles
    use balls, only: ball_t, rounding, room

@@ -1,7 +1,7 @@
 !> From the balls of the unknowns to those of links, along the tree as `link_motion` has it.
 module link_bounds
    use kinds, only: wp
-   use planar, only: real_vector_t => vector_t
+   use plane_vectors, only: real_vector_t => vector_t
    use mechanism, only: mechanism_t
    use motion, only: motion_t
    use block_engine, only: block_engine_t

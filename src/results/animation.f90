@@ -3,9 +3,9 @@
 !> angle evenly.
 module animation
    use kinds, only: wp
-   use planar, only: in_degrees, without_turns, point_of, direction, rotated
+   use plane_vectors, only: in_degrees, wrap_angle, point_of, direction, rotated
    use motion, only: mark_none
-   use numerals, only: full, whole
+   use number_format, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of, link_color, pole_name
    use canvas, only: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_label, put_foot, caption, &
@@ -79,7 +79,7 @@ contains
          do k = 2, size(frame)
             associate (now => d%frame(frame(k)), before => d%frame(frame(k - 1)))
                if (any(now%known .and. before%known .and. &
-                  abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
+                  abs(wrap_angle(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
             end associate
          end do
       end subroutine find_course
@@ -109,7 +109,7 @@ contains
                   if (known(k)) last = frame(k)
                   position = d%frame(last)%place(:, link)
                   place(:, k) = to_pixels(c, point_of(position, corner))
-                  turned = turned + without_turns(position(3) - turned)
+                  turned = turned + wrap_angle(position(3) - turned)
                   angle(1, k) = -in_degrees(turned)
                end do
             end associate

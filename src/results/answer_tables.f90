@@ -7,7 +7,7 @@ module answer_tables
    use ranges_table, only: put_ranges
    use assembly_table, only: put_assemblies
    use circuits_table, only: put_circuits
-   use shares_table, only: put_shares
+   use contributions_table, only: put_shares
    use proof_table, only: put_proofs
    use text_output, only: output_t
    implicit none

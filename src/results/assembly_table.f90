@@ -1,7 +1,7 @@
 !> Card ASSEMBLY: all assemblies at the first instant. Each is printed as the LINK cards with which a run takes it.
 module assembly_table
    use kinds, only: wp, label_length
-   use planar, only: point_of, degree, without_turns
+   use plane_vectors, only: point_of, degree, wrap_angle
    use mechanism, only: mechanism_t, shown_links, instant, plane_origin, drive_words, driven_kinds
    use scales, only: characteristic_length, is_length
    use names, only: listed, subject_name
@@ -11,7 +11,7 @@ module assembly_table
    use listing_layout, only: layout_t, put_folded
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use number_format, only: whole
    use phrases
    implicit none
    private
@@ -130,7 +130,7 @@ contains
          position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
          ! Angles within half a turn of the estimate: whatever rounding makes of half a turn, it is one forward.
          associate (estimate => m%links(i)%position(3))
-            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
+            position(3, i) = estimate + wrap_angle(one%position(3, i) - estimate - small_angle) + small_angle
          end associate
       end do
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))

@@ -3,11 +3,11 @@
 module canvas
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use planar, only: direction, rotated, in_degrees
+   use plane_vectors, only: direction, rotated, in_degrees
    use drives, only: drive_motion
    use names, only: drive_name
    use scales, only: is_length
-   use numerals, only: full, whole
+   use number_format, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
    use svg, only: page_t, width, tie, put_words, put_circle, put_line, put_group, put_end, attribute, fitted

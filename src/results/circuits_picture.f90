@@ -4,11 +4,11 @@
 module circuits_picture
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
-   use planar, only: pi, degree, without_turns
+   use plane_vectors, only: pi, degree, wrap_angle
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, drive_angle
    use motion, only: motion_t, new_motion
    use names, only: drive_name, subject_name
-   use numerals, only: whole
+   use number_format, only: whole
    use points, only: row_t, find_row
    use columns, only: columns_of_rows, column_at, forms, form_of, of_angle
    use set_analysis, only: set_analysis_t
@@ -140,7 +140,7 @@ contains
             if (angular(2)) then
                associate (middle => 0.5_wp*(minval(curve%p(2, :)) + maxval(curve%p(2, :)))*unit(2))
                   curve%p(2, :) = curve%p(2, :) &
-                     + (without_turns(middle - middle_angle) - (middle - middle_angle))/unit(2)
+                     + (wrap_angle(middle - middle_angle) - (middle - middle_angle))/unit(2)
                end associate
             end if
             low = min(low, minval(curve%p, dim=2))

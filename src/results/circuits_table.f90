@@ -10,7 +10,7 @@ module circuits_table
    use ranges_table, only: side_words
    use names, only: drive_name
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use number_format, only: whole
    use listing, only: at_limit, full_turn_words, measure, value_digits
    use listing_layout, only: put_folded, angle_unit
    use phrases

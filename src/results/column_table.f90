@@ -13,7 +13,7 @@ module column_table
    use listing_tables, only: law_error, mask_words
    use table, only: format_t, put_cell, put_number, power_text, right
    use text_output, only: output_t, open_held, move_text, put
-   use numerals, only: numeral_length
+   use number_format, only: numeral_length
    use phrases
    implicit none
    private

@@ -12,7 +12,7 @@
 module csv
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_value, ieee_quiet_nan
    use kinds, only: wp, label_length
-   use planar, only: in_degrees
+   use plane_vectors, only: in_degrees
    use mechanism, only: request_t, request_link, request_point
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, &
       cell_words, cell_number, of_angle
@@ -22,12 +22,12 @@ module csv
    use independent, only: set_t, request_of
    use name_table, only: name_table_t, put_name, find_name
    use names, only: drive_name, subject_name
-   use known_digits, only: nothing_known
+   use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
    use rows, only: finished_row_t
    use table, only: add_name, add_number
    use text_output, only: output_t, put, add, replaced
-   use numerals, only: whole, full, put_full, full_length
+   use number_format, only: whole, full, put_full, full_length
    implicit none
    private
    public :: csv_head, csv_instant, marks

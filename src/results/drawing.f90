@@ -3,10 +3,10 @@
 !> from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted, members
+   use disjoint_sets, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t, request_point, request_pole, has_guide, instant_count, &
       plane_origin, is_listed_alone
-   use planar, only: pi, cross, direction, quarter_turn, point_of
+   use plane_vectors, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
    use motion, only: known_of, mark_none, singular_unclear

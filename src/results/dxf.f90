@@ -5,12 +5,12 @@ module dxf
    use mechanism, only: mechanism_t, request_point, is_listed_alone, has_guide
    use motion, only: motion_t
    use points, only: row_t, is_fixed
-   use planar, only: direction
+   use plane_vectors, only: direction
    use scales, only: characteristic_length
    use separations, only: motions_apart, closes
    use set_motion, only: set_motion_t, find_row_in_set
    use drawing, only: drawing_t, point_place, moved
-   use numerals, only: whole, rounded
+   use number_format, only: whole, rounded
    use text_output, only: output_t, put
    implicit none
    private

@@ -13,9 +13,9 @@ module extremes_table
    use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
    use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, mask_words
    use text_output, only: output_t, put
-   use numerals, only: numeral_length, rounded
-   use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, coordinate_t, gap_t, strokes_t, least, greatest, strokes_of, &
+   use number_format, only: numeral_length, rounded
+   use masked_numbers, only: unknown_digit
+   use extremes, only: extremes_t, coordinate_t, uncovered_interval_t, strokes_t, least, greatest, strokes_of, &
       is_cyclic, is_covered, varies
    use dwells, only: dwell_t
    use phrases
@@ -211,7 +211,7 @@ contains
 
       !> The line `say` about the intervals of the `list`, if there are any: as many of them as it has room for.
       subroutine put_gaps(list, say)
-         type(gap_t), intent(in) :: list(:)
+         type(uncovered_interval_t), intent(in) :: list(:)
          type(phrase_t), intent(in) :: say
          character(:), allocatable :: text, line, next
          integer :: i

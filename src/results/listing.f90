@@ -4,12 +4,12 @@
 !> Diagnostics in words: three stars before what concerns the results, three dashes before what is good to know.
 module listing
    use kinds, only: wp
-   use planar, only: degree
+   use plane_vectors, only: degree
    use mechanism, only: settings_t, mechanism_t, shown_links, remark_title_long, remark_rest, remark_turns, &
       remark_more, request_link
    use names, only: drive_name, listed, more
    use motion
-   use structure, only: findings_t
+   use structure, only: structure_report_t
    use following, only: certificate_counts_t
    use independent, only: set_t
    use set_motion, only: set_motion_t, is_flagged
@@ -20,7 +20,7 @@ module listing
    use table, only: format_t, unit_of, number_text
    use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row, mask_words
    use text_output, only: output_t, put, add
-   use numerals, only: whole, rounded
+   use number_format, only: whole, rounded
    use phrases
    implicit none
    private
@@ -56,7 +56,7 @@ contains
    subroutine listing_head(o, m, findings)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: findings
+      type(structure_report_t), intent(in) :: findings
       character(18) :: head
       integer :: i, k
 

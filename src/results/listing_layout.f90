@@ -5,7 +5,7 @@
 !> millimetres and in kilometres prints the same digits.
 module listing_layout
    use kinds, only: wp, label_length
-   use planar, only: degree
+   use plane_vectors, only: degree
    use mechanism, only: drive_t, settings_t, request_t, request_link
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning, last_form, &
       table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, &
@@ -14,7 +14,7 @@ module listing_layout
    use drives, only: growing_sizes
    use names, only: drive_name, more
    use scales, only: characteristic_length, characteristic_rate, latest_time, is_length, shortest_step
-   use numerals, only: numeral_length
+   use number_format, only: numeral_length
    use text_output, only: output_t, put
    use table, only: format_t, words_of_cells, choose_digits, power_text, unit_of, digits_after_first, order_margin
    use phrases

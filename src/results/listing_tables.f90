@@ -6,8 +6,8 @@ module listing_tables
    use columns, only: columns_of_rows, forms, kinds_of_rows, is_ratio, cell_of, cell_number, cell_spare
    use points, only: row_t
    use text_output, only: output_t, put
-   use numerals, only: whole, put_fixed, numeral_length
-   use known_digits, only: nothing_known, unknown_digit
+   use number_format, only: whole, put_fixed, numeral_length
+   use masked_numbers, only: nothing_known, unknown_digit
    use table, only: format_t, put_cell, put_number, number_text
    use listing_layout
    use phrases, only: phrase, say_by, say_unknown, say_unclosed

@@ -4,7 +4,7 @@
 module picture
    use kinds, only: wp
    use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
-   use planar, only: degree, direction, quarter_turn
+   use plane_vectors, only: degree, direction, quarter_turn
    use drives, only: drive_motion
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, point_velocity, moved
@@ -13,7 +13,7 @@ module picture
       put_label, put_foot, put_bar, caption, add_lines, add_box, cover_of, line_height
    use labels, only: labels_of, clear_of_point
    use svg, only: page_t, tie, put_end, put_group, put_window, put_circle, put_line, put_words, attribute, fitted
-   use numerals, only: full
+   use number_format, only: full
    use phrases
    implicit none
    private

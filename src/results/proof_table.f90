@@ -12,7 +12,7 @@ module proof_table
    use table, only: right
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use number_format, only: whole
    use phrases
    implicit none
    private

@@ -6,7 +6,7 @@ module ranges_table
    use listing, only: limit_words, full_turn_words
    use listing_layout, only: put_folded
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use number_format, only: whole
    use phrases
    implicit none
    private

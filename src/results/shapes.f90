@@ -3,7 +3,7 @@
 module shapes
    use kinds, only: wp
    use mechanism, only: mechanism_t, has_guide
-   use planar, only: direction, quarter_turn, rotated
+   use plane_vectors, only: direction, quarter_turn, rotated
    use scales, only: characteristic_length
    use drawing, only: drawing_t, guide_t, point_place
    use svg, only: attribute

@@ -6,7 +6,7 @@ module solver_log
    use convergence, only: convergence_t, ending
    use following, only: branch_t, branch_none, branch_crossed
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: log_head, log_instant

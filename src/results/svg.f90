@@ -3,7 +3,7 @@
 module svg
    use kinds, only: wp
    use text_output, only: output_t, put, add, replaced
-   use numerals, only: fixed, whole, max_decimals
+   use number_format, only: fixed, whole, max_decimals
    implicit none
    private
    public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, &

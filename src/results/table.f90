@@ -2,11 +2,11 @@
 !> masked; in files it has all digits.
 module table
    use kinds, only: wp, label_length
-   use planar, only: in_degrees
+   use plane_vectors, only: in_degrees
    use columns, only: cell_words, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
       last_cell
-   use numerals, only: numeral_length, full_length, max_decimals, put_fixed, put_full, whole
-   use known_digits, only: put_known, nothing_known, unknown_digit
+   use number_format, only: numeral_length, full_length, max_decimals, put_fixed, put_full, whole
+   use masked_numbers, only: put_known, nothing_known, unknown_digit
    use text_output, only: output_t, add, replaced
    implicit none
    private

@@ -1,7 +1,7 @@
 !> The summary of a set with VARY cards: a row for each variant, with its values and what is asked of its motion.
 module variant_rows
    use kinds, only: wp, label_length
-   use planar, only: in_degrees
+   use plane_vectors, only: in_degrees
    use mechanism, only: mechanism_t, request_t
    use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
@@ -18,7 +18,7 @@ module variant_rows
    use ranges, only: low, high
    use answers, only: answers_t
    use counts, only: counts_t
-   use numerals, only: whole
+   use number_format, only: whole
    use phrases
    implicit none
    private

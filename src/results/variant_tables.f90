@@ -9,7 +9,7 @@ module variant_tables
    use table, only: cell_text, add_cell, add_name, power_text, unit_of, right
    use listing, only: put_diagnostics
    use text_output, only: output_t, put, add
-   use numerals, only: whole
+   use number_format, only: whole
    use variant_rows
    use phrases
    implicit none

@@ -9,7 +9,7 @@ module rows
    use error_estimate, only: estimate_of, row_error
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use set_motion, only: set_motion_t
-   use numerals, only: whole
+   use number_format, only: whole
    implicit none
    private
    public :: finished_row_t, other_row_t, find_rows, word_worst, word_rss

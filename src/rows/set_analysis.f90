@@ -5,11 +5,11 @@ module set_analysis
    use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, &
       measure_line
    use scales, only: characteristic_length
-   use planar, only: pi
-   use structure, only: findings_t
+   use plane_vectors, only: pi
+   use structure, only: structure_report_t
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
-   use digits_in_doubt, only: safe_growth, find_growth
+   use significance_check, only: safe_growth, find_amplification
    use block_engine, only: get_motion
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
@@ -63,7 +63,7 @@ contains
    subroutine make_set_analysis(m, s, findings)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(out) :: s
-      type(findings_t), intent(inout), optional :: findings
+      type(structure_report_t), intent(inout), optional :: findings
 
       call new_set_motion(m, s%now, findings)
       call begin_analysis(s, findings)
@@ -72,7 +72,7 @@ contains
    !> Begins the analysis of the set s%now, which is divided.
    subroutine begin_analysis(s, findings)
       type(set_analysis_t), intent(inout) :: s
-      type(findings_t), intent(inout), optional :: findings
+      type(structure_report_t), intent(inout), optional :: findings
       integer :: c
 
       associate (n => s%now%count)
@@ -197,7 +197,7 @@ contains
          q%t = t
          if (allocated(q%diagnostics)) deallocate (q%diagnostics)
          call get_motion(engine, q, is_finite)
-         call find_growth(s%estimators(1)%sizes, s%now%parts(1), engine, q, s%growth, in_doubt)
+         call find_amplification(s%estimators(1)%sizes, s%now%parts(1), engine, q, s%growth, in_doubt)
       end associate
       is_taken = is_finite .and. .not. in_doubt
       s%is_in_lane = .true.

@@ -6,10 +6,10 @@ module set_motion
    use motion, only: motion_t, new_motion, mark_none
    use independent, only: set_t, divide, request_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
-   use structure, only: findings_t, structure_t, make_structure
+   use structure, only: structure_report_t, structure_t, make_structure
    use blocks, only: blocks_t, geometry_t, chain_t, largest_known
    use block_state, only: state_t, new_state, set_direction
-   use block_solver, only: solve_direct
+   use block_solver, only: solve_explicit
    use link_motion, only: new_chain, move_links
    use points, only: row_t, find_row
    use error_estimate, only: error_estimate_t
@@ -35,7 +35,7 @@ contains
    subroutine new_set_motion(m, s, findings)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: s
-      type(findings_t), intent(inout), optional :: findings   !< they give up their set if it is divided
+      type(structure_report_t), intent(inout), optional :: findings   !< they give up their set if it is divided
       type(structure_t) :: structure
       integer :: c
       logical :: is_divided
@@ -107,7 +107,7 @@ contains
                if (any(b%rows(b%list(i)%first_row:b%list(i)%last_row)%drive == d) .or. largest_known(b, i, moves) > 0) &
                   moves(own) = 1
                if (b%list(i)%direct) then
-                  call solve_direct(b, x, i, state)
+                  call solve_explicit(b, x, i, state)
                else
                   state%u(own)%rate = moves(own)*arbitrary(own + b%unknowns)
                end if

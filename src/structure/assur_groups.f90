@@ -12,7 +12,7 @@
 !> drive moves along its guide is joined to its rod there, and would be in one group with rod and crank.
 module assur_groups
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted, members
+   use disjoint_sets, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t, has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use matching, only: incidence_t, match, overdetermined, find_blocks
    implicit none

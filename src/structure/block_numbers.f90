@@ -9,7 +9,7 @@
 !> much larger it is, and levels of rounding are that much higher.
 module block_numbers
    use kinds, only: wp
-   use planar, only: vector_t, length_of
+   use plane_vectors, only: vector_t, length_of
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes

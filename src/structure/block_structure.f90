@@ -7,7 +7,7 @@ module block_structure
    use scales, only: solver_length, power_of_two
    use klu, only: pattern_t, order_columns
    use block_matrix, only: shape_t, is_sparse_better
-   use links_tree, only: tree_t, new_tree
+   use spanning_tree, only: spanning_tree_t, new_tree
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
       incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
@@ -31,7 +31,7 @@ contains
    subroutine make_structure(m, s)
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(out) :: s
-      type(tree_t) :: t
+      type(spanning_tree_t) :: t
       type(equations_t) :: e
 
       allocate (s%blocks, s%geometry)
@@ -50,7 +50,7 @@ contains
 
    !> The blocks of the equations `e` on the tree `t`, without numbers.
    function new_blocks(t, e) result(b)
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(equations_t), intent(in) :: e
       type(blocks_t) :: b
       type(incidence_t) :: g

@@ -13,7 +13,7 @@ module blocks
    use number_types, only: vector_t, row_numbers_t, loop_numbers_t
    use klu, only: pattern_t
    use block_matrix, only: shape_t
-   use links_tree, only: tree_t, link_offset_t
+   use spanning_tree, only: spanning_tree_t, link_offset_t
    use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
@@ -127,7 +127,7 @@ module blocks
       type(body_vector_t), allocatable :: body_vectors(:)
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
-      type(tree_t) :: tree
+      type(spanning_tree_t) :: tree
       ! What the requests ask for.
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for

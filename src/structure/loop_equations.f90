@@ -6,11 +6,11 @@
 !> Equations are integers; `equation_numbers_t` holds what the numbers of the cards make of them.
 module loop_equations
    use kinds, only: wp
-   use planar, only: without_turns
-   use grouping, only: sorted_t, sorted
+   use plane_vectors, only: wrap_angle
+   use disjoint_sets, only: sorted_t, sorted
    use mechanism, only: mechanism_t, pair_links, has_guide, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
-   use links_tree, only: tree_t, axes_t, put_axes, guide
+   use spanning_tree, only: spanning_tree_t, axes_t, put_axes, guide
    use vector_loops, only: search_t, find_path, vector_loops_t, &
       add_vector_loop, loop_sums_t, put_sums, vanishes
    use matching, only: incidence_t
@@ -58,7 +58,7 @@ contains
    !> The equations of `m` on its tree `t`.
    function new_equations(m, t) result(e)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(equations_t) :: e
       type(search_t) :: s
       type(sorted_t) :: closing
@@ -158,7 +158,7 @@ contains
    !> The numbers of `m` in its equations `e`, which are told what of their vectors vanishes.
    function new_equation_numbers(m, t, length, e) result(x)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       type(equations_t), intent(inout) :: e
       type(equation_numbers_t) :: x
@@ -176,7 +176,7 @@ contains
    !> Gives the numbers `x` of the equations `e` those of `m`, whose tree is `t`.
    subroutine put_equation_numbers(m, t, length, e, x)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       type(equations_t), intent(in) :: e
       type(equation_numbers_t), intent(inout) :: x
@@ -193,7 +193,7 @@ contains
                   ! whole turns are no difference.
                   if (across) x%direction(:, i) = guide(m, x%axes, q%pair, across=.true.)
                   if (across) x%constant(i) = pair%offset/length
-                  if (q%kind == equation_angle) x%constant(i) = without_turns(pair%beta &
+                  if (q%kind == equation_angle) x%constant(i) = wrap_angle(pair%beta &
                      + angle(m%points(pair%point_i)%link) - angle(m%points(pair%point_j)%link))
                end associate
             else

@@ -9,7 +9,7 @@
 !> Rejected: btf_maxtrans, btf_strongcomp and cs_dmperm of SuiteSparse. They find the same blocks, but with the unknowns
 !> of a block in other orders, and with these the last digits of results change in 5 to 35 of 56 decks.
 module matching
-   use grouping, only: sorted_t, sorted
+   use disjoint_sets, only: sorted_t, sorted
    implicit none
    private
    public :: incidence_t, match, find_blocks, overdetermined, underdetermined

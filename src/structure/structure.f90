@@ -7,9 +7,9 @@ module structure
    use kinds, only: label_length
    use cards, only: forms, form_ground
    use failures, only: failure_t, fail, status_rejected
-   use numerals, only: whole
+   use number_format, only: whole
    use names, only: drive_name, listed, more
-   use grouping, only: once
+   use disjoint_sets, only: once
    use mechanism, only: mechanism_t, has_guide, is_hidden, joined_by, shown_links, method_newton
    use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
@@ -17,10 +17,10 @@ module structure
    use block_structure, only: structure_t, make_structure
    implicit none
    private
-   public :: structure_t, findings_t, group_t, make_structure, find_structure, find_groups, check_structure, &
+   public :: structure_t, structure_report_t, group_t, make_structure, find_structure, find_groups, check_structure, &
       faults_text
 
-   type :: findings_t
+   type :: structure_report_t
       integer :: links = 0        !< n, ground links with them
       integer :: ground = 0       !< n3
       integer :: revolute = 0     !< n1
@@ -38,7 +38,7 @@ module structure
       ! Of the independent mechanisms, where nothing is lacking:
       type(set_t), allocatable :: set                   !< divided, where it is several
       type(structure_t), allocatable :: structures(:)   !< (parts)
-   end type findings_t
+   end type structure_report_t
 
    !> The faults of so many sets are reported.
    integer, parameter :: max_sets = 10
@@ -48,7 +48,7 @@ contains
    !> The counts (12) and (13) of `m`, and what its structure lacks or has too much of.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
-      type(findings_t) :: f
+      type(structure_report_t) :: f
       type(closure_t) :: c
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
@@ -101,7 +101,7 @@ contains
    !> the listing has them, and the sets of a long job are checked one after another, but listed by several processes.
    subroutine find_groups(m, f)
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(inout) :: f
+      type(structure_report_t), intent(inout) :: f
       integer :: i
 
       if (.not. allocated(f%groups)) allocate (f%groups(0))
@@ -116,7 +116,7 @@ contains
    !> Every link of every set can be found: `findings` (sets).
    subroutine check_structure(sets, findings, failure)
       type(mechanism_t), intent(in) :: sets(:)
-      type(findings_t), allocatable, intent(out) :: findings(:)
+      type(structure_report_t), allocatable, intent(out) :: findings(:)
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: text, all_of_them
       integer :: i, reported
@@ -139,7 +139,7 @@ contains
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
    function faults_text(m, f, set) result(text)
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: f
       integer, intent(in) :: set
       character(:), allocatable :: text
 
@@ -186,7 +186,7 @@ contains
    !> and of the pairs that are too many: a JOINT card may have a wrong link. '' without JOINT cards.
    function joined_links(m, f) result(text)
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: f
       character(:), allocatable :: text
       integer, parameter :: pairs_a_line = 4, most = 40
       integer :: i, n, ends(2)
@@ -213,7 +213,7 @@ contains
    !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, f) result(text)
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: f
       character(:), allocatable :: text
       integer, allocatable :: pairs(:)
       integer :: i

@@ -14,7 +14,7 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, has_guide
-   use links_tree, only: tree_t, axes_t, point_offset, guide, other_link
+   use spanning_tree, only: spanning_tree_t, axes_t, point_offset, guide, other_link
    implicit none
    private
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
@@ -61,7 +61,7 @@ contains
    !> of their links, never the difference of two: the largest that was added tells which sums are rounding alone.
    subroutine add_vector_loop(m, t, p, q, s, loops)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       integer, intent(in) :: p, q
       type(search_t), intent(in) :: s
       type(vector_loops_t), intent(inout) :: loops
@@ -141,7 +141,7 @@ contains
    !> lengths in units of `length`.
    pure subroutine put_sums(m, t, a, length, p, x)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       type(vector_loops_t), intent(in) :: p
@@ -201,7 +201,7 @@ contains
    !> turn; the ground ends a path and is never searched level by level, since all links may be joined to it.
    subroutine find_path(m, t, i, j, s)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       integer, intent(in) :: i, j
       type(search_t), intent(inout) :: s
       integer :: first(2), last(2), side, meeting

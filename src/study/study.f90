@@ -8,19 +8,19 @@ module study
    use mechanism, only: mechanism_t, request_t, request_pair, method_newton, method_dense, method_matrix, &
       method_words, own_predictor, instant_count, instant
    use independent, only: request_of
-   use structure, only: findings_t, check_structure
+   use structure, only: structure_report_t, check_structure
    use deck, only: read_deck
    use points, only: is_due
    use columns, only: cell_of, cell_number, of_angle
    use rows, only: finished_row_t, find_rows
    use scales, only: characteristic_length, characteristic_rate
-   use known_digits, only: nothing_known
+   use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t, new_set_motion, is_flagged
    use csv, only: table_t, new_table
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       replaced
-   use numerals, only: whole
+   use number_format, only: whole
    use processes, only: memfd_create
    use system_calls, only: close_descriptor
    implicit none
@@ -78,7 +78,7 @@ contains
       integer, intent(out) :: status
       character(:), allocatable, intent(out) :: message
       type(mechanism_t), allocatable :: sets(:)
-      type(findings_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(output_t) :: o
       integer :: i

@@ -3,7 +3,7 @@
 module bench_lanes
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use structure, only: findings_t, check_structure
+   use structure, only: structure_report_t, check_structure
    use failures, only: failure_t
    use set_analysis, only: make_set_analysis
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
@@ -66,7 +66,7 @@ contains
       type(scene_t), intent(in) :: s
       logical, intent(in) :: extremes
       type(mechanism_t) :: m(1)
-      type(findings_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(lane_run_t), allocatable :: runs(:)
       type(lanes_t) :: lanes

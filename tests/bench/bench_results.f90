@@ -5,7 +5,7 @@ module bench_results
    use mechanism, only: mechanism_t, method_newton
    use failures, only: failure_t
    use deck, only: read_deck
-   use structure, only: findings_t, find_structure
+   use structure, only: structure_report_t, find_structure
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
    implicit none
    private
@@ -81,7 +81,7 @@ contains
       character(:), allocatable :: report, name
       type(scene_t) :: s
       type(gap_t) :: g, e
-      type(findings_t) :: f
+      type(structure_report_t) :: f
       integer :: i
 
       name = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))

@@ -11,7 +11,7 @@ module bench_scenes
    use closure_equations, only: jacobian
    use dense_method, only: dense_t
    use analysis, only: analysis_t, make_analysis, advance
-   use planar, only: degree
+   use plane_vectors, only: degree
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
@@ -193,7 +193,7 @@ contains
       real(wp), dimension(d%system%n, d%system%n) :: a, factors, inverse
       integer :: pivots(d%system%n), info, k
 
-      call jacobian(d%system, d%pose, a)
+      call jacobian(d%system, d%configuration, a)
       factors = a
       inverse = 0.0_wp
       do k = 1, d%system%n

@@ -7,7 +7,7 @@ module fool_scenes
    use quad_jet, only: qp
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_revolute, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_slide, term_harmonic, request_link
-   use links_tree, only: tree_t, new_tree
+   use spanning_tree, only: spanning_tree_t, new_tree
    use block_engine, only: block_engine_t
    implicit none
    private
@@ -104,7 +104,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       type(fool_t), intent(inout) :: f
-      type(tree_t) :: t
+      type(spanning_tree_t) :: t
 
       select case (f%scene)
       case (scene_four_bar)

@@ -2,7 +2,7 @@
 !> and links with several degrees of freedom, and one has a group of 12 to 18 links.
 module random_schemes
    use kinds, only: wp
-   use grouping, only: joined
+   use disjoint_sets, only: joined
    use quad_jet, only: qp
    use dice, only: dice_t, new_dice, throw, chance, between, magnitude, disorder
    use schemes, only: scheme_t, pair_t, measure_t, measure_line, measure_angle, measure_xi, measure_sum, drive_t, &

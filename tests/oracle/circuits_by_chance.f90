@@ -3,7 +3,7 @@
 !> last line is `N passed, N failed`.
 program circuits_by_chance
    use kinds, only: wp
-   use planar, only: pi, without_turns
+   use plane_vectors, only: pi, wrap_angle
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuit_trace, only: end_closed
@@ -204,7 +204,7 @@ contains
       real(wp), intent(in) :: a(2), b(2)
 
       is_branch = abs((a(2) - a(1)) - (b(2) - b(1))) <= known
-      if (b(2) - b(1) < turn - known) is_branch = is_branch .and. all(abs(without_turns(a - b)) <= known)
+      if (b(2) - b(1) < turn - known) is_branch = is_branch .and. all(abs(wrap_angle(a - b)) <= known)
    end function is_branch
 
    !> A six-bar of the kind that chance takes.
@@ -305,7 +305,7 @@ contains
       is_circuit = is_circuit .and. size(own) == 2
       do k = 1, size(own)
          associate (b => found%branches(own(k)))
-            is_circuit = is_circuit .and. all(b%dead > 0) .and. all(abs(without_turns(b%range - range)) <= known) &
+            is_circuit = is_circuit .and. all(b%dead > 0) .and. all(abs(wrap_angle(b%range - range)) <= known) &
                .and. abs((b%range(2) - b%range(1)) - (range(2) - range(1))) <= known
          end associate
       end do

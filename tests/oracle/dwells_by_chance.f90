@@ -4,7 +4,7 @@
 !> dwells_by_chance COUNT [FIRST SEED]; the last line is `N passed, N failed`.
 program dwells_by_chance
    use kinds, only: wp
-   use planar, only: pi, without_turns
+   use plane_vectors, only: pi, wrap_angle
    use mechanism, only: drive_t, mechanism_t, branch_request_t, term_t, term_cycloid, drive_x, instant
    use drives, only: drive_motion
    use motion, only: motion_t, new_motion
@@ -204,7 +204,7 @@ contains
             allowed = min(root, rounding/max(sine, epsilon(sine)))
             if (changes .and. q%known == 0 .and. t > rises(2)%r(1)) allowed = either
             off = max(maxval(abs(q%position(1, 2:) - x(2:))), maxval(abs(q%position(2, 2:) - y(2:))), &
-               maxval(abs(without_turns(q%position(3, 2:) - phi(2:)))))
+               maxval(abs(wrap_angle(q%position(3, 2:) - phi(2:)))))
             is_followed = q%known >= 0 .and. off <= allowed
             if (t >= rises(1)%r(1) + rises(1)%r(2) .and. t < rises(2)%r(1)) is_followed = is_followed .and. &
                q%known == 2 .and. all(abs(q%velocity) <= 0.0_wp) .and. all(abs(q%acceleration) <= 0.0_wp)

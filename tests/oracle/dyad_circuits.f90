@@ -3,7 +3,7 @@
 !> interval of the crank angle with one choice for each; where a dyad is in line its two choices meet.
 module dyad_circuits
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    implicit none
    private
    public :: six_bar_t, branches_t, find_branches, positions, is_assembled

@@ -7,7 +7,7 @@
 program hard
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
-   use planar, only: pi, degree
+   use plane_vectors, only: pi, degree
    use quad_jet, only: qp, pi_q
    use mechanism, only: method_matrix, method_dense
    use motion, only: motion_t, new_motion, mark_none

@@ -2,7 +2,7 @@
 !> closed form in real128. Those that are built here have their closed forms of the very doubles in them.
 module hard_scenes
    use kinds, only: wp
-   use planar, only: degree
+   use plane_vectors, only: degree
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use failures, only: failure_t
    use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count

@@ -7,11 +7,11 @@
 !> exp(i phi), and the conjugates of both: no tree, no loops, no slides. What is linear in (X, w) alone is eliminated.
 program random_blocks
    use kinds, only: wp, label_length
-   use planar, only: pi, rotated, direction
+   use plane_vectors, only: pi, rotated, direction
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, pair_revolute, pair_prismatic
-   use structure, only: findings_t, find_structure
+   use structure, only: structure_report_t, find_structure
    use bilinear, only: find_null_space
-   use numerals, only: whole
+   use number_format, only: whole
    use dice, only: dice_t, new_dice, throw, chance, between
    use arguments, only: argument, number
    implicit none
@@ -101,7 +101,7 @@ contains
    !> All links of `m` are in one block, and nothing is too much.
    logical function is_one_block(m) result(is_one)
       type(mechanism_t), intent(in) :: m
-      type(findings_t) :: f
+      type(structure_report_t) :: f
 
       is_one = no_part_is_too_stiff(m)
       if (.not. is_one) return

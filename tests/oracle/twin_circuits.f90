@@ -7,7 +7,7 @@
 !> the values -b and b of the drive; each stage and the platform is assembled in two ways, and there all change.
 module twin_circuits
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, request_t, request_link, pair_revolute, &
       pair_prismatic, drive_angle, drive_slide, drive_y
    use dice, only: dice_t, between, chance, throw

@@ -2,7 +2,7 @@
 !> is `N passed, N failed`.
 program twins_by_chance
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuits, only: circuits_t, find_circuits
    use twin_circuits, only: twin_t, throw_twin
@@ -73,6 +73,6 @@ contains
       logical, intent(in) :: turns
 
       is_range = abs((a(2) - a(1)) - (b(2) - b(1))) <= known
-      if (.not. turns) is_range = is_range .and. (all(abs(a - b) <= known) .or. all(abs(without_turns(a - b)) <= known))
+      if (.not. turns) is_range = is_range .and. (all(abs(a - b) <= known) .or. all(abs(wrap_angle(a - b)) <= known))
    end function is_range
 end program twins_by_chance

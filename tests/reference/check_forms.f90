@@ -8,7 +8,7 @@ program check_forms
    use mechanism, only: mechanism_t, pair_t, drive_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
       drive_relangle, drive_slide
    use scales, only: characteristic_length, characteristic_rate
-   use structure, only: findings_t, find_structure
+   use structure, only: structure_report_t, find_structure
    use deck, only: read_deck
    use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
    use quad_decks, only: length, angle, law
@@ -320,7 +320,7 @@ contains
    end subroutine enlarge
 
    logical function agree(a, b)
-      type(findings_t), intent(in) :: a, b
+      type(structure_report_t), intent(in) :: a, b
 
       agree = all([a%links, a%ground, a%revolute, a%prismatic, a%coordinates, a%equations, a%degrees_of_freedom, &
          a%drives] &

@@ -1,7 +1,7 @@
 !> Tests. The closed form of each deck in input/, chosen by the deck's base name, and what the listing says of its
 !> structure, counted by hand.
 module closed_forms
-   use structure, only: findings_t
+   use structure, only: structure_report_t
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use closed_forms_linkages, only: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph, &
@@ -261,7 +261,7 @@ contains
    !> equations for every pair and three for every ground link.
    pure function hand_count(name) result(f)
       character(*), intent(in) :: name
-      type(findings_t) :: f
+      type(structure_report_t) :: f
       integer :: i
 
       do i = 1, size(counts)

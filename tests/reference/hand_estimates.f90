@@ -14,7 +14,7 @@ module hand_estimates
 
    integer, parameter :: directions = 8
    !> Of so few samples the largest may be too small; a sum is off by so many roundings of its largest number.
-   real(qp), parameter :: caution = 2.35_qp, sum_roundings = 1.5_qp
+   real(qp), parameter :: safety_factor = 2.35_qp, sum_roundings = 1.5_qp
    real(qp), parameter :: rounding = real(epsilon(1.0_real64), qp)
    !> Small beside the distance from the dead point, large beside a rounding of real128.
    real(qp), parameter :: difference = 1.0e-19_qp
@@ -65,7 +65,7 @@ contains
       real(qp), intent(in) :: value(:, :, :), change(:, :, :)
       real(qp) :: error(3, 0:2, size(m%requests))
 
-      error = merge(0.0_qp, caution*change + sum_errors(m, value), &
+      error = merge(0.0_qp, safety_factor*change + sum_errors(m, value), &
          abs(value) <= 0.0_qp .and. change <= 0.0_qp)
    end function with_sums
 

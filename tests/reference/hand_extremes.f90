@@ -191,7 +191,7 @@ contains
       end do
       length = length_by_hand(m)
       g%closure(1) = max(maxval(abs(links%x%v - first%x%v)), maxval(abs(links%y%v - first%y%v)))/length
-      g%closure(2) = maxval(abs(without_turns(links%phi%v - first%phi%v)))
+      g%closure(2) = maxval(abs(wrap_angle(links%phi%v - first%phi%v)))
       g%closure(3) = max(maxval(abs(links%x%d - first%x%d))/length, maxval(abs(links%y%d - first%y%d))/length, &
          maxval(abs(links%phi%d - first%phi%d)))/rate_by_hand(m, length)
    end function grid_of
@@ -470,7 +470,7 @@ contains
          repeats = mod(size(dead), few) == 0
          do i = few + 1, size(dead)
             change = dead(i)%value - dead(i - few)%value
-            if (g%row(q, 0)%dimension(c) == 2) change = without_turns(change)
+            if (g%row(q, 0)%dimension(c) == 2) change = wrap_angle(change)
             repeats = repeats .and. abs(change) < closes_to .and. abs(dead(i)%t - dead(i - few)%t - period) &
                < closes_to*abs(g%t(n) - g%t(0))
          end do
@@ -504,11 +504,11 @@ contains
    end subroutine find_dead_centres
 
    !> An angle less whole turns.
-   elemental real(qp) function without_turns(phi)
+   elemental real(qp) function wrap_angle(phi)
       real(qp), intent(in) :: phi
 
-      without_turns = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
-   end function without_turns
+      wrap_angle = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
+   end function wrap_angle
 
    !> The lines of the dwells within a distance of the extreme `e`: each time that the column comes inside.
    subroutine put_dwells(o, m, scales, g, q, c, way, e, drive)

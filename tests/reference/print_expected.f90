@@ -7,7 +7,7 @@ program print_expected
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, drive_angle
    use motion, only: diagnostic_t
-   use structure, only: findings_t
+   use structure, only: structure_report_t
    use following, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck, build_variant
@@ -65,7 +65,7 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
-      type(findings_t) :: findings
+      type(structure_report_t) :: findings
 
       findings = hand_count(name)
       findings%groups = groups_by_hand(name, m)

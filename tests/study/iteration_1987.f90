@@ -6,7 +6,7 @@
 module iteration_1987
    use kinds, only: wp
    use linear_solver, only: factors_t, new_factors, factor, solve
-   use pose, only: set_pose, choose_references, add_to_links
+   use configuration, only: set_configuration, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    use quad_jet, only: qp, pi_q, degree_q
    use jet_closure, only: closure
@@ -178,11 +178,11 @@ contains
 
       if (variant == by_print) s%references = printed_references(s%m)
       if (variant == by_dyad) s%references = dyad_references(s%m, q, 3, 4)
-      s%pose = s%once
-      s%pose%frozen = variant /= by_tangent
-      s%pose%q = real(q, wp)
-      call set_pose(s%system, s%pose)
-      if (variant == by_step) call choose_references(s%system, s%pose)
+      s%configuration = s%once
+      s%configuration%frozen = variant /= by_tangent
+      s%configuration%q = real(q, wp)
+      call set_configuration(s%system, s%configuration)
+      if (variant == by_step) call choose_references(s%system, s%configuration)
    end subroutine begin
 
    !> One step (20) from `q`. `regular`: its matrix has an inverse.
@@ -199,19 +199,19 @@ contains
          call step_as_printed(s, angle, q, regular)
          return
       end if
-      s%pose%q = real(q, wp)
-      call set_pose(s%system, s%pose)
+      s%configuration%q = real(q, wp)
+      call set_configuration(s%system, s%configuration)
       f = new_factors(s%system%n)
-      call residual(s%system, s%pose, [real(angle*degree_q, wp)], r)
-      call jacobian(s%system, s%pose, f%a)
+      call residual(s%system, s%configuration, [real(angle*degree_q, wp)], r)
+      call jacobian(s%system, s%configuration, f%a)
       call factor(f, info)
       regular = info == 0
       if (.not. regular) return
       call solve(f, r)
       regular = all(abs(r) <= 1.0e9_wp)
       if (.not. regular) return
-      call add_to_links(s%system, -r, s%pose%q)
-      q = real(s%pose%q, qp)
+      call add_to_links(s%system, -r, s%configuration%q)
+      q = real(s%configuration%q, qp)
    end subroutine one_step
 
    subroutine step_as_printed(s, angle, q, regular)

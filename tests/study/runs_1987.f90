@@ -8,7 +8,7 @@ module runs_1987
       steps_of_turn
    use bench_timing, only: job_t, measure
    use bench_tools, only: figure
-   use planar, only: degree
+   use plane_vectors, only: degree
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
    use iteration_1987, only: by_print, by_tangent, variant_names, run_t, iterate_from, went_right, went_wrong
    implicit none

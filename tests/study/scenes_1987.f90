@@ -7,7 +7,7 @@ module scenes_1987
    use deck, only: read_deck
    use scales, only: characteristic_length, power_of_two
    use sample_mechanisms, only: magnified
-   use pose, only: system_t, pose_t, new_system, new_pose, set_pose, choose_references
+   use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, choose_references
    use quad_jet, only: qp, pi_q, degree_q
    use quad_frozen, only: references_t
    use closed_forms_dyads, only: body_t
@@ -23,9 +23,9 @@ module scenes_1987
       character(16) :: name = ''
       type(mechanism_t) :: m
       type(system_t) :: system
-      type(pose_t) :: pose                      !< room for an iteration
+      type(configuration_t) :: configuration                      !< room for an iteration
       type(references_t) :: references          !< of an iteration in the print's form
-      type(pose_t) :: once                      !< with the references chosen at the crank angle 0
+      type(configuration_t) :: once                      !< with the references chosen at the crank angle 0
       real(qp), allocatable :: turn(:, :, :)    !< (3, links, 0:359) positions; the angles go on without leaps
    end type scene_t
 
@@ -59,10 +59,10 @@ contains
       end do
       if (count(abs(s%turn(3, :, 359) - s%turn(3, :, &
          0)) > pi_q) /= 1) error stop 'MORE THAN THE CRANK TURNS'
-      s%pose = new_pose(s%system, s%m)
-      s%once = s%pose
+      s%configuration = new_configuration(s%system, s%m)
+      s%once = s%configuration
       s%once%q = real(exact(s, 0), wp)
-      call set_pose(s%system, s%once)
+      call set_configuration(s%system, s%once)
       call choose_references(s%system, s%once)
    end function new_scene
 

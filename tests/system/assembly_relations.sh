@@ -35,8 +35,8 @@ cards() {
 
 # relate NAME DECK SET: the relations of one set
 relate() {
-   awk -v set="$3" -v assembly=1 -f tests/system/first_instant.awk "$2" > "$w/all.deck"
-   awk -v set="$3" -f tests/system/first_instant.awk "$2" > "$w/run.deck"
+   awk -v set="$3" -v assembly=1 -f tests/system/initial_assembly.awk "$2" > "$w/all.deck"
+   awk -v set="$3" -f tests/system/initial_assembly.awk "$2" > "$w/run.deck"
    solve all
    solve run
    equal "$1 is read" '' "$(cat "$w/all.err" "$w/run.err")"
@@ -49,7 +49,7 @@ relate() {
    for pair in $(awk -v most=$most 'BEGIN { c = 1 } /^ INDEPENDENT MECHANISM/ { c = $3 }
       /^ ASSEMBLY / && $2 <= most { print c ":" $2 }' "$w/all.lst"); do
       cards all "${pair%:*}" "${pair#*:}" > "$w/cards"
-      awk -v set=1 -v cards="$w/cards" -f tests/system/first_instant.awk "$w/run.deck" > "$w/pasted.deck"
+      awk -v set=1 -v cards="$w/cards" -f tests/system/initial_assembly.awk "$w/run.deck" > "$w/pasted.deck"
       solve pasted
       equal "$1: mechanism ${pair%:*}, assembly ${pair#*:}, pasted" '' \
          "$(cat "$w/pasted.err"; rows taken all pasted mechanism_taken="${pair%:*}" k_taken="${pair#*:}")"
@@ -64,7 +64,7 @@ random() {
       failed_before=$(grep -c failed "$counts")
       relate "seed $seed" "$w/deck" 1
       # A coordinate that is held besides may leave out some; numbers of 12 digits move places.
-      awk -v set=1 -v assembly=1 -f tests/system/first_instant.awk "$w/plain_deck" > "$w/plain.deck"
+      awk -v set=1 -v assembly=1 -f tests/system/initial_assembly.awk "$w/plain_deck" > "$w/plain.deck"
       solve plain
       held() { grep -cE '^DRIVE   [XY] ' "$w/$1"; }
       all=$([ "$(held deck)" -eq "$(held plain_deck)" ] && echo 1 || echo 0)

@@ -4,7 +4,7 @@
 program compare_digits
    use, intrinsic :: iso_fortran_env, only: int64, real128
    use kinds, only: wp
-   use numerals, only: fixed, full, numeral_length
+   use number_format, only: fixed, full, numeral_length
    implicit none
 
    integer(int64) :: count, i, state, failed

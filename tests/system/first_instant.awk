@@ -1,4 +1,4 @@
-# awk -v set=N -v assembly=1 -f first_instant.awk DECK: set number N of a deck at its first instant alone, by METHOD NEWTON, with the
+# awk -v set=N -v assembly=1 -f initial_assembly.awk DECK: set number N of a deck at its first instant alone, by METHOD NEWTON, with the
 # card PRINT ALL and, where it is asked for, ASSEMBLY. `cards`: a file with cards that stand in place of its own.
 # What a card is about: a drive has a kind, too, and a second link.
 function key_of(text) { return substr(sprintf("%-32s", text), 1, text ~ /^DRIVE/ ? 32 : 16) }

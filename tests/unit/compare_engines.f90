@@ -3,7 +3,7 @@ module compare_engines
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_dense, wanted_links
    use motion, only: motion_t, new_motion, mark_none
-   use structure, only: findings_t, find_structure
+   use structure, only: structure_report_t, find_structure
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
@@ -31,7 +31,7 @@ contains
       type(mechanism_t) :: all_at_once
       type(analysis_t) :: blocks, dense
       type(motion_t) :: q, r
-      type(findings_t) :: f
+      type(structure_report_t) :: f
       real(wp) :: share(0:2)
       integer :: k
 

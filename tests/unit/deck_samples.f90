@@ -1,7 +1,7 @@
 !> Small decks for the tests of the reader, and its words about them.
 module deck_samples
    use mechanism, only: mechanism_t
-   use numerals, only: whole
+   use number_format, only: whole
    use failures, only: failure_t
    use deck, only: read_deck
    implicit none

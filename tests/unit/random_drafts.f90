@@ -3,7 +3,7 @@
 !> this position, drives that begin from it.
 module random_drafts
    use kinds, only: wp
-   use planar, only: pi
+   use plane_vectors, only: pi
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, term_harmonic, request_link
    use dice, only: dice_t, throw, chance, between, disorder

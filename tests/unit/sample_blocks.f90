@@ -2,7 +2,7 @@
 module sample_blocks
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use links_tree, only: tree_t, new_tree, put_axes
+   use spanning_tree, only: spanning_tree_t, new_tree, put_axes
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, geometry_t
    use block_structure, only: new_blocks
@@ -36,7 +36,7 @@ contains
       real(wp), intent(in) :: length
       type(equations_t), intent(out) :: e
       type(equation_numbers_t), intent(out) :: x
-      type(tree_t) :: t
+      type(spanning_tree_t) :: t
 
       t = new_tree(m)
       e = new_equations(m, t)

@@ -1,7 +1,7 @@
 !> Tests. Mechanisms built by hand, as plain data, with rough positions near t = 0 of the closed forms.
 module sample_mechanisms
    use kinds, only: wp
-   use planar, only: degree
+   use plane_vectors, only: degree
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, request_t, pair_revolute, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, request_link
    implicit none

@@ -5,9 +5,9 @@
 !>
 !> All blocks are assembled, also those that no table needs: what is printed chooses no assembly. If a block has no
 !> position with any of the blocks below it, the others are assembled without it.
-module first_instant
+module initial_assembly
    use kinds, only: wp
-   use planar, only: without_turns
+   use plane_vectors, only: wrap_angle
    use cylinders, only: cylinder_length
    use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent, ended_elsewhere
    use motion, only: motion_t, new_motion
@@ -17,7 +17,7 @@ module first_instant
    use link_motion, only: move_links
    use levenberg_marquardt, only: levenberg_marquardt_solve, find_closure_error
    use block_engine, only: block_engine_t, choice_t, solve_blocks, solve_each, separation_of
-   use block_branches, only: is_short_and_right
+   use branch_switching, only: is_short_and_right
    use block_assemblies, only: block_positions_t, find_positions
    implicit none
    private
@@ -91,7 +91,7 @@ contains
       turn = 0.0_wp
       associate (class => e%blocks%tree%orientation, offset => e%geometry%equations%axes%angle_offset)
          do k = size(class), 1, -1
-            if (class(k) > 0) turn(class(k)) = without_turns(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
+            if (class(k) > 0) turn(class(k)) = wrap_angle(e%estimated(class(k)) + offset(k) - e%estimate(3, k))
          end do
          is_implied = abs(turn(class)) > alike
          guess = e%estimate
@@ -339,10 +339,10 @@ contains
          associate (is_angle => own_unknowns(e%blocks, i) <= e%blocks%orientations)
             do k = 1, size(found%distance)
                y = found%x(:, k)
-               if (all(merge(abs(without_turns(x - y)), abs(x - y)/max(1.0_wp, abs(x)), is_angle) &
+               if (all(merge(abs(wrap_angle(x - y)), abs(x - y)/max(1.0_wp, abs(x)), is_angle) &
                   <= merge(singular_alike, alike, is_singular))) return
             end do
-            y = merge(start + without_turns(x - start), x, is_angle)
+            y = merge(start + wrap_angle(x - start), x, is_angle)
          end associate
          call set_values(e%blocks, i, y, e%state)
          call add_turns(e%blocks, e%geometry, i, e%state)
@@ -447,7 +447,7 @@ contains
       real(wp), intent(in) :: position(:, :), guess(:, :), span
       real(wp) :: square(2, size(position, 2))
 
-      square(1, :) = without_turns(position(3, :) - guess(3, :))**2
+      square(1, :) = wrap_angle(position(3, :) - guess(3, :))**2
       square(2, :) = min(sum(((position(:2, :) - guess(:2, :))/span)**2, dim=1), far_place**2)
    end function squared_distances
 
@@ -467,4 +467,4 @@ contains
       c = before
       c%open%value = 0.0_wp
    end subroutine measure_closure_error
-end module first_instant
+end module initial_assembly

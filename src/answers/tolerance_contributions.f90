@@ -1,6 +1,6 @@
 !> Which tolerances count: of each quantity that PRINT asks for, at the printed instant at which the root of the sum of
 !> squares is greatest, the sensitivities to all numbers.
-module tolerance_shares
+module tolerance_contributions
    use kinds, only: wp
    use columns, only: columns_of_rows, forms
    use set_motion, only: set_motion_t
@@ -57,4 +57,4 @@ contains
          end associate
       end do
    end subroutine note_tolerances
-end module tolerance_shares
+end module tolerance_contributions

@@ -1,6 +1,6 @@
 !> The shares of tolerances in the listing: of each quantity the share of each number in the sum of squares, the largest
 !> first.
-module shares_table
+module contributions_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, is_centre
    use independent, only: set_t, request_of
@@ -8,11 +8,11 @@ module shares_table
    use table, only: format_t, unit_of, number_text
    use names, only: subject_name
    use sensitivities, only: has_tolerances
-   use tolerance_shares, only: shares_t, share_t, alike
+   use tolerance_contributions, only: shares_t, share_t, alike
    use listing_layout, only: layout_t, column_name, column_unit
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: fixed, whole
+   use number_format, only: fixed, whole
    use phrases
    implicit none
    private
@@ -120,4 +120,4 @@ contains
          text = number_text(f, x, 0.0_wp)
       end function value_text
    end subroutine put_quantity
-end module shares_table
+end module contributions_table

@@ -1,6 +1,6 @@
 !> Numbers 1, 2, ... in groups: sorted by the group of each, or joined by pairs. Time and memory are in proportion to
 !> the numbers and pairs.
-module grouping
+module disjoint_sets
    implicit none
    private
    public :: sorted_t, sorted, sorted_numbers, members, once, joined
@@ -103,4 +103,4 @@ contains
          root = parent(root)
       end do
    end subroutine find_root
-end module grouping
+end module disjoint_sets

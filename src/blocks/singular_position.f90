@@ -11,13 +11,13 @@
 !> (dead point, toggle position). Of the solutions those are velocities of a motion for which J x'' = b2(x') has
 !> solutions too: w . b2(p + l k) = 0, of second degree in l. Two real roots are two branches that cross (change point);
 !> no root is a position without neighbours.
-module singular_place
+module singular_position
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
    use blocks, only: blocks_t, geometry_t, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
-   use block_rank, only: values_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step, &
+   use block_rank, only: svd_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step, &
       try_to_move
    implicit none
    private
@@ -52,7 +52,7 @@ contains
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      type(values_t) :: v
+      type(svd_t) :: v
       real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed
       real(wp) :: jacobian(size(r)*size(first))
 
@@ -150,7 +150,7 @@ contains
       real(wp), intent(in) :: speed
       type(state_t), intent(inout) :: s
       logical, intent(out) :: agrees, crosses
-      type(values_t) :: v
+      type(svd_t) :: v
       real(wp) :: r(b%list(i)%shape%rows), p(b%list(i)%shape%n), q(-1:1), c(0:2), unit
       real(wp) :: jacobian(size(r)*size(p))
       integer :: j
@@ -181,4 +181,4 @@ contains
       crosses = maxval(abs(c)) > agreement*x%blocks(i)%lipschitz .and. &
          c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*maxval(abs(c))**2
    end subroutine judge
-end module singular_place
+end module singular_position

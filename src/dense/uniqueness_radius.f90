@@ -16,13 +16,13 @@
 !> |g . J^-1 J'[t] e_m|. Forces at the joints of one link cancel in it: D is K |t| at most, and often a tenth of it.
 !>
 !> W is |x_i - x_j| where that is above 1: then K does not grow as a slide goes to infinity.
-module root_distance
+module uniqueness_radius
    use kinds, only: wp
    use mechanism, only: has_guide, drive_x, drive_y, drive_slide
-   use grouping, only: joined
+   use disjoint_sets, only: joined
    use lapack, only: getrs
    use linear_solver, only: factors_t
-   use pose, only: system_t, pose_t
+   use configuration, only: system_t, configuration_t
    use closure_equations, only: remainder
    implicit none
    private
@@ -67,10 +67,10 @@ contains
       end do
    end function new_coordinates
 
-   !> Measures the slides of `c` in their unit W at pose `p`.
+   !> Measures the slides of `c` in their unit W at configuration `p`.
    pure subroutine measure_slides(s, p, c)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       type(coordinates_t), intent(inout) :: c
       integer :: k, axis
 
@@ -88,10 +88,10 @@ contains
       end do
    end subroutine measure_slides
 
-   !> |x_i - x_j| of pair number `k` at pose `p`.
+   !> |x_i - x_j| of pair number `k` at configuration `p`.
    pure real(wp) function slide_length(s, p, k)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
 
       slide_length = norm2(p%q(:2, s%link_of(s%pairs(k)%point_i)) - p%q(:2, s%link_of(s%pairs(k)%point_j)))
@@ -132,12 +132,12 @@ contains
       end associate
    end function forms_by_inverse
 
-   !> Bounds (rows) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
+   !> Bounds (rows) of what the rows hold beyond their linear part at configuration `p`: L_k of above. The two rows of a revolute
    !> pair have one bound, that of their vector.
    pure function jacobian_lipschitz(s, c, p) result(bound)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp) :: bound(2*size(s%pairs) + size(s%drives))
       real(wp) :: body(size(s%link_of))
       integer :: k, row
@@ -163,12 +163,12 @@ contains
       end do
    end function jacobian_lipschitz
 
-   !> K at pose `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a matrix
+   !> K at configuration `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a matrix
    !> whose first rows are those of the system; its others are linear.
    pure real(wp) function kantorovich(s, c, y, p) result(k)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: y(:, :)          !< (n, forms or more)
       real(wp) :: bound(2*size(s%pairs) + size(s%drives))
       integer :: m
@@ -188,12 +188,12 @@ contains
       end function row_sum
    end function kantorovich
 
-   !> D at pose `p` in the direction `along`; `y` as of `kantorovich`.
+   !> D at configuration `p` in the direction `along`; `y` as of `kantorovich`.
    pure real(wp) function change_along(s, c, y, p, along) result(change)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       real(wp), intent(in) :: y(:, :)          !< (n, forms or more)
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       real(wp), intent(in) :: along(:, :)      !< (3, links)
       real(wp) :: total(size(c%forms, 2)), part(size(c%forms, 2), 2), unit(3, size(along, 2))
       logical :: is_of_pair(size(y, 1))
@@ -233,4 +233,4 @@ contains
          rows = 0.25_wp*(rows - less)
       end function mixed_derivative
    end function change_along
-end module root_distance
+end module uniqueness_radius

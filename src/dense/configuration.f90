@@ -3,19 +3,20 @@
 !> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
 !> characteristic length, which loses no digit and makes all that follows the same in any unit.
 !>
-!> A pose can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi. Here h,
+!> A configuration can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi. Here h,
 !> the angle that multiplies them, is counted from the nearest zero of the cosine or sine itself, for each row its own:
 !>    cos psi = c(h) h with c(h) = -+ sin(h)/h,  sin psi = s(h) h with s(h) = +- sin(h)/h.
 !> So h = 0, at which the print divides by zero and the iteration has a false attractor, is an ordinary position:
 !> sin(h)/h is 1 there.
-module pose
+module configuration
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, pi
+   use plane_vectors, only: rotated, quarter_turn, pi
    use mechanism, only: drive_t, mechanism_t, pair_t, plane_origin
    use scales, only: solver_length, power_of_two
    implicit none
    private
-   public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, normal_angle, add_to_links
+   public :: system_t, configuration_t, new_system, new_configuration, set_configuration, &
+      choose_references, normal_angle, add_to_links
    public :: nearest_zeros, secants
 
    !> The equations of one mechanism; lengths in units of `length`.
@@ -32,7 +33,7 @@ module pose
    end type system_t
 
    !> A position of all links and what follows from it alone; lengths in the system's unit, angles in radians.
-   type :: pose_t
+   type :: configuration_t
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
       real(wp), allocatable :: body_vector(:, :)  !< (2, points) from the link's origin to the point
@@ -40,7 +41,7 @@ module pose
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
       real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows; SLIDE rows are a quarter turn on
-   end type pose_t
+   end type configuration_t
 
 contains
 
@@ -71,10 +72,10 @@ contains
    end function new_system
 
    !> The deck's positions: of ground links the given ones, of the others the estimates.
-   pure function new_pose(s, m) result(p)
+   pure function new_configuration(s, m) result(p)
       type(system_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
-      type(pose_t) :: p
+      type(configuration_t) :: p
       integer :: i
 
       allocate (p%q(3, size(m%links)), p%direction(2, size(m%links)))
@@ -83,13 +84,13 @@ contains
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
-      call set_pose(s, p)
-   end function new_pose
+      call set_configuration(s, p)
+   end function new_configuration
 
    !> Directions, body vectors and slopes from `p%q`: one sine and one cosine a link.
-   pure subroutine set_pose(s, p)
+   pure subroutine set_configuration(s, p)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(inout) :: p
+      type(configuration_t), intent(inout) :: p
       integer :: i
 
       p%direction(1, :) = cos(p%q(3, :))
@@ -102,12 +103,12 @@ contains
             p%slope(:, i) = quarter_turn(p%body_vector(:, i))
          end if
       end do
-   end subroutine set_pose
+   end subroutine set_configuration
 
    !> Puts `p` into the frozen form of (16). Its angles are counted from the zeros nearest to their present values.
    pure subroutine choose_references(s, p)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(inout) :: p
+      type(configuration_t), intent(inout) :: p
       integer :: i
 
       p%frozen = .true.
@@ -117,7 +118,7 @@ contains
       do i = 1, size(s%pairs)
          p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
       end do
-      call set_pose(s, p)
+      call set_configuration(s, p)
    end subroutine choose_references
 
    !> Adds the unknowns' vector `x` (n) to the coordinates `q` (3, links); ground links stay as they are.
@@ -135,7 +136,7 @@ contains
    !> The angle of the normal of pair `k`.
    pure real(wp) function normal_angle(s, p, k)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: k
 
       normal_angle = p%q(3, s%link_of(s%pairs(k)%point_i)) + s%pairs(k)%alpha + pi/2.0_wp
@@ -144,7 +145,7 @@ contains
    !> The angle of the body vector to point `i`.
    pure real(wp) function body_vector_angle(s, p, i)
       type(system_t), intent(in) :: s
-      type(pose_t), intent(in) :: p
+      type(configuration_t), intent(in) :: p
       integer, intent(in) :: i
 
       body_vector_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
@@ -167,4 +168,4 @@ contains
       c = [-sin(zeros(1)), cos(zeros(2))]
       where (abs(psi - zeros) > tiny(psi)) c = c*(sin(psi - zeros)/(psi - zeros))
    end function secants
-end module pose
+end module configuration

@@ -8,7 +8,7 @@
 !> For 0 <= k <= 22 there is no low part: p + e is exact, and so is the decision, halves included. For any other k the
 !> error is below 2**-104 p: 2**-106 p for low as rounded, as much for x low, 2**-105 p for its sum with e. What so
 !> small an error could change, and any other kind of real, is left to a format, which prints the same digits.
-module numerals
+module number_format
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    implicit none
@@ -436,4 +436,4 @@ contains
       write (line, form) x
       line = adjustl(line)
    end function scientific
-end module numerals
+end module number_format

@@ -4,16 +4,16 @@
 !>
 !> The tree grows from the ground, revolute pairs first: a prismatic pair that closes a loop costs one equation and
 !> no unknown, one in the tree a slide. The tree is integers alone; the axes in which its links stand are `axes_t`.
-module links_tree
+module spanning_tree
    use kinds, only: wp
-   use planar, only: direction, rotated, quarter_turn
-   use grouping, only: sorted_t, sorted
+   use plane_vectors, only: direction, rotated, quarter_turn
+   use disjoint_sets, only: sorted_t, sorted
    use mechanism, only: mechanism_t, has_guide, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, guide
+   public :: spanning_tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, guide
 
-   type :: tree_t
+   type :: spanning_tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
       integer :: slides = 0                 !< slides of prismatic pairs in the tree
       integer :: roots = 0                  !< parts that no pair joins to the ground
@@ -28,7 +28,7 @@ module links_tree
       integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
       type(sorted_t) :: near               !< the pairs of each link
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
-   end type tree_t
+   end type spanning_tree_t
 
    !> The axes of a mechanism's links: what the numbers of its cards make of the tree.
    type :: axes_t
@@ -49,7 +49,7 @@ contains
    !> The tree of `m`; time and memory proportional to links and pairs.
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
-      type(tree_t) :: t
+      type(spanning_tree_t) :: t
       integer :: last, k       ! last: the links that a walk has come to so far
 
       t%near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
@@ -175,7 +175,7 @@ contains
    !> Gives the axes `a` the numbers of `m`, whose tree is `t`.
    pure subroutine put_axes(m, t, a)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(inout) :: a
       integer :: i, k, link
 
@@ -202,7 +202,7 @@ contains
    !> Where `link` is, seen from its parent, in the deck's unit of length.
    pure function place_on_tree(m, t, a, link) result(p)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(in) :: a
       integer, intent(in) :: link
       type(link_offset_t) :: p
@@ -242,4 +242,4 @@ contains
 
       v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))
    end function point_offset
-end module links_tree
+end module spanning_tree

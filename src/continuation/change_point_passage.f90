@@ -1,13 +1,13 @@
 !> The way back from a dead point or change point, for which there are two branches, and the passage through a change
 !> point at which the drive stops or turns.
-module at_bifurcation
+module change_point_passage
    use kinds, only: wp
    use drive_path, only: drive_at, value_at, slow_drive, next_turn, time_beside, lead
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
    use predictor, only: begin_at
-   use first_instant, only: solve_instant
-   use block_branches, only: take_other_branch, decide
+   use initial_assembly, only: solve_instant
+   use branch_switching, only: take_other_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use following, only: following_t, step_record_t, step_there, step_stands, place_t, continue_to, go_on_from, &
       go_back, follow_from, note_place, return_to, passed_of
@@ -175,4 +175,4 @@ contains
       passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
       if (passed) call go_on_from(f, p)
    end subroutine take_up
-end module at_bifurcation
+end module change_point_passage

@@ -8,14 +8,14 @@
 !>
 !> The motion goes smoothly on, but where a BRANCH card asks for the other branch. A change point passed once is passed
 !> on the same branch again, in either direction: the motion is a function of time.
-module block_branches
+module branch_switching
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, nothing_gathered, is_solved
    use drive_path, only: time_at_part
    use block_state, only: set_values, values_of, largest_drive_rate
-   use block_rank, only: values_t, decomposed, curvature_of
+   use block_rank, only: svd_t, decomposed, curvature_of
    use block_engine, only: block_engine_t, solve_each
    use block_diagnostics, only: links_of
    implicit none
@@ -173,7 +173,7 @@ contains
       integer, intent(in) :: i
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
-      type(values_t) :: v
+      type(svd_t) :: v
       real(wp), dimension(e%blocks%list(i)%shape%n) :: direction, x
       real(wp) :: curvature, away, correction
       logical :: same, crossed(size(e%crossed))
@@ -197,4 +197,4 @@ contains
          .and. c%open%value <= max_closure_part*abs(curvature)*away**2
       e%history%filled = 0
    end subroutine take_other_branch
-end module block_branches
+end module branch_switching

@@ -1,6 +1,6 @@
 !> By how much roundings grow at most in a motion: whether digits of the tables could be in doubt. The question is asked
 !> at every instant that is printed, and must cost little.
-module digits_in_doubt
+module significance_check
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, request_pole, request_measure, is_centre
@@ -12,7 +12,7 @@ module digits_in_doubt
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_growth, growth_in_centres, safe_growth
+   public :: sizes_t, sizes_of, find_amplification, growth_in_centres, safe_growth
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
@@ -62,7 +62,7 @@ contains
    !> without limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found
    !> the position to the last digits all the same; all equations at once have lost up to half of them. These have one
    !> unit of length for large links and small ones: pivots of blocks say nothing of them, and they always are in doubt.
-   pure subroutine find_growth(s, m, e, q, growth, in_doubt)
+   pure subroutine find_amplification(s, m, e, q, growth, in_doubt)
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
@@ -110,7 +110,7 @@ contains
       if (.not. angle > usual_angle) return
       in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
       growth = growth*max(1.0_wp, angle/usual)
-   end subroutine find_growth
+   end subroutine find_amplification
 
    !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
    pure subroutine find_largest(n, x, largest)
@@ -164,4 +164,4 @@ contains
             growth = max(growth, growth_in_measure(m, q, m%requests(i)%subject, rate))
       end do
    end function growth_in_measures
-end module digits_in_doubt
+end module significance_check

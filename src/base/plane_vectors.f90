@@ -1,11 +1,11 @@
 !> Angles, in degrees and without whole turns, and vectors of the plane, as x and y: rotation, quarter turn, cross
 !> product, a point that rotates with a link.
-module planar
+module plane_vectors
    use kinds, only: wp
    use number_types, only: vector_t
    implicit none
    private
-   public :: pi, degree, in_degrees, without_turns
+   public :: pi, degree, in_degrees, wrap_angle
    public :: vector_t, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
@@ -41,12 +41,12 @@ contains
    end function in_degrees
 
    !> `angle` (rad) less whole turns, between -pi and pi: the same direction. An angle in this range stays as it is.
-   pure elemental real(wp) function without_turns(angle) result(rest)
+   pure elemental real(wp) function wrap_angle(angle) result(rest)
       real(wp), intent(in) :: angle
       real(wp), parameter :: turn = 2.0_wp*pi
 
       rest = angle - turn*anint(angle/turn)
-   end function without_turns
+   end function wrap_angle
 
    !> Unit vector (2) at `angle` (rad) from the x axis.
    pure function direction(angle) result(e)
@@ -102,4 +102,4 @@ contains
       a(1) = a(1) - acceleration*y - square*x
       a(2) = a(2) + acceleration*x - square*y
    end subroutine add_rotating
-end module planar
+end module plane_vectors

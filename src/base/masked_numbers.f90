@@ -1,8 +1,8 @@
 !> Numbers of which not all digits are known: a question mark in the place of each that is not.
-module known_digits
+module masked_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use numerals, only: nearest_whole, tens, put_fixed, put_with_point, put_minus, put_whole, put_exponent, &
+   use number_format, only: nearest_whole, tens, put_fixed, put_with_point, put_minus, put_whole, put_exponent, &
       numeral_length, max_decimals
    implicit none
    private
@@ -94,4 +94,4 @@ contains
          if (text /= '') return
       end do
    end function masked_text
-end module known_digits
+end module masked_numbers

@@ -5,7 +5,7 @@
 !> one drive moves it may go to and fro between its two values, since the mechanism then comes back through the same
 !> positions; beyond them it may go at most as far as the position is certain to exist. Of several drives none may
 !> leave its own chord by more: round a cusp there is another assembly at the same values.
-module drive_excursion
+module drive_deviation
    use kinds, only: wp
    use mechanism, only: mechanism_t, find_instants
    use scales, only: solver_length, is_length
@@ -14,22 +14,22 @@ module drive_excursion
    use drive_path, only: drive_path_t, drive_at, drive_bounds
    implicit none
    private
-   public :: drive_excursion_t, new_drive_excursion, limit_substep, judge_step, examine
+   public :: drive_deviation_t, new_drive_excursion, limit_substep, judge_step, examine
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
-   real(wp), parameter :: largest_excursion = 0.03_wp
+   real(wp), parameter :: max_deviation = 0.03_wp
    !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
    real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
 
    !> Bounds of the drives by time, in the deck's unit.
-   type :: drive_excursion_t
+   type :: drive_deviation_t
       !> (drives) Of the value: 1 over the characteristic length, or 1; none where no position depends on those before.
       real(wp), allocatable :: unit(:)
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
       real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
-   end type drive_excursion_t
+   end type drive_deviation_t
 
 contains
 
@@ -37,7 +37,7 @@ contains
    function new_drive_excursion(m, depends) result(p)
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: depends
-      type(drive_excursion_t) :: p
+      type(drive_deviation_t) :: p
       type(bounds_t) :: b
       real(wp) :: largest(2)
       integer :: i
@@ -66,7 +66,7 @@ contains
    !> Finds the part `allowed` of the `substep` from the parameter `t` on that the drives allow at once. `away`: how far
    !> they leave their chords in it, in radians or characteristic lengths, at most; see `examine`.
    pure subroutine limit_substep(p, path, t, substep, allowed, away)
-      type(drive_excursion_t), intent(in) :: p
+      type(drive_deviation_t), intent(in) :: p
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t, substep
       real(wp), intent(out) :: allowed, away
@@ -83,7 +83,7 @@ contains
          if (change > largest_change .and. .not. (inside .and. abs(allowed) <= p%longest)) then
             allowed = allowed*max(min_factor, a_little_less*largest_change/change)
             if (inside) allowed = sign(max(abs(allowed), p%longest), substep)
-         else if (away > largest_excursion) then
+         else if (away > max_deviation) then
             allowed = 0.5_wp*allowed
          else
             exit
@@ -95,7 +95,7 @@ contains
    !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
    !> `away`: bounds their `excursion`.
    pure subroutine judge_step(p, step, away, is_plain)
-      type(drive_excursion_t), intent(in) :: p
+      type(drive_deviation_t), intent(in) :: p
       real(wp), intent(in) :: step
       real(wp), intent(out) :: away
       logical, intent(out) :: is_plain
@@ -104,13 +104,13 @@ contains
       is_plain = abs(step) <= p%longest .and. p%curve < huge(1.0_wp)
       if (.not. is_plain) return
       away = 0.125_wp*step**2*p%curve
-      is_plain = away <= largest_excursion
+      is_plain = away <= max_deviation
    end subroutine judge_step
 
    !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
    !> a chord being off its curve by h^2/8 times the second derivative at most.
    pure subroutine examine(p, path, t1, t2, change, away)
-      type(drive_excursion_t), intent(in) :: p
+      type(drive_deviation_t), intent(in) :: p
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
       real(wp), intent(out) :: change, away
@@ -147,10 +147,10 @@ contains
 
    !> `t1` and `t2` lie within the time of all instants, and are times.
    pure logical function is_within(p, path, t1, t2)
-      type(drive_excursion_t), intent(in) :: p
+      type(drive_deviation_t), intent(in) :: p
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
 
       is_within = min(t1, t2) >= p%first .and. max(t1, t2) <= p%last .and. .not. allocated(path%leg)
    end function is_within
-end module drive_excursion
+end module drive_deviation
