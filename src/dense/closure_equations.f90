@@ -1,8 +1,8 @@
 !> The closure equations (14) of a mechanism: residual, Jacobian and acceleration remainder.
 !>
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
-!> paper's own iteration: where the configuration is frozen, its slopes are the coefficients of (16) and the matrix is A of (20).
-!> The one file that knows the kinds of pairs and of drives.
+!> paper's own iteration: where the configuration is frozen, its slopes are the coefficients of (16) and the matrix is
+!> A of (20). The one file that knows the kinds of pairs and of drives.
 !>
 !> Revolute pair of links i and j: the joint is point P of link i and point Q of link j. With the body vectors
 !> u = R(phi_i) (xi_P, eta_P) and w = R(phi_j) (xi_Q, eta_Q) from each link's own origin:
@@ -68,7 +68,8 @@ contains
       end do
    end subroutine residual
 
-   !> Jacobian (n, n) of the residual at configuration `p`, or the matrix A of (20) where the configuration is in the frozen form.
+   !> Jacobian (n, n) of the residual at configuration `p`, or the matrix A of (20) where the configuration is in the
+   !> frozen form.
    pure subroutine jacobian(s, p, a)
       type(system_t), intent(in) :: s
       type(configuration_t), intent(in) :: p

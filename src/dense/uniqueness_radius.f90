@@ -132,8 +132,8 @@ contains
       end associate
    end function forms_by_inverse
 
-   !> Bounds (rows) of what the rows hold beyond their linear part at configuration `p`: L_k of above. The two rows of a revolute
-   !> pair have one bound, that of their vector.
+   !> Bounds (rows) of what the rows hold beyond their linear part at configuration `p`: L_k of above. The two rows of
+   !> a revolute pair have one bound, that of their vector.
    pure function jacobian_lipschitz(s, c, p) result(bound)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
@@ -163,8 +163,8 @@ contains
       end do
    end function jacobian_lipschitz
 
-   !> K at configuration `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a matrix
-   !> whose first rows are those of the system; its others are linear.
+   !> K at configuration `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a
+   !> matrix whose first rows are those of the system; its others are linear.
    pure real(wp) function kantorovich(s, c, y, p) result(k)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
