@@ -91,11 +91,11 @@ contains
          call move_alloc(own%geometry, e%geometry)
       end if
       call take_requests(m, e%blocks, e%geometry)
+      e%cylinders = cylinders_of(m, .false.)
       if (.not. e%blocks%solvable) return
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_path(m, e%blocks, e%geometry, e%path)
-      e%cylinders = cylinders_of(m, .false.)
       call begin_state(e, m)
    end subroutine make_block_engine
 
@@ -146,7 +146,6 @@ contains
       x%tolerance = m%tolerance
       call put_chain(m, b, x, x%chain)
       call put_path(m, b, x, path)
-      e%cylinders = cylinders_of(m, .false.)
    end subroutine put_geometry
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
@@ -159,6 +158,7 @@ contains
       is_done = e%blocks%solvable
       if (is_done) call put_geometry(m, e%blocks, e%geometry, e%path, is_done)
       if (.not. is_done) return
+      if (size(e%cylinders) > 0) e%cylinders = cylinders_of(m, .false.)
       call put_estimate(e, m)
       call begin_state(e, m)
    end subroutine renew_block_engine
