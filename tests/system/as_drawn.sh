@@ -137,7 +137,7 @@ for foot in '2.0 -1.0' '1.5 -1.0' '3.0 1.0' '-1.0 2.0' '0.5 1.0' '1.25 3.0'; do
    equal "cylinder from $foot: proved, no marks" ' INSTANTS PROVED 2 / 2' "$(grep -o ' INSTANTS PROVED .* / [0-9]*' "$w/boom.lst")$(grep '?:' "$w/boom.lst")"
    equal "cylinder from $foot: a picture" yes "$([ -s "$w/boom.svg" ] && echo yes)"
 done
-equal 'ruler' 'CYLINDERPOINT-P POINT-Q PAIR' "$("$kinmat" --ruler CYLINDER | sed -n 2p)"
+equal 'ruler' 'CYLINDERPOINT-P POINT-Q PAIR    LEAST           GREATEST' "$("$kinmat" --ruler CYLINDER | sed -n 2p)"
 # refused NAME SENTENCE: the deck on standard input
 refused() {
    cat > "$w/refused.deck"
@@ -148,10 +148,10 @@ refused() {
 ram=$(card CYLINDER P Q RAM)
 boom 1.5 1.0 "$ram" "$push" "$hours" | refused 'a cylinder without a length' 'E069 BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'
 boom 2.0 -1.0 "$ram" "$(card TOLER '' '' '' 0.1)" "$push" "$hours" | refused 'a tolerance of a cylinder' \
-   'E045 MUST FOLLOW THE CARD TO WHICH IT APPLIES'
+   'E046 "0.1" IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'
 boom 2.0 -1.0 "$ram" "$(card VARY R1 2 '' 0.1 0.2)" "$push" "$hours" | refused 'a cylinder that varies' \
    'E045 MUST FOLLOW THE CARD TO WHICH IT APPLIES'
-boom 2.0 -1.0 "$(card CYLINDER P Q RAM 1.0)" "$push" "$hours" | refused 'a number on a cylinder' 'E019 "1.0" IS IN A FIELD THAT THIS CARD DOES NOT USE'
+boom 2.0 -1.0 "$(card CYLINDER P Q RAM '' '' 1.0)" "$push" "$hours" | refused 'a third number on a cylinder' 'E019 "1.0" IS IN A FIELD THAT THIS CARD DOES NOT USE'
 {
    card GROUND BASE; card LINK BARREL; card LINK ROD; card POINT P0 BASE; card POINT P BARREL; card POINT Q ROD '' 1.0
    card REVOLUTE P0 P FOOT; card CYLINDER P Q RAM; card DRIVE ANGLE BARREL; card DRIVE SLIDE RAM '' 1.0; card AT '' '' '' 0.0; card END
