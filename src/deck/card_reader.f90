@@ -329,6 +329,10 @@ contains
                parsed%names_certain = .false.
                call refuse_long_label(parsed, i, errors, is_long)
                if (.not. is_long) call add_field_error(errors, label_blank_inside, parsed%card, field)
+            else if (i == label_b .and. any(parsed%form == [form_link, form_time]) &
+               .and. parsed%label(label_c) == '') then
+               ! One word in both fields: a name or a number of steps. A bar needs FROM and TO.
+               call refuse_long_label(parsed, i, errors, is_long)
             end if
          end associate
       end do

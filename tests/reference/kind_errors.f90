@@ -95,7 +95,7 @@ contains
       allocate (e(size(sets)))
       do i = 1, size(sets)
          allocate (e(i)%seen(size(sets(i)%links), 0:instant_count(sets(i)) - 1))
-         e(i)%seen = spread(sets(i)%links%ground, 2, instant_count(sets(i)))
+         e(i)%seen = spread(sets(i)%links%ground .or. sets(i)%links%hidden, 2, instant_count(sets(i)))
       end do
       do while (status == 0)
          read (unit, '(a)', iostat=status) line

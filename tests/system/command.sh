@@ -292,7 +292,7 @@ equal 'the share of a wrong set' 1 $?
 equal '--help: status' 0 $?
 equal '--help: first line' 'Usage: kinmat [OPTIONS] [DECK]' "$(head -n 1 "$w/out")"
 equal '--help: three examples' 3 "$(grep -c '^  kinmat ' "$w/out")"
-equal '--help: a line an option, with a verb first' '' "$(grep -E '^  -' "$w/out" | cut -c 24- | grep -vE '^(Add|Check|Do not|Draw|Explain|Print|Run|Suppress|Write) ')"
+equal '--help: a line an option, with a verb first' '' "$(grep -E '^  -' "$w/out" | cut -c 24- | grep -vE '^(Add|Check|Do not|Draw|Explain|Omit|Print|Run|Suppress|Write) ')"
 equal '--help: no line of more than 80 columns' '' "$(grep -E '^.{81}' "$w/out")"
 for option in -o --no-listing --quiet --csv --log --svg --table --check --errors --sets --ruler --explain --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"

@@ -800,7 +800,7 @@ explained() {
 }
 explained 'a name of nine letters' '/^LINK    PISTON/ { print "LINK    PISTONROD"; next } { gsub(/PISTON$/, "PISTONROD") } 1' \
    ' *** E037  CARD 6  COLUMN 9  FIELD LABEL-A: "PISTONROD" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
- LAYOUT    |LINK    LINK                    X               Y               PHI'
+ LAYOUT    |LINK    LINK    FROM    TO      X               Y               PHI'
 explained 'a name of nine letters before another' '/^REVOLUTEA1/ { $0 = "REVOLUTEA1      POINT-A21PAIR-A" } 1' \
    ' *** E037  CARD 15  COLUMN 17  FIELD LABEL-B: "POINT-A21PAIR-A" IS TOO LONG: NAMES AND INTEGERS HAVE AT MOST 8 CHARACTERS
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'

@@ -196,7 +196,7 @@ equal 'the CSV where points meet' 'PO COINCIDE 0.0000000000000000E+000  BACK COI
 # Tolerances: the reserve goes with the angle; a distance by the coordinate of its point.
 with transmission | awk '/^JOINT   B / { print; print "TOLER                           0.001           0.001"; next } { print }' > "$w/deck"
 "$kinmat" --no-listing --csv "$w/csv" "$w/deck"
-equal 'tolerances: kinds' 'MEASURE MEASURE PER JOINT B X MEASURE PER JOINT B Y MEASURE RSS MEASURE WORST ' \
+equal 'tolerances: kinds' 'MEASURE MEASURE PER B IN COUPLER X MEASURE PER B IN COUPLER Y MEASURE PER B IN ROCKER X MEASURE PER B IN ROCKER Y MEASURE RSS MEASURE WORST ' \
    "$(awk -F, '$4 ~ /^MEASURE/ { print $4 }' "$w/csv" | sort -u | tr '\n' ' ')"
 equal 'tolerances: the sum' 13 "$(awk -F, '$4 == "MEASURE WORST" && $5 == "MU" { x = $6 } $4 == "MEASURE WORST" && $5 == "RESERVE" { if ((x - $6)^2 < 1e-24*x*x) n++ } END { print n }' "$w/csv")"
 

@@ -16,7 +16,7 @@ function scaled(text, k,  i) {
    return i ? substr(text, 1, i) (substr(text, i + 1) + k) : text "E" k
 }
 BEGIN {
-   kinds["GROUND"] = kinds["LINK"] = "l l a"; kinds["POINT"] = kinds["JOINT"] = "l l"; kinds["PRISM"] = "a l a"
+   kinds["GROUND"] = kinds["LINK"] = "l l a"; kinds["POINT"] = kinds["JOINT"] = "l l"; kinds["PRISM"] = kinds["SLOT"] = "a l a"; kinds["LENGTH"] = kinds["CYLINDER"] = "l l"
    kinds["TIME"] = kinds["AT"] = "t t t"; kinds["BRANCH"] = "t"; kinds["EXTREMES"] = "l a"
 }
 /^[$]/ || /^ *$/ || /^TITLE/ { print; next }

@@ -44,6 +44,8 @@ joints() { awk -F, '
       if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
          point[set + 1, pair] = first }
       if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
+      if ($0 ~ /^SLOT/) { pair = substr($0, 25, 8); first = substr($0, 17, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
+         point[set + 1, pair] = first }
       if ($0 ~ /^END/) set++
       next
    }
@@ -87,6 +89,8 @@ moving() { awk -F, '
       if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
          point[set + 1, pair] = first }
       if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
+      if ($0 ~ /^SLOT/) { pair = substr($0, 25, 8); first = substr($0, 17, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
+         point[set + 1, pair] = first }
       if ($0 ~ /^END/) set++
       next
    }
@@ -121,7 +125,7 @@ for deck in $(grep -L '^VARY' input/*.deck); do
       "$(grep -c 'class="flag"' "$w/$name.svg" | awk '{ print ($1 > 0) }')"
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    for svg in "$w/$name.svg" "$w/$name.all.svg"; do
-      equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
+      equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT|SLOT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
       equal "$svg: blocks on guides" "$(grep -cE '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
       equal "$svg: cylinders" "$(grep -cE '^CYLINDER' "$deck")" "$(grep -c 'class="barrel"' "$svg")"
    done
@@ -132,7 +136,7 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
    equal "$svg: blocks on guides" "$(grep -cE '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
    # Of a deck without joints nothing is compared.
-   count=$(grep -cE '^(REVOLUTE|JOINT)' "$deck")
+   count=$(grep -cE '^(REVOLUTE|JOINT|SLOT)' "$deck")
    equal "$svg: joints in motion" "$count $([ "$count" -gt 0 ] && echo 1 || echo 0)" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done

@@ -66,12 +66,12 @@ case $1 in
 --random) random "$2" "${3:-1}" ;;
 --short)
    every=4
-   for path in $(grep -L '^VARY' input/*.deck); do relate "$path"; done
+   for path in $(grep -LE '^(VARY|LENGTH|SLOT)' input/*.deck); do relate "$path"; done
    random 6 1
    every=1
    changes=3 random 1 7059
    changes=axes random 1 7173 ;;
-*) for path in ${*:-$(grep -L '^VARY' input/*.deck)}; do relate "$path"; done ;;
+*) for path in ${*:-$(grep -LE '^(VARY|LENGTH|SLOT)' input/*.deck)}; do relate "$path"; done ;;
 esac
 
 # Axes that are not known to be others make differences.
