@@ -42,6 +42,7 @@ parts() {
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    circuits of twins|40|"$BUILD/release/twins_by_chance" 40
+   cylinders by chance|40|tests/oracle/cylinders.sh 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
    ratios and columns|75|tests/system/ratios.sh

@@ -1,5 +1,5 @@
 # Tests and measurements; `make help` lists them. The Makefile includes this file.
-.PHONY: assembly-peers test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants coverage drawings sizes expected
+.PHONY: assembly-peers test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits cylinders lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants coverage drawings sizes expected
 
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-vectorize,$(RELEASE))
@@ -105,6 +105,11 @@ circuits: $(addprefix $(BUILD)/release/,circuits_by_chance twins_by_chance)
 	$(BUILD)/release/circuits_by_chance
 	$(BUILD)/release/twins_by_chance 500
 
+#: cylinders        compare random mechanisms with cylinders with the law of cosines
+# 500 booms on cylinders made by chance, with strokes and through the length 0, against the law of cosines.
+cylinders: $(addprefix $(BUILD)/,kinmat release/cylinders_by_chance)
+	BUILD=$(BUILD) tests/oracle/cylinders.sh 500
+
 #: lengths          compare random drawings with LENGTH with closed forms
 # 300 drawings made by chance with LENGTH cards and axes along bars, against closed forms.
 lengths: $(addprefix $(BUILD)/,kinmat release/lengths_by_chance)
@@ -195,7 +200,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance random_blocks
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms extremes_by_chance read_listing circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance cylinders_by_chance random_blocks
 #: test             run all tests
 test: $(addprefix $(BUILD)/,kinmat libkinmat.so.2 example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)

@@ -16,6 +16,9 @@ module circuit_trace
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
+   !> The value of the drive where the length of a cylinder comes to 0 is that of the parabola through its values at one,
+   !> two and three of these lengths, in characteristic lengths: its error is below their cube.
+   real(wp), parameter :: short = 1.0e-4_wp
    !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
    real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
    integer, parameter :: max_points = 50000
@@ -123,7 +126,7 @@ contains
             if (ok) b = again
             ! Nothing is passed there.
             if (circuit%points(n)%is_change) n = n - 1
-            if (c%drives_cylinder) b%value(of_value) = 0.0_wp
+            call find_value_at_0(b%value(of_value))
          else if (b%value(of_size) > c%far) then
             circuit%ends(2) = end_far
             call find_root(c, a, b, of_size, c%far, again, ok)
@@ -148,6 +151,27 @@ contains
       circuit%points = circuit%points(:n)
 
    contains
+
+      !> The drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free there, and a
+      !> point of the curve known to half its digits: the parabola through the values at three lengths before it.
+      subroutine find_value_at_0(value)
+         real(wp), intent(inout) :: value
+         type(curve_point_t) :: p
+         real(wp) :: x(3)
+         integer :: from, k
+
+         from = findloc(circuit%points(:n)%value(of_gap) > 3.0_wp*short*c%closure%length, .true., dim=1, back=.true.)
+         if (from > 0) then
+            do k = 1, 3
+               call find_root(c, circuit%points(from), b, of_gap, real(k, wp)*short*c%closure%length, p, ok)
+               if (.not. ok) return
+               x(k) = p%value(of_value)
+            end do
+            value = 3.0_wp*(x(1) - x(2)) + x(3)
+         end if
+         ! The driven cylinder itself has the length 0; another one may come to 0 before it.
+         if (c%drives_cylinder .and. abs(value) < short*c%closure%length) value = 0.0_wp
+      end subroutine find_value_at_0
 
       !> From the last of the `n` points of `circuit` across the change point ahead, which is appended, to `b`, as far
       !> behind it: certified steps shrink in proportion to the distance from it.
