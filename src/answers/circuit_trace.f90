@@ -16,8 +16,8 @@ module circuit_trace
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
-   !> The value of the drive where the length of a cylinder comes to 0 is that of the parabola through its values at one,
-   !> two and three of these lengths, in characteristic lengths: its error is below their cube.
+   !> The value of the drive where the length of a cylinder comes to 0 is that of the parabola through its values at
+   !> one, two and three of these lengths, in characteristic lengths: its error is below their cube.
    real(wp), parameter :: short = 1.0e-4_wp
    !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
    real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
@@ -152,7 +152,7 @@ contains
 
    contains
 
-      !> The drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free there, and a
+      !> Finds the drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free there, and a
       !> point of the curve known to half its digits: the parabola through the values at three lengths before it.
       subroutine find_value_at_0(value)
          real(wp), intent(inout) :: value
