@@ -152,8 +152,9 @@ contains
 
    contains
 
-      !> Finds the drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free there, and a
-      !> point of the curve known to half its digits: the parabola through the values at three lengths before it.
+      !> Finds the drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free
+      !> there, and a point of the curve known to half its digits: the parabola through the values at three lengths
+      !> before it.
       subroutine find_value_at_0(value)
          real(wp), intent(inout) :: value
          type(curve_point_t) :: p
