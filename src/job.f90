@@ -139,75 +139,76 @@ contains
 
    !> Finds what this command computes of the `sets` of the deck by its option --sets: of variants, if the deck has VARY
    !> cards, otherwise of sets.
-   subroutine choose_share(sets, o)
+   subroutine choose_share(sets, writers)
       type(mechanism_t), intent(in) :: sets(:)
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: writers
 
-      o%varies = any(sets%variants > 0)
-      o%share%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
-      associate (all => variant_count(sets), k => o%options%share, n => o%options%shares)
-         o%share%first = int(all*(k - 1)/n) + 1
-         o%share%last = int(all*k/n)
+      writers%varies = any(sets%variants > 0)
+      writers%share%kind = trim(merge('VARIANTS', 'SETS    ', writers%varies))
+      associate (all => variant_count(sets), k => writers%options%share, n => writers%options%shares)
+         writers%share%first = int(all*(k - 1)/n) + 1
+         writers%share%last = int(all*k/n)
       end associate
-      o%first = merge(1, o%share%first, o%varies)
-      o%last = merge(size(sets), o%share%last, o%varies)
+      writers%first = merge(1, writers%share%first, writers%varies)
+      writers%last = merge(size(sets), writers%share%last, writers%varies)
    end subroutine choose_share
 
    !> The number of processes that compute `sets`: one where they take no time, are drawn on one page, or where nothing
    !> can be written.
-   integer function process_count(sets, o)
+   integer function process_count(sets, writers)
       type(mechanism_t), intent(in) :: sets(:)
-      type(writers_t), intent(in) :: o
+      type(writers_t), intent(in) :: writers
       real :: work
       integer :: i
 
-      process_count = o%options%jobs
+      process_count = writers%options%jobs
       work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
       if (process_count == 0) process_count = merge(processor_count(), 1, work > least_work)
-      if (o%options%check .or. any(o%asked([out_svg, out_animation, out_circuits, out_dxf])) &
-         .or. any(o%files%error /= 0)) &
+      if (writers%options%check .or. any(writers%asked([out_svg, out_animation, out_circuits, out_dxf])) &
+         .or. any(writers%files%error /= 0)) &
          process_count = 1
       process_count = min(process_count, sum(max(1, sets%variants)))
    end function process_count
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
-   subroutine run_sets(sets, findings, o)
-      type(writers_t), intent(inout) :: o
-      type(mechanism_t), intent(inout) :: sets(o%first:)
-      type(structure_report_t), intent(inout) :: findings(o%first:)
+   subroutine run_sets(sets, findings, writers)
+      type(writers_t), intent(inout) :: writers
+      type(mechanism_t), intent(inout) :: sets(writers%first:)
+      type(structure_report_t), intent(inout) :: findings(writers%first:)
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
       integer :: i, k, before
 
-      if (o%asked(out_csv) .and. o%options%share == 1 .and. o%own_first == 1) &
-         call csv_head(o%files(out_csv), o%options%errors, o%varies)
+      if (writers%asked(out_csv) .and. writers%options%share == 1 .and. writers%own_first == 1) &
+         call csv_head(writers%files(out_csv), writers%options%errors, writers%varies)
       do k = out_svg, out_circuits
-         if (o%asked(k)) call begin_page(o%files(k), pages(k))
+         if (writers%asked(k)) call begin_page(writers%files(k), pages(k))
       end do
-      if (o%asked(out_dxf)) call begin_dxf(o%files(out_dxf))
-      before = o%first - 1
+      if (writers%asked(out_dxf)) call begin_dxf(writers%files(out_dxf))
+      before = writers%first - 1
       ! Where no set has variants, those before the part at hand need not be passed over.
-      if (.not. o%varies) before = o%own_first - 1
-      do i = before + 1, o%last
-         if (before >= o%own_last) exit
+      if (.not. writers%varies) before = writers%own_first - 1
+      do i = before + 1, writers%last
+         if (before >= writers%own_last) exit
          associate (count => max(1, sets(i)%variants))
-            if (before < o%own_last .and. before + count >= o%own_first) &
-               call run_set(sets(i), i, o%own_first - before, o%own_last - before, findings(i), o)
+            if (before < writers%own_last .and. before + count >= writers%own_first) &
+               call run_set(sets(i), i, writers%own_first - before, writers%own_last - before, findings(i), writers)
             before = before + count
          end associate
-         if (is_over(o)) then
-            if (before > o%own_last) then
-               call break_off(o, sets(i), say_broken_variant, o%own_last - before + sets(i)%variants)
-            else if (i < o%last) then
-               call break_off(o, sets(i), say_broken_set, sets(i)%set_number)
+         if (is_over(writers)) then
+            if (before > writers%own_last) then
+               call break_off(writers, sets(i), say_broken_variant, writers%own_last - before + sets(i)%variants)
+            else if (i < writers%last) then
+               call break_off(writers, sets(i), say_broken_set, sets(i)%set_number)
             end if
             exit
          end if
          ! Sets that were broken off are not drawn.
-         if (o%asked(out_svg) .or. o%asked(out_animation)) call draw_set(sets(i), size(sets), o, pages)
-         if (o%asked(out_dxf)) call export_set(sets(i), i - o%first + 1, o)
-         if (o%asked(out_circuits) .and. sets(i)%circuits) then
+         if (writers%asked(out_svg) .or. writers%asked(out_animation)) call draw_set(sets(i), size(sets), writers, &
+            pages)
+         if (writers%asked(out_dxf)) call export_set(sets(i), i - writers%first + 1, writers)
+         if (writers%asked(out_circuits) .and. sets(i)%circuits) then
             ! As a picture, circuits have an analysis of their own.
             call make_set_analysis(sets(i), a)
             call advance_set(a, instant(sets(i), 0))
@@ -216,17 +217,17 @@ contains
          end if
       end do
       do k = out_svg, out_circuits
-         if (o%asked(k)) call end_page(o%files(k), pages(k))
+         if (writers%asked(k)) call end_page(writers%files(k), pages(k))
       end do
-      if (o%asked(out_dxf)) call end_dxf(o%files(out_dxf))
+      if (writers%asked(out_dxf)) call end_dxf(writers%files(out_dxf))
    end subroutine run_sets
 
    !> Draws the film of `m`, one of so many `sets`, on those of the `pages` that are asked for. It has an analysis of
    !> its own: a picture shows links that no table asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, sets, o, pages)
+   subroutine draw_set(m, sets, writers, pages)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets            !< their count
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: writers
       type(page_t), intent(inout), target :: pages(out_svg:)
       type(mechanism_t) :: film
       type(drawing_t), target :: d
@@ -234,7 +235,7 @@ contains
       integer :: every, k
 
       call film_of(m, sets, film, every)
-      d = new_drawing(film, every, o%options%arrows, .not. o%options%no_centrodes)
+      d = new_drawing(film, every, writers%options%arrows, .not. writers%options%no_centrodes)
       call make_set_analysis(with_all_links(film), a)
       do k = 0, instant_count(film) - 1
          ! The first of the instants of AT, from which the deck's own motion goes on.
@@ -243,16 +244,16 @@ contains
          call record_instant(d, a%now, k)
          if (signal_received() > 0) return
       end do
-      if (o%asked(out_svg)) call put_picture(pages(out_svg), d)
-      if (o%asked(out_animation)) call put_animation(pages(out_animation), d)
+      if (writers%asked(out_svg)) call put_picture(pages(out_svg), d)
+      if (writers%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
 
    !> Exports set number `i` of the file for CAD, `m`, at the instants of the deck. Its analysis is its own, as that
    !> of a picture.
-   subroutine export_set(m, i, o)
+   subroutine export_set(m, i, writers)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the set in the file, from 1
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: writers
       type(set_analysis_t) :: a
       type(drawing_t) :: d
       type(point_path_t), allocatable :: paths(:)
@@ -267,50 +268,50 @@ contains
          call note_paths(paths, a%now, k)
          if (signal_received() > 0) return
       end do
-      call put_dxf(o%files(out_dxf), d, paths, i)
+      call put_dxf(writers%files(out_dxf), d, paths, i)
    end subroutine export_set
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
-   subroutine run_set(m, i, first, last, findings, o)
+   subroutine run_set(m, i, first, last, findings, writers)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i, first, last  !< numbers of the set and of variants
       type(structure_report_t), intent(inout) :: findings
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: writers
       type(failure_t), allocatable :: failure
       type(counts_t) :: counts
       type(set_analysis_t) :: a
       type(answers_t) :: asked
 
       call new_set_motion(m, a%now, findings)
-      if (o%asked(out_listing) .and. first <= 1) then
-         o%layout = new_layout(a%now)
+      if (writers%asked(out_listing) .and. first <= 1) then
+         writers%layout = new_layout(a%now)
          call find_groups(m, findings)
-         call listing_head(o%files(out_listing), m, findings)
+         call listing_head(writers%files(out_listing), m, findings)
       end if
       ! It is as large as the deck, and only the head of the listing has it.
       if (allocated(m%echo)) deallocate (m%echo)
-      if (o%options%check) return
+      if (writers%options%check) return
       if (first <= 1) then
-         call open_table(o%options, o%first, o%last, i, .false., o, failure)
+         call open_table(writers%options, writers%first, writers%last, i, .false., writers, failure)
          if (allocated(failure)) then
-            call move_alloc(failure, o%failure)
-            call break_off(o, m, say_broken_set, m%set_number - 1)
+            call move_alloc(failure, writers%failure)
+            call break_off(writers, m, say_broken_set, m%set_number - 1)
             return
          end if
-         if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log), m)
-         if (o%asked(out_table)) then
-            o%table = new_table(a%now)
-            call table_head(o%files(out_table), o%table)
+         if (writers%asked(out_log) .and. m%variants == 0) call log_head(writers%files(out_log), m)
+         if (writers%asked(out_table)) then
+            writers%table = new_table(a%now)
+            call table_head(writers%files(out_table), writers%table)
          end if
          ! An output that takes nothing is known before anything is computed.
-         call flush_output(o%files)
+         call flush_output(writers%files)
       end if
       if (m%variants == 0) then
-         call run_motion(a, findings, .true., o, counts, asked)
-         if (counts%flagged + counts%unproved > 0) o%status = status_flagged
-         call close_outputs(o, out_shared + 1, out_last)
+         call run_motion(a, findings, .true., writers, counts, asked)
+         if (counts%flagged + counts%unproved > 0) writers%status = status_flagged
+         call close_outputs(writers, out_shared + 1, out_last)
       else
-         call run_variants(a%now, max(1, first), min(m%variants, last), o%variations(i), o)
+         call run_variants(a%now, max(1, first), min(m%variants, last), writers%variations(i), writers)
       end if
    end subroutine run_set
 end module job

@@ -98,10 +98,10 @@ contains
    end function kinmat_read
 
    !> Makes a handle ready for the first instant of a set. Errors: status_rejected.
-   subroutine read_set(text, number, k, report, failure)
+   subroutine read_set(text, number, handle, report, failure)
       character(*), intent(in) :: text       !< the deck
       integer, intent(in) :: number          !< of the set, from 1
-      type(handle_t), intent(inout) :: k
+      type(handle_t), intent(inout) :: handle
       character(:), allocatable, intent(out) :: report   !< all errors of cards; '' if there are none
       type(failure_t), allocatable, intent(out) :: failure
       type(mechanism_t), allocatable :: sets(:)
@@ -118,12 +118,12 @@ contains
       end if
       if (allocated(failure)) return
 
-      call make_set_analysis(sets(number), k%set, findings(number))
-      k%table = new_table(k%set%now)
-      allocate (k%rows(size(k%set%now%rows)), k%values(table_width(k%table)))
-      k%names = [character(name_length) :: 't', k%table%drives, k%table%columns%name]
-      do i = 1, size(k%names)
-         k%names(i) = trim(k%names(i))//c_null_char
+      call make_set_analysis(sets(number), handle%set, findings(number))
+      handle%table = new_table(handle%set%now)
+      allocate (handle%rows(size(handle%set%now%rows)), handle%values(table_width(handle%table)))
+      handle%names = [character(name_length) :: 't', handle%table%drives, handle%table%columns%name]
+      do i = 1, size(handle%names)
+         handle%names(i) = trim(handle%names(i))//c_null_char
       end do
    end subroutine read_set
 
@@ -163,9 +163,9 @@ contains
    end function kinmat_column
 
    !> Counts the instants of the deck, and gives the first of them.
-   integer(c_int) function kinmat_instants(handle, t, n) bind(c)
+   integer(c_int) function kinmat_instants(handle, room, n) bind(c)
       type(c_ptr), value :: handle
-      type(c_ptr), value :: t                !< (n) room for their times
+      type(c_ptr), value :: room                !< (n) room for their times
       integer(c_int), value :: n
       type(handle_t), pointer :: k
       real(c_double), pointer :: times(:)
@@ -175,8 +175,8 @@ contains
       if (.not. is_ready(handle)) return
       call c_f_pointer(handle, k)
       kinmat_instants = instant_count(k%set%now)
-      if (n < 1 .or. .not. c_associated(t)) return
-      call c_f_pointer(t, times, [n])
+      if (n < 1 .or. .not. c_associated(room)) return
+      call c_f_pointer(room, times, [n])
       do i = 1, min(n, kinmat_instants)
          times(i) = real(instant(k%set%now, i - 1), c_double)
       end do

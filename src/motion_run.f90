@@ -19,46 +19,46 @@ module motion_run
 
 contains
 
-   !> Solves and prints the set a%now, instant by instant.
-   subroutine run_motion(a, findings, full, o, counts, asked)
-      type(set_analysis_t), intent(inout) :: a
+   !> Solves and prints the set set%now, instant by instant.
+   subroutine run_motion(set, findings, full, writers, counts, asked)
+      type(set_analysis_t), intent(inout) :: set
       type(structure_report_t), intent(inout) :: findings
       logical, intent(in) :: full            !< with tables
-      type(writers_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: writers
       class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those
       type(answers_t), intent(out) :: asked  !< the answers to its cards
       type(printing_t) :: p
       logical :: due
       integer :: k
 
-      call begin_analysis(a, findings)
-      call foresee_closure(a)
-      call begin_printing(p, o, a, full)
-      if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, p%lists, asked)
+      call begin_analysis(set, findings)
+      call foresee_closure(set)
+      call begin_printing(p, writers, set, full)
+      if (writers%asked(out_listing) .or. set%now%variants > 0) call new_answers(set, p%lists, asked)
 
       do k = 0, p%last
-         call advance_set(a, instant(a%now, k))
+         call advance_set(set, instant(set%now, k))
          due = is_next(p, k)
-         if (a%now%proves) then
-            call prove_set(a, due)
-            if (.not. all(holds(a%now%proofs))) counts%unproved = counts%unproved + 1
+         if (set%now%proves) then
+            call prove_set(set, due)
+            if (.not. all(holds(set%now%proofs))) counts%unproved = counts%unproved + 1
          end if
-         call note_flag(counts, a)
+         call note_flag(counts, set)
 
-         if (due .or. p%each .or. has_words(a%now)) call print_instant(p, o, a, k, due)
-         call write_in_turn(o)
-         call take_instant(asked, a, p%rows, k, due)
-         if (.not. is_over(o)) cycle
-         call end_tables(p, o, a)
-         if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
+         if (due .or. p%each .or. has_words(set%now)) call print_instant(p, writers, set, k, due)
+         call write_in_turn(writers)
+         call take_instant(asked, set, p%rows, k, due)
+         if (.not. is_over(writers)) cycle
+         call end_tables(p, writers, set)
+         if (set%now%variants == 0) call break_off(writers, set%now, say_broken_off, k)
          return
       end do
 
-      call end_tables(p, o, a)
+      call end_tables(p, writers, set)
       if (p%lists) then
-         call finish_answers(asked, a)
-         call put_answers(o%files(out_listing), o%layout, asked, a)
+         call finish_answers(asked, set)
+         call put_answers(writers%files(out_listing), writers%layout, asked, set)
       end if
-      call print_end(p, o, a, counts)
+      call print_end(p, writers, set, counts)
    end subroutine run_motion
 end module motion_run

@@ -44,74 +44,75 @@ contains
    !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of each of the sets
    !> `first` to `last`, of `count` in the deck, can be opened. Errors: status_system; status_rejected where one of
    !> them is a file of all sets or of the same set, or where tables would be one after another on standard output.
-   subroutine open_outputs(options, first, last, count, o, failure)
+   subroutine open_outputs(options, first, last, count, outputs, failure)
       type(options_t), intent(in) :: options
       integer, intent(in) :: first, last, count
-      class(outputs_t), intent(inout) :: o
+      class(outputs_t), intent(inout) :: outputs
       type(failure_t), allocatable, intent(out) :: failure
       integer :: k, i
 
-      o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
+      outputs%asked = [(allocated(options%files(k)%text), k=1, out_last)]
       do k = 1, out_shared
-         if (o%asked(k) .and. .not. allocated(failure)) &
-            call open_output(o%files(k), options%files(k)%text, failure)
+         if (outputs%asked(k) .and. .not. allocated(failure)) &
+            call open_output(outputs%files(k), options%files(k)%text, failure)
       end do
-      if (o%asked(out_table) .and. first < last .and. .not. allocated(failure)) then
+      if (outputs%asked(out_table) .and. first < last .and. .not. allocated(failure)) then
          if (len(options%files(out_table)%text) == 0) call fail(failure, status_rejected, &
             'STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count)//' WITH --sets K/' &
             //whole(count))
       end if
-      if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
+      if (.not. allocated(failure)) call check_apart(outputs%files, options%deck, failure)
       do i = first, last
          if (allocated(failure)) exit
-         call open_table(options, first, last, i, .true., o, failure)
-         call abandon_output(o%files(out_table))
+         call open_table(options, first, last, i, .true., outputs, failure)
+         call abandon_output(outputs%files(out_table))
       end do
-      if (allocated(failure)) call abandon_output(o%files)
+      if (allocated(failure)) call abandon_output(outputs%files)
    end subroutine open_outputs
 
    !> Opens the table of set number `i` of those from `first` to `last`; where these are several, its name has the
    !> number before its extension. One that `tries` leaves devices and pipes alone, whose readers would go. Errors: as
    !> for `open_outputs`.
-   subroutine open_table(options, first, last, i, tries, o, failure)
+   subroutine open_table(options, first, last, i, tries, outputs, failure)
       type(options_t), intent(in) :: options
       integer, intent(in) :: first, last, i
       logical, intent(in) :: tries
-      class(outputs_t), intent(inout) :: o
+      class(outputs_t), intent(inout) :: outputs
       type(failure_t), allocatable, intent(out) :: failure
       type(identity_t) :: there
       character(:), allocatable :: path
       integer :: dot
 
-      if (.not. o%asked(out_table)) return
+      if (.not. outputs%asked(out_table)) return
       path = options%files(out_table)%text
       dot = index(path, '.', back=.true.)
       ! A name without an extension ends with the number.
       if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
       if (first < last) path = path(:dot - 1)//'-'//whole(i)//path(dot:)
       there = identity_of(path=path)
-      if (.not. (tries .and. there%device_or_pipe)) call open_output(o%files(out_table), path, failure)
-      if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
+      if (.not. (tries .and. there%device_or_pipe)) call open_output(outputs%files(out_table), path, failure)
+      if (.not. allocated(failure)) call check_apart(outputs%files, options%deck, failure)
    end subroutine open_table
 
-   !> Closes the outputs number `first` to `last`; o%failure becomes that of the last one that could not be written.
-   subroutine close_outputs(o, first, last)
-      class(outputs_t), intent(inout) :: o
+   !> Closes the outputs number `first` to `last`; outputs%failure becomes that of the last one that could not be
+   !> written.
+   subroutine close_outputs(outputs, first, last)
+      class(outputs_t), intent(inout) :: outputs
       integer, intent(in) :: first, last
       type(failure_t), allocatable :: failure
       integer :: k
 
       do k = first, last
-         if (.not. allocated(o%files(k)%buffer)) cycle
-         call close_output(o%files(k), failure)
-         if (allocated(failure)) call move_alloc(failure, o%failure)
+         if (.not. allocated(outputs%files(k)%buffer)) cycle
+         call close_output(outputs%files(k), failure)
+         if (allocated(failure)) call move_alloc(failure, outputs%failure)
       end do
    end subroutine close_outputs
 
    !> Tells whether what follows need not be computed: an output has failed, or a signal has come.
-   logical function is_over(o)
-      class(outputs_t), intent(in) :: o
+   logical function is_over(outputs)
+      class(outputs_t), intent(in) :: outputs
 
-      is_over = signal_received() > 0 .or. allocated(o%failure) .or. any(o%files%error /= 0)
+      is_over = signal_received() > 0 .or. allocated(outputs%failure) .or. any(outputs%files%error /= 0)
    end function is_over
 end module outputs

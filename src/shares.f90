@@ -43,18 +43,19 @@ module shares
 
 contains
 
-   !> Computes the sets or variants of the share `o%share` in `processes` processes. It returns more than once: in each
-   !> child, to compute the parts that `next_part` gives and to end then; in the parent when all is done: `next_part`
-   !> gives none. `status`: then the exit status; `message`: what to say of an error that no child has printed.
-   subroutine run_shares(o, processes, status, message)
-      class(outputs_t), intent(inout) :: o
+   !> Computes the sets or variants of the share `outputs%share` in `processes` processes. It returns more than once: in
+   !> each child, to compute the parts that `next_part` gives and to end then; in the parent when all is done:
+   !> `next_part` gives none. `status`: then the exit status; `message`: what to say of an error that no child has
+   !> printed.
+   subroutine run_shares(outputs, processes, status, message)
+      class(outputs_t), intent(inout) :: outputs
       integer, intent(in) :: processes
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
       integer :: children(processes), started, k
       integer(c_int) :: ended(processes), ignored
 
-      associate (s => o%share, count => o%share%last - o%share%first + 1)
+      associate (s => outputs%share, count => outputs%share%last - outputs%share%first + 1)
          s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
          if (count < processes*s%length) s%length = (count - 1)/processes + 1
 
@@ -67,7 +68,7 @@ contains
             s%is_child = children(k) == 0
             if (s%is_child) then
                ! Files that it computes no part of are left as they are.
-               o%files%emptied = .true.
+               outputs%files%emptied = .true.
                allocate (s%waiting(0), s%lengths(out_shared, 0))
                return
             end if
@@ -101,32 +102,32 @@ contains
          end do
 
          ! The children have written these files, and computed all parts.
-         o%files%emptied = .true.
+         outputs%files%emptied = .true.
          s%part = part_count(s)
       end associate
    end subroutine run_shares
 
-   !> Ends the part at hand, if there is one, and begins the next, of which o%own_first to o%own_last are the sets or
-   !> variants. False where there is none, or the job is over; then all is written.
-   logical function next_part(o)
-      class(outputs_t), intent(inout) :: o
+   !> Ends the part at hand, if there is one, and begins the next, of which outputs%own_first to outputs%own_last are
+   !> the sets or variants. False where there is none, or the job is over; then all is written.
+   logical function next_part(outputs)
+      class(outputs_t), intent(inout) :: outputs
       integer :: k
 
-      associate (s => o%share, files => o%files(:out_shared))
+      associate (s => outputs%share, files => outputs%files(:out_shared))
          if (s%is_child .and. s%part > 0) then
-            if (goes_on(o)) then
+            if (goes_on(outputs)) then
                s%lengths = reshape([s%lengths, held_length(files) - sum(s%lengths, 2)], &
                   [size(files), size(s%waiting) + 1])
                s%waiting = [s%waiting, s%part]
                s%held = .false.
-               call write_what_may_be(o, max_ahead)
+               call write_what_may_be(outputs, max_ahead)
             else
                ! What is not complete is written in its turn, and no part after it.
-               call write_what_may_be(o, -1)
+               call write_what_may_be(outputs, -1)
             end if
          end if
 
-         next_part = goes_on(o)
+         next_part = goes_on(outputs)
          if (.not. s%is_child) then
             s%part = s%part + 1
          else if (next_part) then
@@ -142,34 +143,35 @@ contains
                   ! What the first part has emptied is not emptied again.
                   if (allocated(files(k)%buffer)) files(k)%emptied = s%part > 1 .or. len(files(k)%path) == 0
                end do
-               call write_what_may_be(o, max_held)
+               call write_what_may_be(outputs, max_held)
             end if
          end if
          next_part = next_part .and. s%part <= part_count(s)
-         o%own_first = first_of(s, s%part)
-         o%own_last = first_of(s, s%part + 1) - 1
+         outputs%own_first = first_of(s, s%part)
+         outputs%own_last = first_of(s, s%part + 1) - 1
 
-         if (s%is_child .and. .not. next_part) call write_what_may_be(o, -1)
+         if (s%is_child .and. .not. next_part) call write_what_may_be(outputs, -1)
       end associate
    end function next_part
 
    !> Writes what may be written, if there is much; waits where an output holds too much.
-   subroutine write_in_turn(o)
-      class(outputs_t), intent(inout) :: o
+   subroutine write_in_turn(outputs)
+      class(outputs_t), intent(inout) :: outputs
 
-      if (.not. o%share%held) return
-      if (maxval(held_length(o%files(:out_shared))) >= o%share%look) call write_what_may_be(o, max_held)
+      if (.not. outputs%share%held) return
+      if (maxval(held_length(outputs%files(:out_shared))) >= outputs%share%look) call write_what_may_be(outputs, &
+         max_held)
    end subroutine write_in_turn
 
    !> Writes the parts whose turn has come; waits for it as long as an output holds more than `most` characters. An
    !> error, or a turn that never comes, is that of the shared files, and what is held is dropped.
-   subroutine write_what_may_be(o, most)
-      class(outputs_t), intent(inout) :: o
+   subroutine write_what_may_be(outputs, most)
+      class(outputs_t), intent(inout) :: outputs
       integer, intent(in) :: most
       integer(c_long) :: done
       integer :: part, k
 
-      associate (s => o%share, files => o%files(:out_shared))
+      associate (s => outputs%share, files => outputs%files(:out_shared))
          do while (size(s%waiting) > 0 .or. s%held)
             if (any(files%error /= 0)) exit
             part = s%part
@@ -205,35 +207,35 @@ contains
    end subroutine write_what_may_be
 
    !> The run has not ended before its time, and no write has failed.
-   logical function goes_on(o)
-      class(outputs_t), intent(in) :: o
+   logical function goes_on(outputs)
+      class(outputs_t), intent(in) :: outputs
 
-      goes_on = .not. (o%ended .or. allocated(o%failure) .or. any(o%files%error /= 0))
+      goes_on = .not. (outputs%ended .or. allocated(outputs%failure) .or. any(outputs%files%error /= 0))
    end function goes_on
 
    !> How many parts there are; one where there is nothing to compute.
-   pure integer function part_count(s)
-      type(share_of_job_t), intent(in) :: s
+   pure integer function part_count(share)
+      type(share_of_job_t), intent(in) :: share
 
-      part_count = max(1, (s%last - s%first)/s%length + 1)
+      part_count = max(1, (share%last - share%first)/share%length + 1)
    end function part_count
 
-   !> The first set or variant of part `p`, of those beyond the last one the number after the last.
-   pure integer function first_of(s, p)
-      type(share_of_job_t), intent(in) :: s
-      integer, intent(in) :: p
+   !> The first set or variant of `part`, of those beyond the last one the number after the last.
+   pure integer function first_of(share, part)
+      type(share_of_job_t), intent(in) :: share
+      integer, intent(in) :: part
 
-      first_of = s%last + 1
-      if (p <= part_count(s)) first_of = s%first + (p - 1)*s%length
+      first_of = share%last + 1
+      if (part <= part_count(share)) first_of = share%first + (part - 1)*share%length
    end function first_of
 
-   !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
-   pure function text_of(s, p) result(text)
-      type(share_of_job_t), intent(in) :: s
-      integer, intent(in) :: p
+   !> SETS 5 TO 8, or VARIANTS 5 TO 8: `part`.
+   pure function text_of(share, part) result(text)
+      type(share_of_job_t), intent(in) :: share
+      integer, intent(in) :: part
       character(:), allocatable :: text
 
-      text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
+      text = ' '//share%kind//' '//whole(first_of(share, part))//' TO '//whole(first_of(share, part + 1) - 1)
    end function text_of
 
    !> How often a part was taken, by all processes, or is done: the position in the file `descriptor`; 0 without it.

@@ -31,12 +31,12 @@ module variant_runs
 
 contains
 
-   !> Solves and writes the variants `first` to `last` of `v`, those of the set `m`.
-   subroutine run_variants(m, first, last, v, o)
-      class(set_t), intent(in) :: m
+   !> Solves and writes the variants `first` to `last` of `variation`, those of the `set`.
+   subroutine run_variants(set, first, last, variation, writers)
+      class(set_t), intent(in) :: set
       integer, intent(in) :: first, last     !< numbers of variants
-      type(variation_t), intent(inout) :: v
-      type(writers_t), intent(inout) :: o
+      type(variation_t), intent(inout) :: variation
+      type(writers_t), intent(inout) :: writers
       type(layout_t) :: layout
       type(summary_t) :: summary
       type(variant_row_t) :: row
@@ -45,34 +45,35 @@ contains
       integer :: n, k
 
       n = first
-      full = any([(any(m%parts(k)%requests%every > 0), k=1, m%count)])
-      has_more = any([(any(m%parts(k)%requests%drive > 0) .or. any(m%parts(k)%pairs%is_cylinder), k=1, m%count)])
-      layout = new_layout(m)
-      summary = new_summary(m, layout, v)
-      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary), summary)
-      if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
-         call put_variant_heads(o%files(out_listing), summary)
+      full = any([(any(set%parts(k)%requests%every > 0), k=1, set%count)])
+      has_more = any([(any(set%parts(k)%requests%drive > 0) .or. any(set%parts(k)%pairs%is_cylinder), k=1, set%count)])
+      layout = new_layout(set)
+      summary = new_summary(set, layout, variation)
+      if (writers%asked(out_summary) .and. first == 1) call summary_head(writers%files(out_summary), summary)
+      if (writers%asked(out_listing) .and. first == 1 .and. .not. full) then
+         call put_variant_heads(writers%files(out_listing), summary)
       end if
-      if (are_together(m, full .or. has_more, o)) then
+      if (are_together(set, full .or. has_more, writers)) then
          call run_together()
       else
          do while (n <= last)
-            row = new_row(summary, v, n)
-            if (o%asked(out_listing) .and. full) call put_variant(o%files(out_listing), layout, summary, m, row)
+            row = new_row(summary, variation, n)
+            if (writers%asked(out_listing) .and. full) call put_variant(writers%files(out_listing), layout, summary, &
+               set, row)
             call run_variant(variant, row)
-            if (is_over(o)) exit
-            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing), summary)
+            if (is_over(writers)) exit
+            if (writers%asked(out_listing) .and. full) call put_variant_heads(writers%files(out_listing), summary)
             call write_row(row)
             n = n + 1
          end do
       end if
-      if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
-      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing), m)
+      if (n <= last) call break_off(writers, set, say_broken_variant, n - 1)
+      if (n > variation%total .and. writers%asked(out_listing)) call put_variants_end(writers%files(out_listing), set)
 
    contains
 
-      !> Solves and writes rows alone of the variants `n` to `last` of `v`, as many at a time as there are lanes; `n`:
-      !> the first that is not written.
+      !> Solves and writes rows alone of the variants `n` to `last` of `variation`, as many at a time as there are
+      !> lanes; `n`: the first that is not written.
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
@@ -84,17 +85,17 @@ contains
          do while (n <= last)
             count = min(width, last - n + 1)
             do k = 1, count
-               rows(k) = new_row(summary, v, n + k - 1)
+               rows(k) = new_row(summary, variation, n + k - 1)
                call start(runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
             do k = 1, count
-               if (is_over(o)) return
+               if (is_over(writers)) return
                if (rows(k)%rejected == '') then
                   rows(k)%counts_t = runs(k)%counts
                   call fill_row(summary, runs(k)%s%now, runs(k)%asked, rows(k))
                else
-                  call fill_row(summary, m, runs(k)%asked, rows(k))
+                  call fill_row(summary, set, runs(k)%asked, rows(k))
                end if
                call write_row(rows(k))
                n = n + 1
@@ -102,25 +103,25 @@ contains
          end do
       end subroutine run_together
 
-      !> Makes the variant of `v` whose `row` this is, unless it is refused.
-      subroutine start(r, row)
-         type(lane_run_t), intent(inout) :: r
+      !> Makes the variant of `variation` whose `row` this is, unless it is refused.
+      subroutine start(run, row)
+         type(lane_run_t), intent(inout) :: run
          type(variant_row_t), intent(inout) :: row
          type(structure_report_t) :: findings
          logical :: is_done
 
-         call build_variant(v, row%number, r%m, row%rejected)
-         r%is_over = row%rejected /= ''
-         if (r%is_over) return
+         call build_variant(variation, row%number, run%m, row%rejected)
+         run%is_over = row%rejected /= ''
+         if (run%is_over) return
          ! A variant with the structure of the one before takes over what that has made.
-         call renew_set_analysis(r%m, r%s, is_done)
+         call renew_set_analysis(run%m, run%s, is_done)
          if (.not. is_done) then
-            call check_variant(r%m, findings, row)
-            r%is_over = row%rejected /= ''
-            if (r%is_over) return
-            call make_set_analysis(r%m, r%s, findings)
+            call check_variant(run%m, findings, row)
+            run%is_over = row%rejected /= ''
+            if (run%is_over) return
+            call make_set_analysis(run%m, run%s, findings)
          end if
-         call begin_run(r)
+         call begin_run(run)
       end subroutine start
 
       !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
@@ -135,7 +136,7 @@ contains
          row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
       end subroutine check_variant
 
-      !> Solves and writes the variant of `v` whose `row` this is: it is `variant` now. `full`: its
+      !> Solves and writes the variant of `variation` whose `row` this is: it is `variant` now. `full`: its
       !> tables are asked for.
       subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant
@@ -144,16 +145,16 @@ contains
          type(set_analysis_t) :: a
          type(answers_t) :: asked
 
-         call build_variant(v, row%number, variant, row%rejected)
+         call build_variant(variation, row%number, variant, row%rejected)
          if (row%rejected == '') call check_variant(variant, findings, row)
          if (row%rejected == '') then
             call new_set_motion(variant, a%now, findings)
-            if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
-            if (o%asked(out_log)) call log_head(o%files(out_log), variant)
-            call run_motion(a, findings, full, o, row, asked)
+            if (full .and. writers%asked(out_listing)) writers%layout = new_layout(a%now)
+            if (writers%asked(out_log)) call log_head(writers%files(out_log), variant)
+            call run_motion(a, findings, full, writers, row, asked)
             call fill_row(summary, a%now, asked, row)
          else
-            call fill_row(summary, m, asked, row)
+            call fill_row(summary, set, asked, row)
          end if
       end subroutine run_variant
 
@@ -161,21 +162,22 @@ contains
       subroutine write_row(row)
          type(variant_row_t), intent(in) :: row
 
-         if (o%asked(out_summary)) call summary_row(o%files(out_summary), summary, m, row)
-         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing), layout, summary, m, row)
-         call write_in_turn(o)
-         if (row%flagged + row%unproved > 0 .or. row%rejected /= '') o%status = status_flagged
+         if (writers%asked(out_summary)) call summary_row(writers%files(out_summary), summary, set, row)
+         if (writers%asked(out_listing)) call put_variant_row(writers%files(out_listing), layout, summary, set, row)
+         call write_in_turn(writers)
+         if (row%flagged + row%unproved > 0 .or. row%rejected /= '') writers%status = status_flagged
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of the set `m`, which has what lanes do `not_have`, tables, ratios
-   !> or cylinders, or not: then as many are solved together as there are lanes.
-   pure logical function are_together(m, not_have, o)
-      class(settings_t), intent(in) :: m
+   !> Whether rows alone are asked of the variants of the set `settings`, which has what lanes do `not_have`, tables,
+   !> ratios or cylinders, or not: then as many are solved together as there are lanes.
+   pure logical function are_together(settings, not_have, outputs)
+      class(settings_t), intent(in) :: settings
       logical, intent(in) :: not_have        !< the set has tables, ratios or cylinders, which lanes do not have
-      class(outputs_t), intent(in) :: o
+      class(outputs_t), intent(in) :: outputs
 
-      are_together = m%variants > 0 .and. .not. (not_have .or. m%proves .or. m%closing > 0.0_wp .or. &
-         o%asked(out_csv) .or. o%asked(out_log))
+      are_together = settings%variants > 0 .and. &
+         .not. (not_have .or. settings%proves .or. settings%closing > 0.0_wp .or. &
+         outputs%asked(out_csv) .or. outputs%asked(out_log))
    end function are_together
 end module variant_runs

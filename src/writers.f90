@@ -47,110 +47,115 @@ module writers
 
 contains
 
-   !> Begins what is printed of the motion of `a`. `full`: its tables are in the listing, too.
-   subroutine begin_printing(p, o, a, full)
-      type(printing_t), intent(out) :: p
-      type(writers_t), intent(in) :: o
-      type(set_analysis_t), intent(in) :: a
+   !> Begins what is printed of the motion of `set`. `full`: its tables are in the listing, too.
+   subroutine begin_printing(printing, writers, set, full)
+      type(printing_t), intent(out) :: printing
+      type(writers_t), intent(in) :: writers
+      type(set_analysis_t), intent(in) :: set
       logical, intent(in) :: full
       integer :: i
 
-      p%lists = full .and. o%asked(out_listing)
-      if (p%lists) call new_column_table(o%layout, a%now, p%columns)
-      p%each = o%asked(out_table) .or. o%asked(out_log) .or. allocated(p%columns%columns)
-      allocate (p%rows(size(a%now%rows)))
-      p%every = [(merge(1, a%now%parts(i)%requests%every, a%now%parts(i)%requests%in_columns), i=1, a%now%count)]
-      p%every = pack(p%every, p%every > 0)
-      p%last = instant_count(a%now) - 1
-      p%next = merge(0, huge(p%next), size(p%every) > 0)
+      printing%lists = full .and. writers%asked(out_listing)
+      if (printing%lists) call new_column_table(writers%layout, set%now, printing%columns)
+      printing%each = writers%asked(out_table) .or. writers%asked(out_log) .or. allocated(printing%columns%columns)
+      allocate (printing%rows(size(set%now%rows)))
+      printing%every = [(merge(1, set%now%parts(i)%requests%every, set%now%parts(i)%requests%in_columns), i=1, &
+         set%now%count)]
+      printing%every = pack(printing%every, printing%every > 0)
+      printing%last = instant_count(set%now) - 1
+      printing%next = merge(0, huge(printing%next), size(printing%every) > 0)
    end subroutine begin_printing
 
    !> Tells whether rows are printed at instant `k`, counted from 0, and finds the next such instant. The instants are
    !> passed in their order. Reason: a division for each request at every instant takes longer than all else here.
-   logical function is_next(p, k)
-      type(printing_t), intent(inout) :: p
+   logical function is_next(printing, k)
+      type(printing_t), intent(inout) :: printing
       integer, intent(in) :: k
 
-      is_next = k == p%next .or. (k == p%last .and. size(p%every) > 0)
-      if (k == p%next) p%next = k + minval(p%every - mod(k, p%every))
+      is_next = k == printing%next .or. (k == printing%last .and. size(printing%every) > 0)
+      if (k == printing%next) printing%next = k + minval(printing%every - mod(k, printing%every))
    end function is_next
 
-   !> Prints instant `k`, counted from 0, to which `a` has advanced, in each output that has something of it. If rows
-   !> are not printed at it, an instant without remarks has nothing to print, unless p%each. Errors are estimated only
-   !> for what is shown.
-   subroutine print_instant(p, o, a, k, due)
-      type(printing_t), intent(inout) :: p
-      type(writers_t), intent(inout) :: o
-      type(set_analysis_t), intent(inout) :: a
+   !> Prints instant `k`, counted from 0, to which `set` has advanced, in each output that has something of it. If rows
+   !> are not printed at it, an instant without remarks has nothing to print, unless printing%each. Errors are estimated
+   !> only for what is shown.
+   subroutine print_instant(printing, writers, set, k, due)
+      type(printing_t), intent(inout) :: printing
+      type(writers_t), intent(inout) :: writers
+      type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: k
       logical, intent(in) :: due             !< rows are printed at it
       logical :: lists, has_csv
       integer :: i
 
-      has_csv = due .and. o%asked(out_csv)
-      if (o%asked(out_table) .or. has_csv .or. (due .and. p%lists)) call sample_set(a, o%options%errors)
-      lists = p%lists .and. (due .or. has_words(a%now))
-      if (lists .or. has_csv .or. o%asked(out_table)) &
-         call find_rows(a%now, k, o%asked(out_table) .or. allocated(p%columns%columns), p%rows, a%assemblies)
+      has_csv = due .and. writers%asked(out_csv)
+      if (writers%asked(out_table) .or. has_csv .or. (due .and. printing%lists)) call sample_set(set, &
+         writers%options%errors)
+      lists = printing%lists .and. (due .or. has_words(set%now))
+      if (lists .or. has_csv .or. writers%asked(out_table)) &
+         call find_rows(set%now, k, writers%asked(out_table) .or. allocated(printing%columns%columns), printing%rows, &
+            set%assemblies)
 
       if (lists) then
-         if (p%columns%alone) then
-            call listing_instant(p%columns%remarks, o%layout, a%now, p%rows, k, p%state)
+         if (printing%columns%alone) then
+            call listing_instant(printing%columns%remarks, writers%layout, set%now, printing%rows, k, printing%state)
          else
-            call listing_instant(o%files(out_listing), o%layout, a%now, p%rows, k, p%state)
+            call listing_instant(writers%files(out_listing), writers%layout, set%now, printing%rows, k, printing%state)
          end if
       end if
-      if (allocated(p%columns%columns)) call note_columns(p%columns, o%layout, a%now, p%rows)
-      if (has_csv) call csv_instant(o%files(out_csv), a%now, p%rows, k, o%varies)
-      if (o%asked(out_table)) call table_instant(o%files(out_table), o%table, a%now, p%rows)
-      if (o%asked(out_log)) then
-         do i = 1, size(a%list)
-            call log_instant(o%files(out_log), k, instant(a%now, k), a%list(i)%convergence, a%list(i)%branch)
+      if (allocated(printing%columns%columns)) call note_columns(printing%columns, writers%layout, set%now, &
+         printing%rows)
+      if (has_csv) call csv_instant(writers%files(out_csv), set%now, printing%rows, k, writers%varies)
+      if (writers%asked(out_table)) call table_instant(writers%files(out_table), writers%table, set%now, printing%rows)
+      if (writers%asked(out_log)) then
+         do i = 1, size(set%list)
+            call log_instant(writers%files(out_log), k, instant(set%now, k), set%list(i)%convergence, &
+               set%list(i)%branch)
          end do
       end if
    end subroutine print_instant
 
    !> Ends the tables over the instants, after the last one or where the run is broken off.
-   subroutine end_tables(p, o, a)
-      type(printing_t), intent(inout) :: p
-      type(writers_t), intent(inout) :: o
-      type(set_analysis_t), intent(in) :: a
+   subroutine end_tables(printing, writers, set)
+      type(printing_t), intent(inout) :: printing
+      type(writers_t), intent(inout) :: writers
+      type(set_analysis_t), intent(in) :: set
 
-      if (.not. p%lists) return
-      if (p%columns%alone) then
-         call put_untold(p%columns%remarks, a%now%polish, p%state)
+      if (.not. printing%lists) return
+      if (printing%columns%alone) then
+         call put_untold(printing%columns%remarks, set%now%polish, printing%state)
       else
-         call put_untold(o%files(out_listing), a%now%polish, p%state)
+         call put_untold(writers%files(out_listing), set%now%polish, printing%state)
       end if
-      call put_columns(o%files(out_listing), p%columns, a%now)
+      call put_columns(writers%files(out_listing), printing%columns, set%now)
    end subroutine end_tables
 
-   !> Prints how the motion of `a` ended, with the counts of its instants: the end of its part of the listing.
-   subroutine print_end(p, o, a, counts)
-      type(printing_t), intent(in) :: p
-      type(writers_t), intent(inout) :: o
-      type(set_analysis_t), intent(in) :: a
+   !> Prints how the motion of `set` ended, with the counts of its instants: the end of its part of the listing.
+   subroutine print_end(printing, writers, set, counts)
+      type(printing_t), intent(in) :: printing
+      type(writers_t), intent(inout) :: writers
+      type(set_analysis_t), intent(in) :: set
       class(counts_t), intent(in) :: counts
       integer :: i
 
-      if (.not. p%lists) return
-      call listing_end(o%files(out_listing), a%now, counts%solved, counts%flagged, set_certificates(a), &
-         maxval([(redundancy_error(a%list(i)), i=1, size(a%list))]), &
-         maxval([(a%estimators(i)%closure, i=1, size(a%list))]), set_closing_diagnostics(a))
+      if (.not. printing%lists) return
+      call listing_end(writers%files(out_listing), set%now, counts%solved, counts%flagged, set_certificates(set), &
+         maxval([(redundancy_error(set%list(i)), i=1, size(set%list))]), &
+         maxval([(set%estimators(i)%closure, i=1, size(set%list))]), set_closing_diagnostics(set))
    end subroutine print_end
 
-   !> Ends the run before its time. The last line of the listing of `m` has the `words` and the `number` of the last
-   !> instant, variant or set; nothing follows it.
-   subroutine break_off(o, m, words, number)
-      type(writers_t), intent(inout) :: o
-      class(settings_t), intent(in) :: m
+   !> Ends the run before its time. The last line of the listing of `settings` has the `words` and the `number` of the
+   !> last instant, variant or set; nothing follows it.
+   subroutine break_off(writers, settings, words, number)
+      type(writers_t), intent(inout) :: writers
+      class(settings_t), intent(in) :: settings
       type(phrase_t), intent(in) :: words
       integer, intent(in) :: number          !< from 1; of an instant from 0
 
-      if (o%ended) return
-      o%ended = .true.
-      if (.not. o%asked(out_listing)) return
-      call put(o%files(out_listing), '')
-      call put(o%files(out_listing), ' *** '//phrase(words, m%polish)//' '//whole(number))
+      if (writers%ended) return
+      writers%ended = .true.
+      if (.not. writers%asked(out_listing)) return
+      call put(writers%files(out_listing), '')
+      call put(writers%files(out_listing), ' *** '//phrase(words, settings%polish)//' '//whole(number))
    end subroutine break_off
 end module writers

@@ -114,17 +114,17 @@ contains
 
    contains
 
-      !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
-      subroutine take_end(e)
-         type(path_end_t), intent(in) :: e
+      !> Adds the position of block `i` at the solution `ending` to those `found`, if it is real and new.
+      subroutine take_end(ending)
+         type(path_end_t), intent(in) :: ending
          type(convergence_t) :: c
          real(wp) :: place(size(f%turns)), residual
          logical :: is_real
          integer :: k
 
-         call real_values(f, e, merge(singular_level, real_level, e%is_singular), place, is_real)
+         call real_values(f, ending, merge(singular_level, real_level, ending%is_singular), place, is_real)
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
-         if (.not. is_real) found%moves = found%moves .or. e%is_singular
+         if (.not. is_real) found%moves = found%moves .or. ending%is_singular
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
          place = anint(grid*place)/grid
@@ -132,7 +132,7 @@ contains
          call add_turns(b, x, i, s)
          place = values_of(b, i, s)
          ! At a singular solution Newton's method would lose the way.
-         do k = 1, merge(singular_steps, 0, e%is_singular)
+         do k = 1, merge(singular_steps, 0, ending%is_singular)
             call gauss_newton_step(b, x, i, s, residual)
          end do
          call solve_block(b, x, i, .true., w, s, c)
@@ -140,14 +140,14 @@ contains
             call leave_out(found%partial)
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, e%is_singular) &
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, ending%is_singular) &
             + moved*x%closing) then
             call leave_out(found%failed)
             return
          end if
          place = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(place, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
+            if (apart(place, found%x(:, k)) <= merge(singular_alike, alike, ending%is_singular .or. c%singular)) return
          end do
          found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
@@ -163,11 +163,11 @@ contains
          found%finite = found%finite - 1
       end subroutine leave_out
 
-      !> The largest difference of the values `x` and `y` of block `i`, of angles without whole turns.
-      pure real(wp) function apart(x, y)
-         real(wp), intent(in) :: x(:), y(:)
+      !> The largest difference of the values `first` and `second` of block `i`, of angles without whole turns.
+      pure real(wp) function apart(first, second)
+         real(wp), intent(in) :: first(:), second(:)
 
-         apart = maxval(merge(abs(wrap_angle(x - y)), abs(x - y), &
+         apart = maxval(merge(abs(wrap_angle(first - second)), abs(first - second), &
             own_unknowns(b, i) <= b%orientations))
       end function apart
    end subroutine find_positions

@@ -55,80 +55,80 @@ module block_bilinear
 contains
 
    !> The form of block `i` of `b`, for the values that `s` has of earlier blocks and drives.
-   subroutine make_form(b, x, i, s, f)
+   subroutine make_form(b, x, i, s, form)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      type(block_form_t), intent(out) :: f
+      type(block_form_t), intent(out) :: form
       type(draft_t) :: d
       integer :: m
 
       call find_known_parts(b, x, i, s)
       associate (block => b%list(i), rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
-         f%turns = merge(-1, 0, b%unknown(block%first:block%last) <= b%orientations)
+         form%turns = merge(-1, 0, b%unknown(block%first:block%last) <= b%orientations)
          do m = b%loops(block%first_loop)%first_slide, b%loops(block%last_loop)%last_slide
-            if (b%slides(m)%column > 0) f%turns(b%slides(m)%column) = b%slides(m)%orientation_column
+            if (b%slides(m)%column > 0) form%turns(b%slides(m)%column) = b%slides(m)%orientation_column
          end do
          allocate (d%projections(0))
          allocate (d%a(0:n, rows), d%c(0:n, 0:n, rows + n), source=(0.0_wp, 0.0_wp))
          allocate (d%size_of(rows + n), source=1.0_wp)
          do m = block%first_loop, block%last_loop
             if (b%loops(m)%kind == loop_angles) then
-               call add_angles(b, x, i, m, s, f, d)
+               call add_angles(b, x, i, m, s, form, d)
             else
                call add_loop(b, x, i, m, s, n, d)
             end if
          end do
          call add_projections(d)
-         call add_pairs(f, d)
-         call reduce(f, d, merge(max(surplus_level, lost_by_elimination*x%closing), zero_level, rows > n))
+         call add_pairs(form, d)
+         call reduce(form, d, merge(max(surplus_level, lost_by_elimination*x%closing), zero_level, rows > n))
       end associate
    end subroutine make_form
 
-   !> Adds what loop `m` of block `i` asks of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
-   pure subroutine add_angles(b, x, i, m, s, f, d)
+   !> Adds what `loop` of block `i` asks of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
+   pure subroutine add_angles(b, x, i, loop, s, form, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, m
+      integer, intent(in) :: i, loop
       type(state_t), intent(in) :: s
-      type(block_form_t), intent(in) :: f
-      type(draft_t), intent(inout) :: d
+      type(block_form_t), intent(in) :: form
+      type(draft_t), intent(inout) :: draft
       complex(wp) :: ratio
       integer :: less
 
-      associate (g => b%loops(m))
+      associate (g => b%loops(loop))
          if (g%orientation_column == g%less_column) return
-         d%linear = d%linear + 1
+         draft%linear = draft%linear + 1
          if (g%orientation <= b%orientations) then
             less = g%less_column
             ratio = exp(i_unit*given(b, x, i, g%row_x, s))*direction_factor(less, g%less, s)
-            d%a(g%orientation_column, d%linear) = direction_factor(g%orientation_column, g%orientation, s)
+            draft%a(g%orientation_column, draft%linear) = direction_factor(g%orientation_column, g%orientation, s)
          else
-            less = f%turns(g%orientation_column)
+            less = form%turns(g%orientation_column)
             ratio = given(b, x, i, g%row_x, s) + s%u(g%less)%value
-            d%a(g%orientation_column, d%linear) = 1.0_wp
+            draft%a(g%orientation_column, draft%linear) = 1.0_wp
          end if
-         d%a(less, d%linear) = d%a(less, d%linear) - ratio
+         draft%a(less, draft%linear) = draft%a(less, draft%linear) - ratio
       end associate
    end subroutine add_angles
 
-   !> Adds the equations of loop `m` of block `i`, of `n` unknowns: each a projection of the loop.
-   subroutine add_loop(b, x, i, m, s, n, d)
+   !> Adds the equations of `loop` of block `i`, of `n` unknowns: each a projection of the loop.
+   subroutine add_loop(b, x, i, loop, s, n, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, m, n
+      integer, intent(in) :: i, loop, n
       type(state_t), intent(in) :: s
-      type(draft_t), intent(inout) :: d
+      type(draft_t), intent(inout) :: draft
       type(projection_t) :: one
 
       allocate (one%l(n + 1))
-      call find_form(b, x, m, s, one%l, one%size_of)
-      associate (g => b%loops(m))
+      call find_form(b, x, loop, s, one%l, one%size_of)
+      associate (g => b%loops(loop))
          if (g%kind == loop_projection) then
             one%at = g%orientation_column
             one%factor = direction_factor(one%at, g%orientation, s) &
-               *cmplx(x%loops(m)%direction%x, x%loops(m)%direction%y, wp)
+               *cmplx(x%loops(loop)%direction%x, x%loops(loop)%direction%y, wp)
          end if
          if (g%row_x > 0) call add(g%row_x)
          one%factor = i_unit
@@ -142,42 +142,42 @@ contains
          integer, intent(in) :: row
 
          one%value = given(b, x, i, row, s)
-         d%projections = [d%projections, one]
+         draft%projections = [draft%projections, one]
       end subroutine add
    end subroutine add_loop
 
-   !> The factor of unknown `u`, in column `column` of its block: 1 for a direction of the block, otherwise the known
+   !> The factor of `unknown`, in `column` of its block: 1 for a direction of the block, otherwise the known
    !> direction.
-   pure complex(wp) function direction_factor(column, u, s) result(factor)
-      integer, intent(in) :: column, u
+   pure complex(wp) function direction_factor(column, unknown, s) result(factor)
+      integer, intent(in) :: column, unknown
       type(state_t), intent(in) :: s
 
       factor = 1.0_wp
-      if (column == 0) factor = cmplx(s%u(u)%c, s%u(u)%s, wp)
+      if (column == 0) factor = cmplx(s%u(unknown)%c, s%u(unknown)%s, wp)
    end function direction_factor
 
-   !> Finds the linear form `l` (0:n) of loop `m` in 1 and the n unknowns of a group. `size_of`: the sum of the sizes of
-   !> its terms that are known or of known length, in the loop's unit; rounding of the loop is measured by it.
-   pure subroutine find_form(b, x, m, s, l, size_of)
+   !> Finds the linear form `line` (0:n) of `loop` in 1 and the n unknowns of a group. `size_of`: the sum of the sizes
+   !> of its terms that are known or of known length, in the loop's unit; rounding of the loop is measured by it.
+   pure subroutine find_form(b, x, loop, s, line, size_of)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: m
+      integer, intent(in) :: loop
       type(state_t), intent(in) :: s
-      complex(wp), intent(out) :: l(0:)
+      complex(wp), intent(out) :: line(0:)
       real(wp), intent(out) :: size_of
       complex(wp) :: factor
       real(wp) :: slide
       integer :: k
 
-      associate (g => b%loops(m))
-         l = 0.0_wp
-         l(0) = cmplx(s%loop(m)%known(0)%x, s%loop(m)%known(0)%y, wp)
-         size_of = length_of(x%loops(m)%ground)
+      associate (g => b%loops(loop))
+         line = 0.0_wp
+         line(0) = cmplx(s%loop(loop)%known(0)%x, s%loop(loop)%known(0)%y, wp)
+         size_of = length_of(x%loops(loop)%ground)
          do k = g%first_vector, g%last_vector
             size_of = size_of + length_of(x%d(k))
             if (k < g%first_own) cycle
             associate (d => b%body_vectors(k))
-               l(d%column) = l(d%column) + direction_factor(d%column, d%orientation, s) &
+               line(d%column) = line(d%column) + direction_factor(d%column, d%orientation, s) &
                   *cmplx(x%d(k)%x, x%d(k)%y, wp)
             end associate
          end do
@@ -187,10 +187,10 @@ contains
                   *cmplx(x%e(k)%x, x%e(k)%y, wp)
                slide = 1.0_wp
                if (e%column > 0) then
-                  l(e%column) = l(e%column) + factor
+                  line(e%column) = line(e%column) + factor
                else
                   slide = s%u(e%unknown)%value
-                  l(e%orientation_column) = l(e%orientation_column) + factor*slide
+                  line(e%orientation_column) = line(e%orientation_column) + factor*slide
                end if
             end associate
             size_of = size_of + length_of(x%e(k))*abs(slide)
@@ -200,17 +200,17 @@ contains
 
    !> Two projections of one loop, in whatever unit, on different directions that turn together are one linear equation:
    !> the components of a closed loop, or a slide that is driven and its guide. The others are bilinear.
-   subroutine add_projections(d)
-      type(draft_t), intent(inout) :: d
-      logical :: is_done(size(d%projections))
+   subroutine add_projections(draft)
+      type(draft_t), intent(inout) :: draft
+      logical :: is_done(size(draft%projections))
       real(wp) :: turn, ratio
       integer :: j, k, m
 
       is_done = .false.
       do j = 1, size(is_done)
-         associate (one => d%projections(j))
+         associate (one => draft%projections(j))
             do k = j + 1, size(is_done)
-               associate (other => d%projections(k))
+               associate (other => draft%projections(k))
                   turn = aimag(conjg(one%factor)*other%factor)
                   if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(zero_level)) cycle
                   if (maxval(abs(one%l)) <= 0.0_wp .or. maxval(abs(other%l)) <= 0.0_wp) cycle
@@ -218,73 +218,73 @@ contains
                   ratio = real(other%l(m)/one%l(m))
                   if (maxval(abs(other%l - ratio*one%l)) > zero_level*maxval(abs(other%l))) cycle
                   ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
-                  d%linear = d%linear + 1
-                  d%a(:, d%linear) = one%l
-                  d%a(one%at, d%linear) = d%a(one%at, d%linear) &
+                  draft%linear = draft%linear + 1
+                  draft%a(:, draft%linear) = one%l
+                  draft%a(one%at, draft%linear) = draft%a(one%at, draft%linear) &
                      - i_unit*(other%value/ratio*one%factor - one%value*other%factor)/turn
                   is_done([j, k]) = .true.
                end associate
             end do
             if (is_done(j)) cycle
-            d%bilinear = d%bilinear + 1
-            associate (c => d%c(:, :, d%bilinear), at => one%at + 1)
+            draft%bilinear = draft%bilinear + 1
+            associate (c => draft%c(:, :, draft%bilinear), at => one%at + 1)
                ! associate loses the lower bound: element 1 is that of 1.
                c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
                c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
                c(1, 1) = c(1, 1) - one%value
             end associate
-            d%size_of(d%bilinear) = one%size_of + abs(one%value)
+            draft%size_of(draft%bilinear) = one%size_of + abs(one%value)
          end associate
       end do
    end subroutine add_projections
 
    !> Adds w w' = 1 and z w' = z' w, and puts 1 for w w' in the other equations.
-   subroutine add_pairs(f, d)
-      type(block_form_t), intent(in) :: f
-      type(draft_t), intent(inout) :: d
+   subroutine add_pairs(form, draft)
+      type(block_form_t), intent(in) :: form
+      type(draft_t), intent(inout) :: draft
       integer :: k, j
 
-      do k = 1, size(f%turns)
-         if (f%turns(k) < 0) then
-            do j = 1, d%bilinear
-               d%c(0, 0, j) = d%c(0, 0, j) + d%c(k, k, j)
-               d%c(k, k, j) = 0.0_wp
+      do k = 1, size(form%turns)
+         if (form%turns(k) < 0) then
+            do j = 1, draft%bilinear
+               draft%c(0, 0, j) = draft%c(0, 0, j) + draft%c(k, k, j)
+               draft%c(k, k, j) = 0.0_wp
             end do
          end if
       end do
-      do k = 1, size(f%turns)
-         d%bilinear = d%bilinear + 1
-         if (f%turns(k) < 0) then
-            d%c(k, k, d%bilinear) = 1.0_wp
-            d%c(0, 0, d%bilinear) = -1.0_wp
+      do k = 1, size(form%turns)
+         draft%bilinear = draft%bilinear + 1
+         if (form%turns(k) < 0) then
+            draft%c(k, k, draft%bilinear) = 1.0_wp
+            draft%c(0, 0, draft%bilinear) = -1.0_wp
          else
-            d%c(k, f%turns(k), d%bilinear) = 1.0_wp
-            d%c(f%turns(k), k, d%bilinear) = -1.0_wp
+            draft%c(k, form%turns(k), draft%bilinear) = 1.0_wp
+            draft%c(form%turns(k), k, draft%bilinear) = -1.0_wp
          end if
       end do
    end subroutine add_pairs
 
    !> Eliminates the linear equations. Equations that follow from others to `level` are left out; of more independent
    !> ones than unknowns combinations are taken.
-   subroutine reduce(f, d, level)
-      type(block_form_t), intent(inout) :: f
-      type(draft_t), intent(in) :: d
+   subroutine reduce(form, draft, level)
+      type(block_form_t), intent(inout) :: form
+      type(draft_t), intent(in) :: draft
       real(wp), intent(in) :: level          !< part of the terms, 0 to 1
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: size_of
       integer :: p, j, k, count_of
 
-      call find_null_space(transpose(d%a(:, :d%linear)), level, basis)
+      call find_null_space(transpose(draft%a(:, :draft%linear)), level, basis)
       p = size(basis, 2) - 1
-      allocate (f%basis(0:size(f%turns), 0:p))
-      f%basis(:, :) = cmplx(basis, kind=dp)
-      allocate (c(0:p, 0:p, d%bilinear), independent((p + 1)**2, 0))
+      allocate (form%basis(0:size(form%turns), 0:p))
+      form%basis(:, :) = cmplx(basis, kind=dp)
+      allocate (c(0:p, 0:p, draft%bilinear), independent((p + 1)**2, 0))
       count_of = 0
-      do j = 1, d%bilinear
+      do j = 1, draft%bilinear
          associate (one => c(:, :, count_of + 1))
-            one = matmul(transpose(basis), matmul(d%c(:, :, j), conjg(basis)))
+            one = matmul(transpose(basis), matmul(draft%c(:, :, j), conjg(basis)))
             ! What is left may be rounding alone: it is compared with the terms, and with what they are multiplied by.
-            size_of = max(d%size_of(j), maxval(abs(d%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
+            size_of = max(draft%size_of(j), maxval(abs(draft%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))
             ! Of angles that differ by what is given one equation is left twice. The part `left` of a combination of
@@ -298,42 +298,43 @@ contains
          end associate
          count_of = count_of + 1
       end do
-      f%system%p = p
-      f%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
-      f%is_lacking = count_of < 2*p
-      if (f%is_impossible .or. f%is_lacking) return
-      allocate (f%system%c(0:p, 0:p, 2*p), f%system%plane(0:p))
-      f%system%plane(:) = f%basis(0, :)
-      f%more = c(:, :, 2*p + 1:count_of)
+      form%system%p = p
+      form%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
+      form%is_lacking = count_of < 2*p
+      if (form%is_impossible .or. form%is_lacking) return
+      allocate (form%system%c(0:p, 0:p, 2*p), form%system%plane(0:p))
+      form%system%plane(:) = form%basis(0, :)
+      form%more = c(:, :, 2*p + 1:count_of)
       do j = 1, 2*p
          do k = 2*p + 1, count_of
             c(:, :, j) = c(:, :, j) + cos(real(j*k, wp))*c(:, :, k)
          end do
-         f%system%c(:, :, j) = cmplx(c(:, :, j)/maxval(abs(c(:, :, j))), kind=dp)
+         form%system%c(:, :, j) = cmplx(c(:, :, j)/maxval(abs(c(:, :, j))), kind=dp)
       end do
    end subroutine reduce
 
-   !> (n) The unknowns of the block at the solution `e`. `is_real`: x and y are conjugate, as far as rounding can tell.
-   subroutine real_values(f, e, level, x, is_real)
-      type(block_form_t), intent(in) :: f
-      type(path_end_t), intent(in) :: e
+   !> (n) The unknowns of the block at the solution `ending`. `is_real`: x and y are conjugate, as far as rounding can
+   !> tell.
+   subroutine real_values(form, ending, level, values, is_real)
+      type(block_form_t), intent(in) :: form
+      type(path_end_t), intent(in) :: ending
       real(dp), intent(in) :: level
-      real(wp), intent(out) :: x(:)
+      real(wp), intent(out) :: values(:)
       logical, intent(out) :: is_real
-      complex(dp) :: w(0:size(f%turns)), v(0:size(f%turns))
+      complex(dp) :: w(0:size(form%turns)), v(0:size(form%turns))
       integer :: k
 
-      w = matmul(f%basis, e%x)
-      v = matmul(conjg(f%basis), e%y)
+      w = matmul(form%basis, ending%x)
+      v = matmul(conjg(form%basis), ending%y)
       w = w/w(0)
       v = conjg(v/v(0))
       is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
       w = 0.5_dp*(w + v)
-      do k = 1, size(x)
-         if (f%turns(k) < 0) then
-            x(k) = real(atan2(aimag(w(k)), real(w(k))), wp)
+      do k = 1, size(values)
+         if (form%turns(k) < 0) then
+            values(k) = real(atan2(aimag(w(k)), real(w(k))), wp)
          else
-            x(k) = real(w(k)*conjg(w(f%turns(k))), wp)
+            values(k) = real(w(k)*conjg(w(form%turns(k))), wp)
          end if
       end do
    end subroutine real_values

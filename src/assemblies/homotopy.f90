@@ -47,57 +47,57 @@ module homotopy
 
 contains
 
-   !> The `ends` of all paths of `f`, p from 1. `start`: where the paths begin, if it is for that p; otherwise
+   !> The `ends` of all paths of `bilinear`, p from 1. `start`: where the paths begin, if it is for that p; otherwise
    !> afterwards points of all these paths, from which those of a similar system are short.
-   subroutine follow_paths(f, start, ends)
-      type(bilinear_t), intent(in) :: f
+   subroutine follow_paths(bilinear, start, ends)
+      type(bilinear_t), intent(in) :: bilinear
       type(path_start_t), allocatable, intent(inout) :: start
       type(ends_t), intent(out) :: ends
       type(path_start_t) :: own
       logical :: is_done
 
       is_done = .false.
-      if (allocated(start)) is_done = start%p == f%p
-      if (is_done) call follow_all(f, start, ends)
+      if (allocated(start)) is_done = start%p == bilinear%p
+      if (is_done) call follow_all(bilinear, start, ends)
       if (is_done) is_done = ends%failed == 0
       if (is_done) return
-      call make_start(f%p, own)
-      call follow_all(f, own, ends, start)
+      call make_start(bilinear%p, own)
+      call follow_all(bilinear, own, ends, start)
    end subroutine follow_paths
 
-   !> The start for `p`. Its solution number k is where the forms in x of p equations are zero, the k-th choice of them,
-   !> and those in y of the others.
-   subroutine make_start(p, start)
-      integer, intent(in) :: p
+   !> The start for `path`. Its solution number k is where the forms in x of p equations are zero, the k-th choice of
+   !> them, and those in y of the others.
+   subroutine make_start(path, start)
+      integer, intent(in) :: path
       type(path_start_t), intent(out) :: start
-      complex(dp) :: a(0:p, 2*p), b(0:p, 2*p)
-      integer :: seed, chosen(p), paths, j, k
+      complex(dp) :: a(0:path, 2*path), b(0:path, 2*path)
+      integer :: seed, chosen(path), paths, j, k
 
-      start%p = p
+      start%p = path
       paths = 1
-      do k = 1, p
-         paths = paths*(p + k)/k
+      do k = 1, path
+         paths = paths*(path + k)/k
       end do
-      allocate (start%chart(p, 2), start%c(0:p, 0:p, 2*p), start%z(2*p, paths))
+      allocate (start%chart(path, 2), start%c(0:path, 0:path, 2*path), start%z(2*path, paths))
       seed = 1987
-      do j = 1, 2*p
-         do k = 0, p
+      do j = 1, 2*path
+         do k = 0, path
             a(k, j) = on_circle(seed)
             b(k, j) = on_circle(seed)
          end do
-         do k = 0, p
+         do k = 0, path
             start%c(:, k, j) = a(:, j)*b(k, j)
          end do
       end do
-      do k = 1, p
+      do k = 1, path
          start%chart(k, 1) = on_circle(seed)
          start%chart(k, 2) = on_circle(seed)
       end do
-      chosen = [(k, k=1, p)]
+      chosen = [(k, k=1, path)]
       do k = 1, size(start%z, 2)
-         start%z(:p, k) = common_zero(a(:, chosen))
-         start%z(p + 1:, k) = common_zero(b(:, pack([(j, j=1, 2*p)], [(all(chosen /= j), j=1, 2*p)])))
-         call choose_next(chosen, 2*p)
+         start%z(:path, k) = common_zero(a(:, chosen))
+         start%z(path + 1:, k) = common_zero(b(:, pack([(j, j=1, 2*path)], [(all(chosen /= j), j=1, 2*path)])))
+         call choose_next(chosen, 2*path)
       end do
    end subroutine make_start
 
@@ -135,26 +135,27 @@ contains
       end do
    end subroutine choose_next
 
-   !> Follows every path of `f` from the `start`; `near`: their points at t = near_end, if all come so far. Two paths
-   !> that come to one regular end have jumped on the way: they have failed.
-   subroutine follow_all(f, start, ends, near)
-      type(bilinear_t), intent(in) :: f
+   !> Follows every path of `bilinear` from the `start`; `near`: their points at t = near_end, if all come so far. Two
+   !> paths that come to one regular end have jumped on the way: they have failed.
+   subroutine follow_all(bilinear, start, ends, near)
+      type(bilinear_t), intent(in) :: bilinear
       type(path_start_t), intent(in) :: start
       type(ends_t), intent(out) :: ends
       type(path_start_t), allocatable, intent(inout), optional :: near
       type(paths_t) :: h
-      complex(dp) :: z(2*f%p, size(start%z, 2))
+      complex(dp) :: z(2*bilinear%p, size(start%z, 2))
       type(path_end_t) :: list(size(start%z, 2))
       logical :: is_done, is_infinite, is_twin(size(start%z, 2)), is_whole
       integer :: count_of, k, j
 
-      h%p = f%p
-      allocate (h%f(0:f%p, 0:f%p, 2*f%p), h%more(0:f%p, 0:f%p, 2*f%p), h%h(0:f%p, 0:f%p, 2*f%p))
-      h%f(:, :, :) = f%c
-      do k = 1, f%p
+      h%p = bilinear%p
+      allocate (h%f(0:bilinear%p, 0:bilinear%p, 2*bilinear%p), h%more(0:bilinear%p, 0:bilinear%p, 2*bilinear%p), &
+         h%h(0:bilinear%p, 0:bilinear%p, 2*bilinear%p))
+      h%f(:, :, :) = bilinear%c
+      do k = 1, bilinear%p
          h%f(k, :, :) = h%f(k, :, :) + start%chart(k, 1)*h%f(0, :, :)
       end do
-      do k = 1, f%p
+      do k = 1, bilinear%p
          h%f(:, k, :) = h%f(:, k, :) + start%chart(k, 2)*h%f(:, 0, :)
       end do
       h%more(:, :, :) = start%c - h%f
@@ -167,13 +168,13 @@ contains
          associate (e => list(count_of + 1))
             call follow(h, 1.0_dp, near_end, least_step, z(:, k), is_done)
             is_whole = is_whole .and. is_done
-            if (is_done) call follow_to_end(f, h, start%chart, z(:, k), e, is_infinite, is_done)
+            if (is_done) call follow_to_end(bilinear, h, start%chart, z(:, k), e, is_infinite, is_done)
          end associate
          if (.not. is_done) ends%failed = ends%failed + 1
          if (is_done .and. is_infinite) ends%infinite = ends%infinite + 1
          if (is_done .and. .not. is_infinite) count_of = count_of + 1
       end do
-      if (present(near) .and. is_whole) near = path_start_t(f%p, start%chart, h%f + near_end*h%more, z)
+      if (present(near) .and. is_whole) near = path_start_t(bilinear%p, start%chart, h%f + near_end*h%more, z)
 
       is_twin = .false.
       do k = 2, count_of
@@ -187,12 +188,12 @@ contains
       ends%list = pack(list(:count_of), .not. is_twin(:count_of))
    end subroutine follow_all
 
-   !> Follows a path of `f` from `start` at t = near_end. `e`: its end; `is_done`: it was found.
-   subroutine follow_to_end(f, h, chart, start, e, is_infinite, is_done)
-      type(bilinear_t), intent(in) :: f
-      type(paths_t), intent(inout) :: h
+   !> Follows a path of `bilinear` from `start` at t = near_end. `ending`: its end; `is_done`: it was found.
+   subroutine follow_to_end(bilinear, paths, chart, start, ending, is_infinite, is_done)
+      type(bilinear_t), intent(in) :: bilinear
+      type(paths_t), intent(inout) :: paths
       complex(dp), intent(in) :: chart(:, :), start(:)
-      type(path_end_t), intent(inout) :: e
+      type(path_end_t), intent(inout) :: ending
       logical, intent(out) :: is_infinite, is_done
       complex(dp), dimension(size(start)) :: z, last
       real(dp) :: t, finite(0:max_tenths)
@@ -203,21 +204,21 @@ contains
       z = start
       do k = 0, max_tenths
          call put_end(z)
-         finite(k) = finiteness(f, e%x, e%y)
+         finite(k) = finiteness(bilinear, ending%x, ending%y)
          last = z
-         call follow(h, t, 0.0_dp, least_to_end, last, is_done)
+         call follow(paths, t, 0.0_dp, least_to_end, last, is_done)
          if (is_done) exit
          if (k == max_tenths) exit
          last = z
-         call follow(h, t, tenth*t, least_step, last, is_done)
+         call follow(paths, t, tenth*t, least_step, last, is_done)
          if (.not. is_done) exit
          z = last
          t = tenth*t
       end do
-      e%is_singular = .not. is_done .or. k >= max_tenths
+      ending%is_singular = .not. is_done .or. k >= max_tenths
       if (is_done) then
          call put_end(last)
-         is_infinite = finiteness(f, e%x, e%y) <= infinity_level
+         is_infinite = finiteness(bilinear, ending%x, ending%y) <= infinity_level
       else
          call put_end(z)
          k = min(k, max_tenths)
@@ -227,12 +228,12 @@ contains
 
    contains
 
-      !> Puts the homogeneous coordinates of `z` into `e`.
-      subroutine put_end(z)
-         complex(dp), intent(in) :: z(:)
+      !> Puts the homogeneous coordinates of `root` into `ending`.
+      subroutine put_end(root)
+         complex(dp), intent(in) :: root(:)
 
-         e%x = [1.0_dp + sum(chart(:, 1)*z(:h%p)), z(:h%p)]
-         e%y = [1.0_dp + sum(chart(:, 2)*z(h%p + 1:)), z(h%p + 1:)]
+         ending%x = [1.0_dp + sum(chart(:, 1)*root(:paths%p)), root(:paths%p)]
+         ending%y = [1.0_dp + sum(chart(:, 2)*root(paths%p + 1:)), root(paths%p + 1:)]
       end subroutine put_end
    end subroutine follow_to_end
 
@@ -250,24 +251,24 @@ contains
       end associate
    end function falls
 
-   !> Follows the path from `z` at `from` to `to`: the tangent by Runge and Kutta, Newton's correction; steps are
+   !> Follows the path from `point` at `from` `to`: the tangent by Runge and Kutta, Newton's correction; steps are
    !> divided down to the part `least` of the whole.
-   subroutine follow(h, from, to, least, z, is_done)
-      type(paths_t), intent(inout) :: h
+   subroutine follow(paths, from, to, least, point, is_done)
+      type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to, least
-      complex(dp), intent(inout) :: z(:)
+      complex(dp), intent(inout) :: point(:)
       logical, intent(out) :: is_done
-      complex(dp) :: next(size(z))
+      complex(dp) :: next(size(point))
       real(dp) :: s, step, correction
 
       s = 0.0_dp
       step = max(first_step, least)
       do
          step = min(step, 1.0_dp - s)
-         call predict(h, from + s*(to - from), step*(to - from), z, next, is_done)
-         if (is_done) call correct(h, from + (s + step)*(to - from), next, correction, is_done)
+         call predict(paths, from + s*(to - from), step*(to - from), point, next, is_done)
+         if (is_done) call correct(paths, from + (s + step)*(to - from), next, correction, is_done)
          if (is_done) then
-            z = next
+            point = next
             s = s + step
             if (s >= 1.0_dp - epsilon(1.0_dp)) return
             ! The error of a step goes with its fifth power.
@@ -281,98 +282,99 @@ contains
    end subroutine follow
 
    !> A step of length `step` in t along the tangent, by Runge and Kutta's rule of fourth order.
-   subroutine predict(h, t, step, z, next, is_done)
-      type(paths_t), intent(inout) :: h
+   subroutine predict(paths, t, step, point, next, is_done)
+      type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: t, step
-      complex(dp), intent(in) :: z(:)
+      complex(dp), intent(in) :: point(:)
       complex(dp), intent(out) :: next(:)
       logical, intent(out) :: is_done
       real(dp), parameter :: part(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: weight(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
-      complex(dp) :: a(size(z), size(z)), x(size(z)), r(size(z)), tangent(size(z))
-      integer :: pivots(size(z)), info, k
+      complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), tangent(size(point))
+      integer :: pivots(size(point)), info, k
 
-      next = z
+      next = point
       tangent = 0.0_dp
       do k = 1, size(part)
-         x = z + part(k)*step*tangent
+         x = point + part(k)*step*tangent
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
-         call assemble(h, t + part(k)*step, x, a, r, tangent)
-         call zgesv(size(z), 1, a, size(z), pivots, tangent, size(z), info)
+         call assemble(paths, t + part(k)*step, x, a, r, tangent)
+         call zgesv(size(point), 1, a, size(point), pivots, tangent, size(point), info)
          is_done = info == 0
          if (.not. is_done) return
          next = next + weight(k)*step*tangent
       end do
-      is_done = size_of(next - z) <= size_of(z)
+      is_done = size_of(next - point) <= size_of(point)
    end subroutine predict
 
-   !> Newton's method at `t`; `correction`: the first one, in parts of z. `is_done`: it was small, the others smaller.
-   subroutine correct(h, t, z, correction, is_done)
-      type(paths_t), intent(inout) :: h
+   !> Newton's method at `t`; `correction`: the first one, in parts of `point`. `is_done`: it was small, the others
+   !> smaller.
+   subroutine correct(paths, t, point, correction, is_done)
+      type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: t
-      complex(dp), intent(inout) :: z(:)
+      complex(dp), intent(inout) :: point(:)
       real(dp), intent(out) :: correction
       logical, intent(out) :: is_done
-      complex(dp) :: a(size(z), size(z)), r(size(z))
-      integer :: pivots(size(z)), info, k
+      complex(dp) :: a(size(point), size(point)), r(size(point))
+      integer :: pivots(size(point)), info, k
       real(dp) :: now, before
 
       is_done = .false.
       before = 2.0_dp*largest
       do k = 1, max_corrections
-         call assemble(h, t, z, a, r)
-         call zgesv(size(z), 1, a, size(z), pivots, r, size(z), info)
+         call assemble(paths, t, point, a, r)
+         call zgesv(size(point), 1, a, size(point), pivots, r, size(point), info)
          if (info > 0) return
-         now = size_of(r)/size_of(z)
+         now = size_of(r)/size_of(point)
          if (k == 1) correction = now
          if (.not. now <= 0.5_dp*before) return
-         z = z - r
+         point = point - r
          is_done = now <= merge(sqrt(converged), converged, t > 0.0_dp)
          if (is_done) return
          before = now
       end do
    end subroutine correct
 
-   !> The largest real or imaginary part of `z`.
-   pure real(dp) function size_of(z)
-      complex(dp), intent(in) :: z(:)
+   !> The largest real or imaginary part of `point`.
+   pure real(dp) function size_of(point)
+      complex(dp), intent(in) :: point(:)
       integer :: k
 
       size_of = 0.0_dp
-      do k = 1, size(z)
-         size_of = max(size_of, abs(real(z(k))), abs(aimag(z(k))))
+      do k = 1, size(point)
+         size_of = max(size_of, abs(real(point(k))), abs(aimag(point(k))))
       end do
    end function size_of
 
-   !> The residual `r` of the homotopy, its derivatives `a` by z, and by t with the opposite sign. Most calls are at the
-   !> t of the call before.
-   subroutine assemble(h, t, z, a, r, slope)
-      type(paths_t), intent(inout) :: h
+   !> The `residual` of the homotopy, its derivatives `a` by `point`, and by t with the opposite sign. Most calls are at
+   !> the t of the call before.
+   subroutine assemble(paths, t, point, a, residual, slope)
+      type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: t
-      complex(dp), intent(in) :: z(:)
-      complex(dp), intent(out) :: a(:, :), r(:)
+      complex(dp), intent(in) :: point(:)
+      complex(dp), intent(out) :: a(:, :), residual(:)
       complex(dp), intent(out), optional :: slope(:)
-      complex(dp) :: x(0:h%p), y(0:h%p)
+      complex(dp) :: x(0:paths%p), y(0:paths%p)
       integer :: j, k
 
-      if (abs(t - h%t) > 0.0_dp) h%h(:, :, :) = h%f + t*h%more
-      h%t = t
-      associate (p => h%p)
-         x = [(1.0_dp, 0.0_dp), z(:p)]
-         y = [(1.0_dp, 0.0_dp), z(p + 1:)]
+      if (abs(t - paths%t) > 0.0_dp) paths%h(:, :, :) = paths%f + t*paths%more
+      paths%t = t
+      associate (p => paths%p)
+         x = [(1.0_dp, 0.0_dp), point(:p)]
+         y = [(1.0_dp, 0.0_dp), point(p + 1:)]
          do j = 1, 2*p
-            a(j, :p) = matmul(h%h(1:, :, j), y)
-            r(j) = sum(h%h(0, :, j)*y) + sum(a(j, :p)*x(1:))
+            a(j, :p) = matmul(paths%h(1:, :, j), y)
+            residual(j) = sum(paths%h(0, :, j)*y) + sum(a(j, :p)*x(1:))
             do k = 1, p
-               a(j, p + k) = sum(x*h%h(:, k, j))
+               a(j, p + k) = sum(x*paths%h(:, k, j))
             end do
          end do
          if (.not. present(slope)) return
          slope = 0.0_dp
          do j = 1, 2*p
             do k = 0, p
-               slope(j) = slope(j) - sum(x*h%more(:, k, j))*y(k)
+               slope(j) = slope(j) - sum(x*paths%more(:, k, j))*y(k)
             end do
          end do
       end associate

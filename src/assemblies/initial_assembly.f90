@@ -51,40 +51,41 @@ module initial_assembly
 
 contains
 
-   !> Solves for the motion at `t`, from the one accepted last (`follows`) or nearest to the initial guess. `c`: how it
-   !> ended, with the largest change (rad, `length`) of a predicted value.
-   subroutine solve_instant(e, t, follows, c)
+   !> Solves for the motion at `t`, from the one accepted last (`follows`) or nearest to the initial guess.
+   !> `convergence`: how it ended, with the largest change (rad, `length`) of a predicted value.
+   subroutine solve_instant(e, t, follows, convergence)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
 
       if (follows) then
-         call solve_blocks(e, t, follows, c)
-         if (e%state%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e, c%change)
+         call solve_blocks(e, t, follows, convergence)
+         if (e%state%excursion > 0.0_wp .and. is_solved(convergence)) convergence%is_certain = is_short_and_right(e, &
+            convergence%change)
       else
-         call solve_first(e, t, c)
+         call solve_first(e, t, convergence)
       end if
    end subroutine solve_instant
 
-   !> Solves for the first motion at `t`. `c`: how that ended.
-   subroutine solve_first(e, t, c)
+   !> Solves for the first motion at `t`. `convergence`: how that ended.
+   subroutine solve_first(e, t, convergence)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(out) :: convergence
       type(candidates_t), dimension(size(e%blocks%list)) :: found, by_deck
       type(convergence_t) :: rest
       real(wp) :: guess(3, size(e%estimate, 2)), turn(0:e%blocks%orientations), nearest
       logical :: is_complete, is_implied(size(guess, 2))
       integer :: places(2, size(guess, 2)), k, i
 
-      call solve_blocks(e, t, .false., c)
+      call solve_blocks(e, t, .false., convergence)
       if (.not. e%blocks%solvable) return
       rest = nothing_gathered
-      if (is_solved(c)) call solve_each(e, pack([(i, i=1, size(found))], &
+      if (is_solved(convergence)) call solve_each(e, pack([(i, i=1, size(found))], &
          [(all(e%blocks%needed /= i), i=1, size(found))]), .false., rest)
       places = places_of(e)
-      is_complete = is_solved(c) .and. is_solved(rest)
+      is_complete = is_solved(convergence) .and. is_solved(rest)
       if (is_complete) is_complete = has_lengths(e, [(i, i=1, size(e%cylinders))])
 
       ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
@@ -115,13 +116,13 @@ contains
       end do
       if (is_nearer(nearest, distance_of(e, places, e%estimate))) &
          e%choice(pack(places(1, :), is_implied))%is_incomplete = .true.
-      c = nothing_gathered
+      convergence = nothing_gathered
       k = findloc(found(e%blocks%needed)%chosen, 0, dim=1)
       if (k == 0) then
-         call solve_each(e, e%blocks%needed, .false., c)
+         call solve_each(e, e%blocks%needed, .false., convergence)
       else
-         call solve_each(e, e%blocks%needed(:k - 1), .false., c)
-         if (is_solved(c)) call gather(found(e%blocks%needed(k))%ending, c)
+         call solve_each(e, e%blocks%needed(:k - 1), .false., convergence)
+         if (is_solved(convergence)) call gather(found(e%blocks%needed(k))%ending, convergence)
       end if
    end subroutine solve_first
 
@@ -326,23 +327,23 @@ contains
 
    contains
 
-      !> Puts the position `x` in its place among those found, unless it is there already. Its angles are brought within
-      !> half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that with
-      !> the greater first value: rounding shall not choose. A position with a cylinder whose length is not above
-      !> 0 is none.
-      subroutine note_position(x, is_singular)
-         real(wp), intent(in) :: x(:)
+      !> Puts the position `unknowns` in its place among those found, unless it is there already. Its angles are brought
+      !> within half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that
+      !> with the greater first value: rounding shall not choose. A position with a cylinder whose length is not above 0
+      !> is none.
+      subroutine note_position(unknowns, is_singular)
+         real(wp), intent(in) :: unknowns(:)
          logical, intent(in) :: is_singular
-         real(wp) :: y(size(x)), square(2, size(places, 2)), distance
+         real(wp) :: y(size(unknowns)), square(2, size(places, 2)), distance
          integer :: k, first
 
          associate (is_angle => own_unknowns(e%blocks, i) <= e%blocks%orientations)
             do k = 1, size(found%distance)
                y = found%x(:, k)
-               if (all(merge(abs(wrap_angle(x - y)), abs(x - y)/max(1.0_wp, abs(x)), is_angle) &
+               if (all(merge(abs(wrap_angle(unknowns - y)), abs(unknowns - y)/max(1.0_wp, abs(unknowns)), is_angle) &
                   <= merge(singular_alike, alike, is_singular))) return
             end do
-            y = merge(start + wrap_angle(x - start), x, is_angle)
+            y = merge(start + wrap_angle(unknowns - start), unknowns, is_angle)
          end associate
          call set_values(e%blocks, i, y, e%state)
          call add_turns(e%blocks, e%geometry, i, e%state)
@@ -452,19 +453,19 @@ contains
    end function squared_distances
 
    !> The closure error at `t` itself, from the motion that is followed or, where that is too far, from the initial
-   !> guess; where neither search ends there, `c` stays but for its closure error, which is 0.
-   subroutine measure_closure_error(e, t, c)
+   !> guess; where neither search ends there, `convergence` stays but for its closure error, which is 0.
+   subroutine measure_closure_error(e, t, convergence)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       type(convergence_t) :: before
 
-      before = c
-      call solve_blocks(e, t, .true., c)
-      if (c%ended == ended_inconsistent) return
-      call solve_first(e, t, c)
-      if (c%ended == ended_inconsistent) return
-      c = before
-      c%open%value = 0.0_wp
+      before = convergence
+      call solve_blocks(e, t, .true., convergence)
+      if (convergence%ended == ended_inconsistent) return
+      call solve_first(e, t, convergence)
+      if (convergence%ended == ended_inconsistent) return
+      convergence = before
+      convergence%open%value = 0.0_wp
    end subroutine measure_closure_error
 end module initial_assembly

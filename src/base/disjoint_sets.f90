@@ -46,12 +46,12 @@ contains
    end function sorted_numbers
 
    !> The numbers of group `k`.
-   pure function members(s, k) result(list)
-      type(sorted_t), intent(in) :: s
+   pure function members(lists, k) result(list)
+      type(sorted_t), intent(in) :: lists
       integer, intent(in) :: k
       integer, allocatable :: list(:)
 
-      list = s%member(s%first(k):s%first(k + 1) - 1)
+      list = lists%member(lists%first(k):lists%first(k + 1) - 1)
    end function members
 
    !> The first of each run of equal numbers in `list`.
@@ -63,18 +63,18 @@ contains
       short = pack(list, [(i == 1 .or. list(max(i - 1, 1)) /= list(i), i=1, size(list))])
    end function once
 
-   !> (size(counts)) The groups of the numbers that `counts`, after `a`(k) and `b`(k) (any number of pairs) are in one,
-   !> in the order of their least members. A number that does not count is in group 0, and joins nothing.
-   pure function joined(counts, a, b) result(group)
+   !> (size(counts)) The groups of the numbers that `counts`, after `first`(k) and `second`(k) (any number of pairs) are
+   !> in one, in the order of their least members. A number that does not count is in group 0, and joins nothing.
+   pure function joined(counts, first, second) result(group)
       logical, intent(in) :: counts(:)
-      integer, intent(in) :: a(:), b(:)
+      integer, intent(in) :: first(:), second(:)
       integer :: group(size(counts)), parent(size(counts)), i, k, root_a, root_b
 
       parent = [(i, i=1, size(counts))]
-      do k = 1, size(a)
-         if (.not. (counts(a(k)) .and. counts(b(k)))) cycle
-         call find_root(parent, a(k), root_a)
-         call find_root(parent, b(k), root_b)
+      do k = 1, size(first)
+         if (.not. (counts(first(k)) .and. counts(second(k)))) cycle
+         call find_root(parent, first(k), root_a)
+         call find_root(parent, second(k), root_b)
          parent(max(root_a, root_b)) = min(root_a, root_b)
       end do
       group = 0

@@ -18,10 +18,10 @@ module masked_numbers
 
 contains
 
-   !> `x` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
+   !> `value` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
    !> behind it masked; `masked` becomes true where a digit is.
-   pure subroutine put_known(x, error, decimals, power, text, masked)
-      real(wp), intent(in) :: x, error
+   pure subroutine put_known(value, error, decimals, power, text, masked)
+      real(wp), intent(in) :: value, error
       integer, intent(in) :: decimals, power
       character(numeral_length), intent(out) :: text
       logical, intent(inout), optional :: masked
@@ -33,19 +33,19 @@ contains
       is_known = error <= 0.0_wp
       if (.not. is_known) is_known = error*errors_a_digit <= 10.0_wp**(power - decimals)
       if (is_known) then
-         call put_fixed(x, decimals, power, text)
+         call put_fixed(value, decimals, power, text)
          return
       else if (.not. error <= 1.0e-6_wp*nothing_known) then
          text = repeat(' ', numeral_length - 1)//unknown_digit
       else
          ! The value is n 10**last as far as it is known; a half is rounded up where it is all that is left.
          last = ceiling(log10(error*errors_a_digit))
-         n = nearest_whole(abs(x), -last)
-         if (n == 0 .and. abs(x) >= 0.5_wp*10.0_wp**last) n = 1
-         text = masked_text(n, last - power, decimals, x < 0.0_wp .and. n > 0)
+         n = nearest_whole(abs(value), -last)
+         if (n == 0 .and. abs(value) >= 0.5_wp*10.0_wp**last) n = 1
+         text = masked_text(n, last - power, decimals, value < 0.0_wp .and. n > 0)
          if (text == '') then
             ! All that there is room for is known.
-            call put_fixed(x, decimals, power, text)
+            call put_fixed(value, decimals, power, text)
             return
          end if
       end if

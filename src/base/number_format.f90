@@ -68,38 +68,38 @@ module number_format
 
 contains
 
-   !> `x` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as there
-   !> is room for, and an exponent where even the whole part has no room. A negative number has no zero before the point
-   !> if nine decimals leave no room for the zero: -.012345678.
-   pure function fixed(x, decimals, power) result(text)
-      real(wp), intent(in) :: x
+   !> `value` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as
+   !> there is room for, and an exponent where even the whole part has no room. A negative number has no zero before the
+   !> point if nine decimals leave no room for the zero: -.012345678.
+   pure function fixed(value, decimals, power) result(text)
+      real(wp), intent(in) :: value
       integer, intent(in) :: decimals, power
       character(numeral_length) :: text
 
-      call put_fixed(x, decimals, power, text)
+      call put_fixed(value, decimals, power, text)
    end function fixed
 
    !> `fixed`, written to `text`: faster for the many numbers of a table.
-   pure subroutine put_fixed(x, decimals, power, text)
-      real(wp), intent(in) :: x
+   pure subroutine put_fixed(value, decimals, power, text)
+      real(wp), intent(in) :: value
       integer, intent(in) :: decimals, power
       character(numeral_length), intent(out) :: text
       integer(int64) :: n
       integer :: d, room, first
       logical :: negative
 
-      negative = sign(1.0_wp, x) < 0.0_wp
+      negative = sign(1.0_wp, value) < 0.0_wp
       ! Room for digits: without a blank, the point and the sign.
       room = numeral_length - 2 - merge(1, 0, negative)
       do d = min(decimals, max_decimals), 0, -1
-         n = nearest_whole(abs(x), d - power)
+         n = nearest_whole(abs(value), d - power)
          if (n >= tens(room)) cycle
          text = ''
          call put_with_point(n, d, text, first)
          if (negative .and. n > 0) call put_minus(d, first, text)
          return
       end do
-      text = with_exponent(x, power)
+      text = with_exponent(value, power)
    end subroutine put_fixed
 
    !> Writes the sign of the negative number in `text`, which begins at `first` and has `decimals`: in the place of its
@@ -114,45 +114,45 @@ contains
       text(place:place) = '-'
    end subroutine put_minus
 
-   !> `x` 10**-power with an exponent and as many digits as there is room for, right-adjusted.
-   pure function with_exponent(x, power) result(text)
-      real(wp), intent(in) :: x
+   !> `value` 10**-power with an exponent and as many digits as there is room for, right-adjusted.
+   pure function with_exponent(value, power) result(text)
+      real(wp), intent(in) :: value
       integer, intent(in) :: power
       character(numeral_length) :: text
       character(exponent_length) :: shown
       integer(int64) :: n
       integer :: d, e, first, last
 
-      if (.not. abs(x) <= huge(x)) then
-         write (text, '(f12.0)') x
+      if (.not. abs(value) <= huge(value)) then
+         write (text, '(f12.0)') value
          return
       end if
       do d = numeral_length - 8, 0, -1
-         call first_digits(abs(x), d + 1, n, e)
+         call first_digits(abs(value), d + 1, n, e)
          ! The power changes the exponent only: no digit is lost.
          call put_exponent(e - power, shown)
          last = numeral_length - 1 - len_trim(shown)
-         if (d + merge(3, 2, x < 0.0_wp) < last) exit
+         if (d + merge(3, 2, value < 0.0_wp) < last) exit
       end do
       text(last + 1:) = 'E'//shown
       text(:last) = ''
       call put_with_point(n, d, text(:last), first)
-      if (x < 0.0_wp) text(first - 1:first - 1) = '-'
+      if (value < 0.0_wp) text(first - 1:first - 1) = '-'
    end function with_exponent
 
-   !> Writes the exponent `e` left-adjusted, with its sign and three digits, or four where it needs them.
-   pure subroutine put_exponent(e, text)
-      integer, intent(in) :: e
+   !> Writes the `exponent` left-adjusted, with its sign and three digits, or four where it needs them.
+   pure subroutine put_exponent(exponent, text)
+      integer, intent(in) :: exponent
       character(exponent_length), intent(out) :: text
 
-      text = merge('-', '+', e < 0)
-      call put_digits(int(abs(e), int64), text(2:merge(4, exponent_length, abs(e) < 1000)))
+      text = merge('-', '+', exponent < 0)
+      call put_digits(int(abs(exponent), int64), text(2:merge(4, exponent_length, abs(exponent) < 1000)))
    end subroutine put_exponent
 
-   !> `x` rounded to so many `digits`, without blanks: in fixed point if |x| is 0, or not below `from` and below `to`;
-   !> otherwise with an exponent.
-   pure function rounded(x, digits, from, to) result(text)
-      real(wp), intent(in) :: x, from, to
+   !> `value` rounded to so many `digits`, without blanks: in fixed point if |value| is 0, or not below `from` and below
+   !> `to`; otherwise with an exponent.
+   pure function rounded(value, digits, from, to) result(text)
+      real(wp), intent(in) :: value, from, to
       integer, intent(in) :: digits
       character(:), allocatable :: text
       character(40) :: field
@@ -161,13 +161,13 @@ contains
       integer :: order
 
       ! Rounding may make it the next power of ten.
-      call first_digits(abs(x), digits, n, order)
-      if (abs(x) > 0.0_wp .and. (abs(x) < from .or. abs(x) >= to)) then
+      call first_digits(abs(value), digits, n, order)
+      if (abs(value) > 0.0_wp .and. (abs(value) < from .or. abs(value) >= to)) then
          write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
       else
          write (form, '("(f30.", i0, ")")') max(0, digits - 1 - order)
       end if
-      write (field, form) x
+      write (field, form) value
       text = trim(adjustl(field))
    end function rounded
 
@@ -186,20 +186,20 @@ contains
       text = field(first:)
    end function whole
 
-   !> `x` with so many significant digits that it reads back as the same number, the sign of a zero included.
-   pure function full(x) result(text)
-      real(wp), intent(in) :: x
+   !> `value` with so many significant digits that it reads back as the same number, the sign of a zero included.
+   pure function full(value) result(text)
+      real(wp), intent(in) :: value
       character(:), allocatable :: text
       character(full_length) :: field
       integer :: length
 
-      call put_full(x, field, length)
+      call put_full(value, field, length)
       text = field(:length)
    end function full
 
    !> `full`, written left-adjusted to `text`, and its `length`.
-   pure subroutine put_full(x, text, length)
-      real(wp), intent(in) :: x
+   pure subroutine put_full(value, text, length)
+      real(wp), intent(in) :: value
       character(full_length), intent(out) :: text
       integer, intent(out) :: length
       integer(int64) :: n, upper, first
@@ -208,15 +208,15 @@ contains
       character(20) :: form
 
       length = full_length - 1
-      if (sign(1.0_wp, x) < 0.0_wp) length = full_length
+      if (sign(1.0_wp, value) < 0.0_wp) length = full_length
       text(1:1) = '-'
       text(full_length:) = ''
       associate (number => text(length - full_length + 2:length))
-         if (abs(x) <= 0.0_wp) then
+         if (abs(value) <= 0.0_wp) then
             number = full_zero
             return
          end if
-         call leading_digits(abs(x), significant, n, e, sure)
+         call leading_digits(abs(value), significant, n, e, sure)
          if (sure) then
             ! No pair of digits of one half needs the result of the other: that is faster.
             upper = n/tens(8)
@@ -231,7 +231,7 @@ contains
       end associate
       ! The digits of some numbers only a format decides.
       write (form, '(a,i0,a,i0,a,i0,a)') '(es', full_length, '.', significant - 1, 'e', exponent_digits, ')'
-      write (text, form) x
+      write (text, form) value
       text = adjustl(text)
       length = len_trim(text)
    end subroutine put_full
@@ -276,37 +276,37 @@ contains
       text(first:first) = achar(48 + int(rest))
    end subroutine put_whole
 
-   !> Writes `n` 10**-d with `d` decimals, 0 to 10, and at least one digit before the point, at the end of `text`, from
-   !> its character `first` on.
-   pure subroutine put_with_point(n, d, text, first)
+   !> Writes `n` 10**-decimals with `decimals` decimals, 0 to 10, and at least one digit before the point, at the end of
+   !> `text`, from its character `first` on.
+   pure subroutine put_with_point(n, decimals, text, first)
       integer(int64), intent(in) :: n
-      integer, intent(in) :: d
+      integer, intent(in) :: decimals
       character(*), intent(inout) :: text
       integer, intent(out) :: first
       integer :: point
       integer(int64) :: rest
 
-      point = len(text) - d
+      point = len(text) - decimals
       call put_digits(n, text(point + 1:), rest)
       text(point:point) = '.'
       call put_whole(rest, text(:point - 1), first)
    end subroutine put_with_point
 
-   !> The whole number nearest to `x` 10**`k`, x >= 0, the even one of two equally near; at least 10**12 if it has more
-   !> than 12 digits.
-   pure integer(int64) function nearest_whole(x, k) result(n)
-      real(wp), intent(in) :: x
+   !> The whole number nearest to `value` 10**`k`, value >= 0, the even one of two equally near; at least 10**12 if it
+   !> has more than 12 digits.
+   pure integer(int64) function nearest_whole(value, k) result(n)
+      real(wp), intent(in) :: value
       integer, intent(in) :: k
       logical :: sure
 
-      call decide_whole(x, k, n, sure)
-      if (.not. sure) n = nearest_by_format(x, k)
+      call decide_whole(value, k, n, sure)
+      if (.not. sure) n = nearest_by_format(value, k)
    end function nearest_whole
 
-   !> `n` is the whole number nearest to `x` 10**`k`, the even one of two equally near; x >= 0. `sure`: that is certain,
-   !> and n is at most 2E17. Source: Dekker, Numer. Math. 18 (1971) 224.
-   pure subroutine decide_whole(x, k, n, sure)
-      real(wp), intent(in) :: x
+   !> `n` is the whole number nearest to `value` 10**`k`, the even one of two equally near; value >= 0. `sure`: that is
+   !> certain, and n is at most 2E17. Source: Dekker, Numer. Math. 18 (1971) 224.
+   pure subroutine decide_whole(value, k, n, sure)
+      real(wp), intent(in) :: value
       integer, intent(in) :: k
       integer(int64), intent(out) :: n
       logical, intent(out) :: sure
@@ -317,20 +317,20 @@ contains
       sure = .false.
       if (.not. able .or. abs(k) > reach) return
       ! Written so that NaN returns too.
-      if (.not. x < 2.0e17_wp*high(-k)) return
-      p = x*high(k)
+      if (.not. value < 2.0e17_wp*high(-k)) return
+      p = value*high(k)
       if (p < plain) then
          ! In which half the fraction is has no rule, and is no question. Where the sum rounds, that is not sure.
          n = int(p + 0.5_wp, int64)
          sure = 0.5_wp - abs(p - real(n, wp)) > plain_margin*p
          if (sure) return
       end if
-      ! Here p > 1/4: no denormal number in what follows. The error e = x 10**k - p:
-      multiple = splitter*x
-      x_head = multiple - (multiple - x)
-      x_tail = x - x_head
+      ! Here p > 1/4: no denormal number in what follows. The error e = value 10**k - p:
+      multiple = splitter*value
+      x_head = multiple - (multiple - value)
+      x_tail = value - x_head
       e = x_tail*tail(k) - (((p - x_head*head(k)) - x_tail*head(k)) - x_head*tail(k))
-      e = e + x*low(k)
+      e = e + value*low(k)
 
       n = int(p, int64)
       if (p - real(n, wp) > 0.5_wp) n = n + 1
@@ -347,47 +347,47 @@ contains
       if (beyond > 0.0_wp .or. (.not. beyond < 0.0_wp .and. mod(n, 2_int64) == 1)) n = n + int(side)
    end subroutine decide_whole
 
-   !> The first `count` digits `n` of the finite number `x` >= 0 and their exponent: x = n 10**(e - count + 1), rounded,
-   !> 10**(count - 1) <= n < 10**count; both are 0 for x = 0.
-   pure subroutine first_digits(x, count, n, e)
-      real(wp), intent(in) :: x
+   !> The first `count` digits `n` of the finite number `value` >= 0 and their exponent: value = n 10**(exponent - count
+   !> + 1), rounded, 10**(count - 1) <= n < 10**count; both are 0 for value = 0.
+   pure subroutine first_digits(value, count, n, exponent)
+      real(wp), intent(in) :: value
       integer, intent(in) :: count
       integer(int64), intent(out) :: n
-      integer, intent(out) :: e
+      integer, intent(out) :: exponent
       logical :: sure
 
-      call leading_digits(x, count, n, e, sure)
-      if (.not. sure) call digits_by_format(x, count, n, e)
+      call leading_digits(value, count, n, exponent, sure)
+      if (.not. sure) call digits_by_format(value, count, n, exponent)
    end subroutine first_digits
 
-   !> Finds the first digits of `x` > 0, as `first_digits`; `sure`: they are certain.
-   pure subroutine leading_digits(x, count, n, e, sure)
-      real(wp), intent(in) :: x
+   !> Finds the first digits of `value` > 0, as `first_digits`; `sure`: they are certain.
+   pure subroutine leading_digits(value, count, n, power, sure)
+      real(wp), intent(in) :: value
       integer, intent(in) :: count
       integer(int64), intent(out) :: n
-      integer, intent(out) :: e
+      integer, intent(out) :: power
       logical, intent(out) :: sure
 
       n = 0
-      e = 0
+      power = 0
       sure = .false.
       if (.not. able) return
-      if (.not. (x > high(significant - reach) .and. x < high(reach - 1))) return
-      ! The exponent of the power of two below x times log10(2), rounded down, is e or e - 1. For 2**-2000 to 2**2000
-      ! the ratio 315653/2**20 gives the same whole numbers as log10(2).
-      e = shifta(315653*(exponent(x) - 1), 20)
-      if (x - high(e + 1) >= low(e + 1)) e = e + 1
-      call decide_whole(x, count - 1 - e, n, sure)
+      if (.not. (value > high(significant - reach) .and. value < high(reach - 1))) return
+      ! The exponent of the power of two below value times log10(2), rounded down, is power or power - 1. For 2**-2000
+      ! to 2**2000 the ratio 315653/2**20 gives the same whole numbers as log10(2).
+      power = shifta(315653*(exponent(value) - 1), 20)
+      if (value - high(power + 1) >= low(power + 1)) power = power + 1
+      call decide_whole(value, count - 1 - power, n, sure)
       if (n < tens(count)) return
       n = tens(count - 1)
-      e = e + 1
+      power = power + 1
    end subroutine leading_digits
 
-   !> The whole number nearest to `x` 10**`k`, x >= 0, by formats, which round the decimal value of x; huge(n) if it has
-   !> more than 12 digits. Rejected: the scale factor kP. The library of gfortran prints wrong digits from -21P down,
-   !> and in a narrow field with some hundreds of P it writes beyond its own buffer.
-   pure function nearest_by_format(x, k) result(n)
-      real(wp), intent(in) :: x
+   !> The whole number nearest to `value` 10**`k`, x >= 0, by formats, which round its decimal value; huge(n) if it
+   !> has more than 12 digits. Rejected: the scale factor kP. The library of gfortran prints wrong digits from -21P
+   !> down, and in a narrow field with some hundreds of P it writes beyond its own buffer.
+   pure function nearest_by_format(value, k) result(n)
+      real(wp), intent(in) :: value
       integer, intent(in) :: k
       integer(int64) :: n
       character(80) :: line
@@ -396,44 +396,44 @@ contains
       character(*), parameter :: five = '5.'//repeat('0', many)
 
       n = 0
-      if (x <= 0.0_wp) return
-      line = scientific(x, many)
+      if (value <= 0.0_wp) return
+      line = scientific(value, many)
       n = huge(n)
       if (index(line, 'E') == 0) return
       read (line(index(line, 'E') + 1:), '(i5)') e
       places = e + k + 1
       if (places > max_places) return
       n = 0
-      ! places < 0: x 10**k < 1/10. places = 0: x 10**k < 1, and a half goes to 0, which is even.
+      ! places < 0: value 10**k < 1/10. places = 0: value 10**k < 1, and a half goes to 0, which is even.
       if (places == 0 .and. line(:len(five)) > five) n = 1
       if (places <= 0) return
-      call digits_by_format(x, places, n, carried)
+      call digits_by_format(value, places, n, carried)
       n = n*tens(carried - e)
    end function nearest_by_format
 
    !> `first_digits` by a format.
-   pure subroutine digits_by_format(x, count, n, e)
-      real(wp), intent(in) :: x
+   pure subroutine digits_by_format(value, count, n, exponent)
+      real(wp), intent(in) :: value
       integer, intent(in) :: count
       integer(int64), intent(out) :: n
-      integer, intent(out) :: e
+      integer, intent(out) :: exponent
       character(80) :: line
 
-      line = scientific(x, count - 1)
-      read (line(index(line, 'E') + 1:), '(i5)') e
+      line = scientific(value, count - 1)
+      read (line(index(line, 'E') + 1:), '(i5)') exponent
       line = line(1:1)//line(3:index(line, 'E') - 1)
       read (line, '(i18)') n
    end subroutine digits_by_format
 
-   !> `x` with one digit before the point and `decimals` after it, and an exponent, left-adjusted.
-   pure function scientific(x, decimals) result(line)
-      real(wp), intent(in) :: x
+   !> `value` with one digit before the point and `decimals` after it, and an exponent, left-adjusted.
+   pure function scientific(value, decimals) result(line)
+      real(wp), intent(in) :: value
       integer, intent(in) :: decimals
       character(80) :: line
       character(12) :: form
 
       write (form, '(a,i0,a)') '(es80.', decimals, 'e4)'
-      write (line, form) x
+      write (line, form) value
       line = adjustl(line)
    end function scientific
 end module number_format

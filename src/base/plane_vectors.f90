@@ -16,11 +16,11 @@ module plane_vectors
 
 contains
 
-   !> The length of `v`.
-   elemental real(wp) function length_of(v) result(length)
-      type(vector_t), intent(in) :: v
+   !> The length of `vector`.
+   elemental real(wp) function length_of(vector) result(length)
+      type(vector_t), intent(in) :: vector
 
-      length = norm2([v%x, v%y])
+      length = norm2([vector%x, vector%y])
    end function length_of
 
    !> `angle` (rad, or rad per unit of time to any power) in degrees. Degrees of a deck with at most precision(1.0_wp)
@@ -56,27 +56,29 @@ contains
       e = [cos(angle), sin(angle)]
    end function direction
 
-   !> `v` (2) rotated by the angle at which the unit vector `e` (2) stands.
-   pure function rotated(v, e) result(w)
-      real(wp), intent(in) :: v(2), e(2)
+   !> `vector` (2) rotated by the angle at which the unit vector `direction` (2) stands.
+   pure function rotated(vector, direction) result(w)
+      real(wp), intent(in) :: vector(2), direction(2)
       real(wp) :: w(2)
 
-      w = [v(1)*e(1) - v(2)*e(2), v(1)*e(2) + v(2)*e(1)]
+      w = [vector(1)*direction(1) - vector(2)*direction(2), vector(1)*direction(2) + vector(2)*direction(1)]
    end function rotated
 
-   !> `v` (2) rotated by a right angle, counterclockwise: the derivative of a rotating vector with respect to its angle.
-   pure function quarter_turn(v) result(w)
-      real(wp), intent(in) :: v(2)
+   !> `vector` (2) rotated by a right angle, counterclockwise: the derivative of a rotating vector with respect to its
+   !> angle.
+   pure function quarter_turn(vector) result(w)
+      real(wp), intent(in) :: vector(2)
       real(wp) :: w(2)
 
-      w = [-v(2), v(1)]
+      w = [-vector(2), vector(1)]
    end function quarter_turn
 
-   !> u_x v_y - u_y v_x of `u` (2) and `v` (2); also v . u' with the quarter turn u' of u.
-   pure real(wp) function cross(u, v)
-      real(wp), intent(in) :: u(2), v(2)
+   !> The cross product u_x v_y - u_y v_x of u = `first` (2) and v = `second` (2); also v . u' with the quarter turn u'
+   !> of u.
+   pure real(wp) function cross(first, second)
+      real(wp), intent(in) :: first(2), second(2)
 
-      cross = u(1)*v(2) - u(2)*v(1)
+      cross = first(1)*second(2) - first(2)*second(1)
    end function cross
 
    !> Place (2) of a point of a link at `position` (x, y, phi); `offset` (2): in the link's own axes, from its origin.
@@ -87,19 +89,19 @@ contains
       p = position(:2) + rotated(offset, direction(position(3)))
    end function point_of
 
-   !> Adds the vector (x, y), which rotates at `rate` with the angular `acceleration`, and its first two derivatives
-   !> with respect to time to `p`, `v` and `a` (2):  u,  phi' u',  phi'' u' - phi'^2 u.
-   pure subroutine add_rotating(x, y, rate, acceleration, p, v, a)
-      real(wp), intent(in) :: x, y, rate, acceleration
-      real(wp), intent(inout) :: p(2), v(2), a(2)
+   !> Adds the vector (`along`, `across`), which rotates at `rate` with the angular `acceleration`, and its first two
+   !> derivatives with respect to time to `position`, `velocity` and `change` (2):  u,  phi' u',  phi'' u' - phi'^2 u.
+   pure subroutine add_rotating(along, across, rate, acceleration, position, velocity, change)
+      real(wp), intent(in) :: along, across, rate, acceleration
+      real(wp), intent(inout) :: position(2), velocity(2), change(2)
       real(wp) :: square
 
       square = rate*rate
-      p(1) = p(1) + x
-      p(2) = p(2) + y
-      v(1) = v(1) - rate*y
-      v(2) = v(2) + rate*x
-      a(1) = a(1) - acceleration*y - square*x
-      a(2) = a(2) + acceleration*x - square*y
+      position(1) = position(1) + along
+      position(2) = position(2) + across
+      velocity(1) = velocity(1) - rate*across
+      velocity(2) = velocity(2) + rate*along
+      change(1) = change(1) - acceleration*across - square*along
+      change(2) = change(2) + acceleration*along - square*across
    end subroutine add_rotating
 end module plane_vectors

@@ -151,11 +151,12 @@ contains
       id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
    end function identity_of
 
-   !> Whether `a` and `b` are one regular file. A device, pipe or terminal may be used twice without harm.
-   elemental logical function same_file(a, b)
-      type(identity_t), intent(in) :: a, b
+   !> Whether `first` and `second` are one regular file. A device, pipe or terminal may be used twice without harm.
+   elemental logical function same_file(first, second)
+      type(identity_t), intent(in) :: first, second
 
-      same_file = a%regular .and. b%regular .and. a%inode == b%inode .and. all(a%device == b%device)
+      same_file = first%regular .and. second%regular .and. first%inode == second%inode .and. all(first%device == &
+         second%device)
    end function same_file
 
    !> Opens the file `path` for reading. The result is its descriptor, or negative for an error: see `last_error`.

@@ -169,21 +169,21 @@ contains
       place = 0
    end function nearest_word
 
-   !> Whether `a` becomes `b` if one letter is changed, left out or added, or if two neighbours change places. Two names
-   !> of one letter have nothing in common.
-   pure logical function is_near(a, b)
-      character(*), intent(in) :: a, b
-      character(max(len(a), len(b)) + 2) :: x, y
+   !> Whether `word` becomes `other` if one letter is changed, left out or added, or if two neighbours change places.
+   !> Two names of one letter have nothing in common.
+   pure logical function is_near(word, other)
+      character(*), intent(in) :: word, other
+      character(max(len(word), len(other)) + 2) :: x, y
       integer :: i
 
-      x = a
-      y = b
+      x = word
+      y = other
       do i = 1, len(x) - 2
          if (x(i:i) /= y(i:i)) exit
       end do
       is_near = x(i + 1:) == y(i + 1:) .or. x(i:) == y(i + 1:) .or. x(i + 1:) == y(i:) .or. &
          x(i:) == y(i + 1:i + 1)//y(i:i)//y(i + 2:)
-      is_near = is_near .and. max(len_trim(a), len_trim(b)) > 1
+      is_near = is_near .and. max(len_trim(word), len_trim(other)) > 1
    end function is_near
 
    !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.

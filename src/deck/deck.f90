@@ -207,30 +207,31 @@ contains
       call build_tolerances(set)
    end subroutine build_mechanism
 
-   !> Builds variant number `n` (1 to v%total) of `v` as the mechanism `m`, like a deck in which its numbers are typed.
-   !> `m` is new, or the last variant built of `v` that it holds. `message`: its first error, '' if there is none.
-   subroutine build_variant(v, n, m, message)
-      type(variation_t), intent(inout) :: v
+   !> Builds variant number `n` (1 to variation%total) of `variation` as the mechanism `m`, like a deck in which its
+   !> numbers are typed. `m` is new, or the last variant built of `variation` that it holds. `message`: its first error,
+   !> '' if there is none.
+   subroutine build_variant(variation, n, m, message)
+      type(variation_t), intent(inout) :: variation
       integer, intent(in) :: n
       type(mechanism_t), intent(inout) :: m
       character(:), allocatable, intent(out) :: message
       logical :: is_done
 
       message = ''
-      call take_values(v, n, m, is_done)
+      call take_values(variation, n, m, is_done)
       if (is_done) return
-      call build_mechanism(v%set)
-      if (v%set%errors%count == 0) then
-         call check_terms(v%set)
-         call check_centres(v%set)
-         call check_measures(v%set)
+      call build_mechanism(variation%set)
+      if (variation%set%errors%count == 0) then
+         call check_terms(variation%set)
+         call check_centres(variation%set)
+         call check_measures(variation%set)
       end if
-      message = error_report(v%set%errors)
+      message = error_report(variation%set%errors)
       ! The lines before it show the card.
       if (len(message) > 0) message = message(index(message, ' *** ') + 5:)
       message = message(:index(message//new_line('a'), new_line('a')) - 1)
-      m = v%set%mechanism
-      m%variants = v%total
+      m = variation%set%mechanism
+      m%variants = variation%total
       m%variant = merge(n, 0, message == '')
    end subroutine build_variant
 end module deck

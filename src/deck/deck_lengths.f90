@@ -168,12 +168,12 @@ contains
          end associate
       end subroutine check_length
 
-      !> The length `x` with its unit.
-      function amount(x) result(text)
-         real(wp), intent(in) :: x
+      !> The length `value` with its unit.
+      function amount(value) result(text)
+         real(wp), intent(in) :: value
          character(:), allocatable :: text
 
-         text = drawn_text(x)//' '//trim(set%mechanism%length_unit)
+         text = drawn_text(value)//' '//trim(set%mechanism%length_unit)
       end function amount
    end subroutine build_lengths
 end module deck_lengths

@@ -345,28 +345,28 @@ contains
 
    contains
 
-      !> The angle `x` (rad) in the deck's unit.
-      function angle_text(x) result(text)
-         real(wp), intent(in) :: x
+      !> The angle `value` (rad) in the deck's unit.
+      function angle_text(value) result(text)
+         real(wp), intent(in) :: value
          character(:), allocatable :: text
 
-         if (set%mechanism%degrees) text = drawn_text(in_degrees(x))//' DEG'
-         if (.not. set%mechanism%degrees) text = drawn_text(x)//' RAD'
+         if (set%mechanism%degrees) text = drawn_text(in_degrees(value))//' DEG'
+         if (.not. set%mechanism%degrees) text = drawn_text(value)//' RAD'
       end function angle_text
    end subroutine check_drawing
 
-   !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
+   !> `value` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
    !> exponent, and two digits fewer.
-   pure function drawn_text(x) result(text)
-      real(wp), intent(in) :: x
+   pure function drawn_text(value) result(text)
+      real(wp), intent(in) :: value
       character(:), allocatable :: text
       real(wp), parameter :: small = 1.0e-3_wp, smallest = 1.0e-2_wp, largest = 1.0e8_wp
 
-      if (abs(x) > 0.0_wp .and. (abs(x) < small .or. abs(x) >= largest)) then
-         text = rounded(x, drawn_text_digits - 2, small, largest)
+      if (abs(value) > 0.0_wp .and. (abs(value) < small .or. abs(value) >= largest)) then
+         text = rounded(value, drawn_text_digits - 2, small, largest)
       else
          ! At most ten decimals.
-         text = rounded(x, drawn_text_digits - merge(1, 0, abs(x) < smallest), small, largest)
+         text = rounded(value, drawn_text_digits - merge(1, 0, abs(value) < smallest), small, largest)
          text = text(:verify(text, '0', back=.true.))
          if (text(len(text):) == '.') text = text//'0'
       end if

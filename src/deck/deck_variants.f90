@@ -178,42 +178,42 @@ contains
       end associate
    end function number_on_card
 
-   !> Builds `v` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants; nothing
-   !> without such cards. Errors: those of the cards. Where the set has an error, `v` is of no use.
-   subroutine build_variation(set, v)
+   !> Builds `variation` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants;
+   !> nothing without such cards. Errors: those of the cards. Where the set has an error, `variation` is of no use.
+   subroutine build_variation(set, variation)
       type(card_set_t), intent(inout) :: set
-      type(variation_t), intent(out) :: v
+      type(variation_t), intent(out) :: variation
       type(varied_t) :: one
       integer(int64) :: total
       integer :: i, first
 
       if (set%number_of(form_vary) == 0) return
-      allocate (v%numbers(0), v%counts(0))
+      allocate (variation%numbers(0), variation%counts(0))
       do i = 1, set%count
          if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card()
       end do
 
       ! Numbers that are tied must have equal counts; the grid must not be too large.
       total = 1
-      do i = 1, size(v%numbers)
-         one = v%numbers(i)
-         first = findloc(v%numbers%axis, one%axis, dim=1)
+      do i = 1, size(variation%numbers)
+         one = variation%numbers(i)
+         first = findloc(variation%numbers%axis, one%axis, dim=1)
          if (first < i) then
-            if (one%count /= v%numbers(first)%count) call add_card_error(set, vary_tie, one%vary, label_c, &
-               whole(set%cards(v%numbers(first)%vary)%card%number))
+            if (one%count /= variation%numbers(first)%count) call add_card_error(set, vary_tie, one%vary, label_c, &
+               whole(set%cards(variation%numbers(first)%vary)%card%number))
             cycle
          end if
-         v%counts(one%axis) = one%count
+         variation%counts(one%axis) = one%count
          total = total*one%count
          if (total <= max_variants) cycle
          call add_card_error(set, vary_many, one%vary, label_b, whole(max_variants))
          total = 1
          exit
       end do
-      v%total = int(total)
-      set%mechanism%variants = max(1, v%total)
+      variation%total = int(total)
+      set%mechanism%variants = max(1, variation%total)
       if (set%errors%count > 0) return
-      v%set = set
+      variation%set = set
 
    contains
 
@@ -240,7 +240,7 @@ contains
             end if
             call read_values(card)
             if (one%count == 0) return
-            n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
+            n = findloc(variation%numbers%card == above .and. variation%numbers%place == one%place, .true., dim=1)
             ! More values of the list on the VARY card above it.
             continues = card%below == set%cards(i - 1)%below .and. all(card%label == set%cards(i - 1)%label)
             if (n == 0) then
@@ -256,20 +256,21 @@ contains
                   one%stands_alone = stands_alone(set, form)
                end if
                ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
-               do k = 1, size(v%numbers)
+               do k = 1, size(variation%numbers)
                   if (card%label(label_c) /= '' .and. &
-                      set%cards(v%numbers(k)%vary)%label(label_c) == card%label(label_c)) one%axis = v%numbers(k)%axis
+                      set%cards(variation%numbers(k)%vary)%label(label_c) == card%label(label_c)) one%axis = &
+                         variation%numbers(k)%axis
                end do
                if (one%axis == 0) then
-                  v%counts = [v%counts, 0]
-                  one%axis = size(v%counts)
+                  variation%counts = [variation%counts, 0]
+                  one%axis = size(variation%counts)
                end if
-               v%numbers = [v%numbers, one]
+               variation%numbers = [variation%numbers, one]
             else if (continues .and. allocated(one%list)) then
-               v%numbers(n)%list = [v%numbers(n)%list, one%list]
-               v%numbers(n)%count = size(v%numbers(n)%list)
+               variation%numbers(n)%list = [variation%numbers(n)%list, one%list]
+               variation%numbers(n)%count = size(variation%numbers(n)%list)
             else
-               call add_card_error(set, repeated, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
+               call add_card_error(set, repeated, i, label_a, whole(set%cards(variation%numbers(n)%vary)%card%number))
             end if
          end associate
       end subroutine take_card
@@ -323,23 +324,23 @@ contains
       end select
    end function stands_alone
 
-   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: `m` is now that
-   !> variant. If not, because `m` is new or more may depend on these numbers, the cards of `v` have them: build `m` of
-   !> these cards.
-   subroutine take_values(v, n, m, is_done)
-      type(variation_t), intent(inout) :: v
+   !> Gives `m`, a variant of `variation` without errors, the numbers of variant `n`. `is_done`: `m` is now that
+   !> variant. If not, because `m` is new or more may depend on these numbers, the cards of `variation` have them: build
+   !> `m` of these cards.
+   subroutine take_values(variation, n, m, is_done)
+      type(variation_t), intent(inout) :: variation
       integer, intent(in) :: n
       type(mechanism_t), intent(inout) :: m
       logical, intent(out) :: is_done
       type(input_errors_t) :: none
-      real(wp) :: values(size(v%numbers))
+      real(wp) :: values(size(variation%numbers))
       integer :: i
 
-      values = values_of_variant(v, n)
-      is_done = m%variant > 0 .and. all(v%numbers%stands_alone)
+      values = values_of_variant(variation, n)
+      is_done = m%variant > 0 .and. all(variation%numbers%stands_alone)
       if (is_done) then
          do i = 1, size(values)
-            call put_number(m, v%numbers(i)%number, values(i)*v%numbers(i)%factor)
+            call put_number(m, variation%numbers(i)%number, values(i)*variation%numbers(i)%factor)
          end do
          m%variant = n
          ! A TIME card of one time is an error.
@@ -347,29 +348,29 @@ contains
       end if
       if (is_done) return
       do i = 1, size(values)
-         associate (card => v%set%cards(v%numbers(i)%card), place => v%numbers(i)%place)
+         associate (card => variation%set%cards(variation%numbers(i)%card), place => variation%numbers(i)%place)
             card%real(place) = values(i)
             card%given(place) = .true.
          end associate
       end do
-      v%set%errors = none
-      call begin_mechanism(v%set, v%set%mechanism%set_number)
+      variation%set%errors = none
+      call begin_mechanism(variation%set, variation%set%mechanism%set_number)
    end subroutine take_values
 
-   !> The values (numbers) of variant `n` (1 to v%total), in the deck's units. The last of a range is exact.
-   pure function values_of_variant(v, n) result(values)
-      type(variation_t), intent(in) :: v
+   !> The values (numbers) of variant `n` (1 to variation%total), in the deck's units. The last of a range is exact.
+   pure function values_of_variant(variation, n) result(values)
+      type(variation_t), intent(in) :: variation
       integer, intent(in) :: n
-      real(wp) :: values(size(v%numbers))
-      integer :: place(size(v%counts)), rest, i, k
+      real(wp) :: values(size(variation%numbers))
+      integer :: place(size(variation%counts)), rest, i, k
 
       rest = n - 1
       do i = size(place), 1, -1
-         place(i) = mod(rest, v%counts(i))
-         rest = rest/v%counts(i)
+         place(i) = mod(rest, variation%counts(i))
+         rest = rest/variation%counts(i)
       end do
       do i = 1, size(values)
-         associate (one => v%numbers(i))
+         associate (one => variation%numbers(i))
             k = place(one%axis)
             if (allocated(one%list)) then
                values(i) = one%list(k + 1)

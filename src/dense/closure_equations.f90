@@ -35,123 +35,132 @@ module closure_equations
 
 contains
 
-   !> Residual (n) of all equations at configuration `p`; `driven` (drives): the drives' values.
-   pure subroutine residual(s, p, driven, r)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   !> Residual (n) of all equations at `configuration`; `driven` (drives): the drives' values.
+   pure subroutine residual(system, configuration, driven, residuals)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       real(wp), intent(in) :: driven(:)
-      real(wp), intent(out) :: r(:)
+      real(wp), intent(out) :: residuals(:)
       integer :: k
 
-      do k = 1, size(s%pairs)
-         associate (pair => s%pairs(k), d => r(2*k - 1:2*k))
-            d = closure_error(s, p, k)
+      do k = 1, size(system%pairs)
+         associate (pair => system%pairs(k), d => residuals(2*k - 1:2*k))
+            d = closure_error(system, configuration, k)
             if (.not. has_guide(pair%kind)) cycle
-            d = [dot_product(d, normal(s, p, k)) - pair%offset, &
-               p%q(3, s%link_of(pair%point_j)) - p%q(3, s%link_of(pair%point_i)) - pair%beta]
+            d = [dot_product(d, normal(system, configuration, k)) - pair%offset, &
+               configuration%q(3, system%link_of(pair%point_j)) - configuration%q(3, &
+                  system%link_of(pair%point_i)) - pair%beta]
          end associate
       end do
-      do k = 1, size(s%drives)
-         associate (row => r(2*size(s%pairs) + k), subject => s%drives(k)%subject, axis => axis_of(s%drives(k)%kind))
-            select case (s%drives(k)%kind)
+      do k = 1, size(system%drives)
+         associate (row => residuals(2*size(system%pairs) + k), subject => system%drives(k)%subject, &
+            axis => axis_of(system%drives(k)%kind))
+            select case (system%drives(k)%kind)
             case (drive_angle)
-               row = p%q(3, subject)
+               row = configuration%q(3, subject)
             case (drive_x, drive_y)
-               row = p%q(axis, s%link_of(subject)) + p%body_vector(axis, subject)
+               row = configuration%q(axis, system%link_of(subject)) + configuration%body_vector(axis, subject)
             case (drive_relangle)
-               row = p%q(3, s%drives(k)%second) - p%q(3, subject)
+               row = configuration%q(3, system%drives(k)%second) - configuration%q(3, subject)
             case default
-               row = dot_product(closure_error(s, p, subject), along(s, p, subject))
+               row = dot_product(closure_error(system, configuration, subject), along(system, configuration, subject))
             end select
             row = row - driven(k)
          end associate
       end do
    end subroutine residual
 
-   !> Jacobian (n, n) of the residual at configuration `p`, or the matrix A of (20) where the configuration is in the
+   !> Jacobian (n, n) of the residual at `configuration`, or the matrix A of (20) where the configuration is in the
    !> frozen form.
-   pure subroutine jacobian(s, p, a)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   pure subroutine jacobian(system, configuration, a)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       real(wp), intent(out) :: a(:, :)
       real(wp) :: coefficients(3)
       integer :: k, row
 
       a = 0.0_wp
-      do k = 1, size(s%pairs)
-         associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
-            if (.not. has_guide(s%pairs(k)%kind)) then
-               call place_both(s, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
-               call place_both(s, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
+      do k = 1, size(system%pairs)
+         associate (u => configuration%slope(:, system%pairs(k)%point_i), w => configuration%slope(:, &
+            system%pairs(k)%point_j))
+            if (.not. has_guide(system%pairs(k)%kind)) then
+               call place_both(system, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
+               call place_both(system, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
             else
-               call place_both(s, a, 2*k - 1, k, projection_row(s, p, k, normal(s, p, k), normal_angle(s, p, k), &
-                  p%guide_zeros(:, k)))
-               call place_both(s, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+               call place_both(system, a, 2*k - 1, k, projection_row(system, configuration, k, normal(system, &
+                  configuration, k), normal_angle(system, configuration, k), &
+                  configuration%guide_zeros(:, k)))
+               call place_both(system, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
             end if
          end associate
       end do
-      do k = 1, size(s%drives)
-         row = 2*size(s%pairs) + k
+      do k = 1, size(system%drives)
+         row = 2*size(system%pairs) + k
          coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
-         associate (drive => s%drives(k), subject => s%drives(k)%subject, axis => axis_of(s%drives(k)%kind))
+         associate (drive => system%drives(k), subject => system%drives(k)%subject, &
+            axis => axis_of(system%drives(k)%kind))
             select case (drive%kind)
             case (drive_angle)
-               call place(s, a, row, subject, coefficients)
+               call place(system, a, row, subject, coefficients)
             case (drive_x, drive_y)
                coefficients(axis) = 1.0_wp
-               coefficients(3) = p%slope(axis, subject)
-               call place(s, a, row, s%link_of(subject), coefficients)
+               coefficients(3) = configuration%slope(axis, subject)
+               call place(system, a, row, system%link_of(subject), coefficients)
             case (drive_relangle)
-               call place(s, a, row, drive%second, coefficients)
-               call place(s, a, row, subject, -coefficients)
+               call place(system, a, row, drive%second, coefficients)
+               call place(system, a, row, subject, -coefficients)
             case (drive_slide)
-               call place_both(s, a, row, subject, projection_row(s, p, subject, along(s, p, subject), &
-                  normal_angle(s, p, subject) + pi/2.0_wp, p%guide_zeros([2, 1], subject) + pi/2.0_wp))
+               call place_both(system, a, row, subject, projection_row(system, configuration, subject, along(system, &
+                  configuration, subject), &
+                  normal_angle(system, configuration, subject) + pi/2.0_wp, configuration%guide_zeros([2, 1], &
+                     subject) + pi/2.0_wp))
             end select
          end associate
       end do
    end subroutine jacobian
 
    !> Acceleration remainder (n): what the second derivative of the residual holds beside J a, at velocities
-   !> `v` (3, links).
-   pure subroutine remainder(s, p, v, gamma)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
-      real(wp), intent(in) :: v(:, :)
+   !> `rates` (3, links).
+   pure subroutine remainder(system, configuration, rates, gamma)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
+      real(wp), intent(in) :: rates(:, :)
       real(wp), intent(out) :: gamma(:)
       integer :: k
 
       gamma = 0.0_wp
-      do k = 1, size(s%pairs)
-         if (.not. has_guide(s%pairs(k)%kind)) then
-            gamma(2*k - 1:2*k) = turning_part(s, p, v, k)
+      do k = 1, size(system%pairs)
+         if (.not. has_guide(system%pairs(k)%kind)) then
+            gamma(2*k - 1:2*k) = turning_part(system, configuration, rates, k)
          else
-            gamma(2*k - 1) = projection_remainder(s, p, v, k, normal(s, p, k))
+            gamma(2*k - 1) = projection_remainder(system, configuration, rates, k, normal(system, configuration, k))
          end if
       end do
-      do k = 1, size(s%drives)
-         associate (row => gamma(2*size(s%pairs) + k), subject => s%drives(k)%subject, kind => s%drives(k)%kind)
+      do k = 1, size(system%drives)
+         associate (row => gamma(2*size(system%pairs) + k), subject => system%drives(k)%subject, &
+            kind => system%drives(k)%kind)
             if (any(kind == [drive_x, drive_y])) &
-               row = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
-            if (kind == drive_slide) row = projection_remainder(s, p, v, subject, along(s, p, subject))
+               row = -rates(3, system%link_of(subject))**2*configuration%body_vector(axis_of(kind), subject)
+            if (kind == drive_slide) row = projection_remainder(system, configuration, rates, subject, along(system, &
+               configuration, subject))
          end associate
       end do
    end subroutine remainder
 
-   !> Value, rate and acceleration (3, drives) of the drives on `path` at the parameter `p`, in the system's unit and
+   !> Value, rate and acceleration (3, drives) of the drives on `path` at the `parameter`, in the system's unit and
    !> from its origin.
-   pure subroutine find_drive_values(s, path, p, f)
-      type(system_t), intent(in) :: s
+   pure subroutine find_drive_values(system, path, parameter, values)
+      type(system_t), intent(in) :: system
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: p
-      real(wp), intent(out) :: f(:, :)
+      real(wp), intent(in) :: parameter
+      real(wp), intent(out) :: values(:, :)
       integer :: i
 
-      do i = 1, size(s%drives)
-         f(:, i) = drive_at(path, i, p)
-         associate (kind => s%drives(i)%kind)
-            if (any(kind == [drive_x, drive_y])) f(1, i) = f(1, i) - s%origin(axis_of(kind))
-            if (any(kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
+      do i = 1, size(system%drives)
+         values(:, i) = drive_at(path, i, parameter)
+         associate (kind => system%drives(i)%kind)
+            if (any(kind == [drive_x, drive_y])) values(1, i) = values(1, i) - system%origin(axis_of(kind))
+            if (any(kind == [drive_x, drive_y, drive_slide])) values(:, i) = values(:, i)/system%length
          end associate
       end do
    end subroutine find_drive_values
@@ -164,113 +173,118 @@ contains
    end function axis_of
 
    !> Adds six `coefficients` to `row` of `a`, at the columns of the two links of pair `k`.
-   pure subroutine place_both(s, a, row, k, coefficients)
-      type(system_t), intent(in) :: s
+   pure subroutine place_both(system, a, row, k, coefficients)
+      type(system_t), intent(in) :: system
       real(wp), intent(inout) :: a(:, :)
       integer, intent(in) :: row, k
       real(wp), intent(in) :: coefficients(6)
 
-      call place(s, a, row, s%link_of(s%pairs(k)%point_i), coefficients(:3))
-      call place(s, a, row, s%link_of(s%pairs(k)%point_j), coefficients(4:))
+      call place(system, a, row, system%link_of(system%pairs(k)%point_i), coefficients(:3))
+      call place(system, a, row, system%link_of(system%pairs(k)%point_j), coefficients(4:))
    end subroutine place_both
 
    !> Adds three `coefficients` to `row` of `a` at the columns of `link`; a ground link has none.
-   pure subroutine place(s, a, row, link, coefficients)
-      type(system_t), intent(in) :: s
+   pure subroutine place(system, a, row, link, coefficients)
+      type(system_t), intent(in) :: system
       real(wp), intent(inout) :: a(:, :)
       integer, intent(in) :: row, link
       real(wp), intent(in) :: coefficients(3)
 
-      associate (c => s%column(link))
+      associate (c => system%column(link))
          if (c > 0) a(row, c:c + 2) = a(row, c:c + 2) + coefficients
       end associate
    end subroutine place
 
-   !> P - Q (2) of pair `k` in the configuration `p`.
-   pure function closure_error(s, p, k) result(d)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   !> P - Q (2) of pair `k` in the `configuration`.
+   pure function closure_error(system, configuration, k) result(d)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
       real(wp) :: d(2)
 
-      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
-         d = (p%q(:2, s%link_of(a)) - p%q(:2, s%link_of(b))) + (p%body_vector(:, a) - p%body_vector(:, b))
+      associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
+         d = (configuration%q(:2, system%link_of(a)) - configuration%q(:2, system%link_of(b))) + &
+            (configuration%body_vector(:, a) - configuration%body_vector(:, b))
       end associate
    end function closure_error
 
    !> Normal n of the guide of pair `k`.
-   pure function normal(s, p, k) result(n)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   pure function normal(system, configuration, k) result(n)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
       real(wp) :: n(2)
 
-      n = quarter_turn(-along(s, p, k))
+      n = quarter_turn(-along(system, configuration, k))
    end function normal
 
    !> Minus the direction e of the guide of pair `k`: the slide is the projection of P - Q on it.
-   pure function along(s, p, k) result(f)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   pure function along(system, configuration, k) result(f)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
       real(wp) :: f(2)
 
-      f = -rotated(s%guide(:, k), p%direction(:, s%link_of(s%pairs(k)%point_i)))
+      f = -rotated(system%guide(:, k), configuration%direction(:, system%link_of(system%pairs(k)%point_i)))
    end function along
 
-   !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `f` (2), which has the
-   !> angle `psi` and in the frozen form the reference angles `zeros` (2).
-   !>
-   !> In the frozen form (16), d . f is d_x f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with
-   !> h counted from the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y
-   !> columns alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
-   pure function projection_row(s, p, k, f, psi, zeros) result(row)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `direction` (2), which has
+   !> the angle `psi` and in the frozen form the reference angles `zeros` (2).  In the frozen form (16), d . f is d_x
+   !> f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with h counted from the nearest zero of f;
+   !> the other keeps its sine or cosine as the coefficient of d. With x and y columns alone, as printed, the slot of
+   !> the yoke mechanism makes the matrix singular at every position.
+   pure function projection_row(system, configuration, k, direction, psi, zeros) result(row)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
-      real(wp), intent(in) :: f(2), psi, zeros(2)
+      real(wp), intent(in) :: direction(2), psi, zeros(2)
       real(wp) :: row(6), g(3), d(2), secant(2)
 
-      d = closure_error(s, p, k)
-      g = [f(1), f(2), cross(f, d)]
-      if (p%frozen) then
+      d = closure_error(system, configuration, k)
+      g = [direction(1), direction(2), cross(direction, d)]
+      if (configuration%frozen) then
          secant = secants(psi, zeros)
-         g = [f(1), 0.0_wp, d(2)*secant(2)]
-         if (abs(f(2)) > abs(f(1))) g = [0.0_wp, f(2), d(1)*secant(1)]
+         g = [direction(1), 0.0_wp, d(2)*secant(2)]
+         if (abs(direction(2)) > abs(direction(1))) g = [0.0_wp, direction(2), d(1)*secant(1)]
       end if
-      associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
+      associate (u => configuration%slope(:, system%pairs(k)%point_i), w => configuration%slope(:, &
+         system%pairs(k)%point_j))
          row = [g(1), g(2), g(3) + dot_product(g(:2), u), -g(1), -g(2), -dot_product(g(:2), w)]
       end associate
    end function projection_row
 
-   !> Acceleration remainder of the projection of prismatic pair `k` on `f` (2), at velocities `v` (3, links).
-   pure real(wp) function projection_remainder(s, p, v, k, f) result(gamma)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
-      real(wp), intent(in) :: v(:, :), f(2)
+   !> Acceleration remainder of the projection of prismatic pair `k` on `direction` (2), at velocities `rates` (3,
+   !> links).
+   pure real(wp) function projection_remainder(system, configuration, rates, k, direction) result(gamma)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
+      real(wp), intent(in) :: rates(:, :), direction(2)
       integer, intent(in) :: k
       real(wp) :: velocity(2)
 
-      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
-         associate (i => s%link_of(a), j => s%link_of(b), u => p%body_vector(:, a), w => p%body_vector(:, b))
-            velocity = v(:2, i) - v(:2, j) + v(3, i)*quarter_turn(u) - v(3, j)*quarter_turn(w)
-            gamma = dot_product(turning_part(s, p, v, k), f) &
-               + v(3, i)*(2.0_wp*cross(f, velocity) - v(3, i)*dot_product(closure_error(s, p, k), f))
+      associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
+         associate (i => system%link_of(a), j => system%link_of(b), u => configuration%body_vector(:, a), &
+            w => configuration%body_vector(:, b))
+            velocity = rates(:2, i) - rates(:2, j) + rates(3, i)*quarter_turn(u) - rates(3, j)*quarter_turn(w)
+            gamma = dot_product(turning_part(system, configuration, rates, k), direction) &
+               + rates(3, i)*(2.0_wp*cross(direction, velocity) - rates(3, i)*dot_product(closure_error(system, &
+                  configuration, k), direction))
          end associate
       end associate
    end function projection_remainder
 
    !> Computes what the second derivative of P - Q (2) of pair `k` holds beside the accelerations: -phi_i'^2 u +
    !> phi_j'^2 w.
-   pure function turning_part(s, p, v, k) result(gamma)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
-      real(wp), intent(in) :: v(:, :)
+   pure function turning_part(system, configuration, rates, k) result(gamma)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
+      real(wp), intent(in) :: rates(:, :)
       integer, intent(in) :: k
       real(wp) :: gamma(2)
 
-      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
-         gamma = v(3, s%link_of(b))**2*p%body_vector(:, b) - v(3, s%link_of(a))**2*p%body_vector(:, a)
+      associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
+         gamma = rates(3, system%link_of(b))**2*configuration%body_vector(:, b) - rates(3, &
+            system%link_of(a))**2*configuration%body_vector(:, a)
       end associate
    end function turning_part
 end module closure_equations

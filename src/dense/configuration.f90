@@ -71,8 +71,8 @@ contains
    end function new_system
 
    !> The deck's positions: of ground links the given ones, of the others the estimates.
-   pure function new_configuration(s, m) result(p)
-      type(system_t), intent(in) :: s
+   pure function new_configuration(system, m) result(p)
+      type(system_t), intent(in) :: system
       type(mechanism_t), intent(in) :: m
       type(configuration_t) :: p
       integer :: i
@@ -81,73 +81,75 @@ contains
       allocate (p%body_vector(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
       allocate (p%guide_zeros(2, size(m%pairs)), source=0.0_wp)
       do i = 1, size(m%links)
-         p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
+         p%q(:, i) = [(m%links(i)%position(:2) - system%origin)/system%length, m%links(i)%position(3)]
       end do
-      call set_configuration(s, p)
+      call set_configuration(system, p)
    end function new_configuration
 
-   !> Directions, body vectors and slopes from `p%q`: one sine and one cosine a link.
-   pure subroutine set_configuration(s, p)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(inout) :: p
+   !> Directions, body vectors and slopes from `configuration%q`: one sine and one cosine a link.
+   pure subroutine set_configuration(system, configuration)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(inout) :: configuration
       integer :: i
 
-      p%direction(1, :) = cos(p%q(3, :))
-      p%direction(2, :) = sin(p%q(3, :))
-      do i = 1, size(s%link_of)
-         p%body_vector(:, i) = rotated(s%offset(:, i), p%direction(:, s%link_of(i)))
-         if (p%frozen) then
-            p%slope(:, i) = norm2(s%offset(:, i))*secants(body_vector_angle(s, p, i), p%zeros(:, i))
+      configuration%direction(1, :) = cos(configuration%q(3, :))
+      configuration%direction(2, :) = sin(configuration%q(3, :))
+      do i = 1, size(system%link_of)
+         configuration%body_vector(:, i) = rotated(system%offset(:, i), configuration%direction(:, system%link_of(i)))
+         if (configuration%frozen) then
+            configuration%slope(:, i) = norm2(system%offset(:, i))*secants(body_vector_angle(system, configuration, &
+               i), configuration%zeros(:, i))
          else
-            p%slope(:, i) = quarter_turn(p%body_vector(:, i))
+            configuration%slope(:, i) = quarter_turn(configuration%body_vector(:, i))
          end if
       end do
    end subroutine set_configuration
 
-   !> Puts `p` into the frozen form of (16). Its angles are counted from the zeros nearest to their present values.
-   pure subroutine choose_references(s, p)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(inout) :: p
+   !> Puts `configuration` into the frozen form of (16). Its angles are counted from the zeros nearest to their present
+   !> values.
+   pure subroutine choose_references(system, configuration)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(inout) :: configuration
       integer :: i
 
-      p%frozen = .true.
-      do i = 1, size(s%link_of)
-         p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
+      configuration%frozen = .true.
+      do i = 1, size(system%link_of)
+         configuration%zeros(:, i) = nearest_zeros(body_vector_angle(system, configuration, i))
       end do
-      do i = 1, size(s%pairs)
-         p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
+      do i = 1, size(system%pairs)
+         configuration%guide_zeros(:, i) = nearest_zeros(normal_angle(system, configuration, i))
       end do
-      call set_configuration(s, p)
+      call set_configuration(system, configuration)
    end subroutine choose_references
 
-   !> Adds the unknowns' vector `x` (n) to the coordinates `q` (3, links); ground links stay as they are.
-   pure subroutine add_to_links(s, x, q)
-      type(system_t), intent(in) :: s
-      real(wp), intent(in) :: x(:)
-      real(wp), intent(inout) :: q(:, :)
+   !> Adds the unknowns' vector `change` (n) to the coordinates `places` (3, links); ground links stay as they are.
+   pure subroutine add_to_links(system, change, places)
+      type(system_t), intent(in) :: system
+      real(wp), intent(in) :: change(:)
+      real(wp), intent(inout) :: places(:, :)
       integer :: i
 
-      do i = 1, size(s%column)
-         if (s%column(i) > 0) q(:, i) = q(:, i) + x(s%column(i):s%column(i) + 2)
+      do i = 1, size(system%column)
+         if (system%column(i) > 0) places(:, i) = places(:, i) + change(system%column(i):system%column(i) + 2)
       end do
    end subroutine add_to_links
 
    !> The angle of the normal of pair `k`.
-   pure real(wp) function normal_angle(s, p, k)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   pure real(wp) function normal_angle(system, configuration, k)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
 
-      normal_angle = p%q(3, s%link_of(s%pairs(k)%point_i)) + s%pairs(k)%alpha + pi/2.0_wp
+      normal_angle = configuration%q(3, system%link_of(system%pairs(k)%point_i)) + system%pairs(k)%alpha + pi/2.0_wp
    end function normal_angle
 
    !> The angle of the body vector to point `i`.
-   pure real(wp) function body_vector_angle(s, p, i)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   pure real(wp) function body_vector_angle(system, configuration, i)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: i
 
-      body_vector_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
+      body_vector_angle = configuration%q(3, system%link_of(i)) + atan2(system%offset(2, i), system%offset(1, i))
    end function body_vector_angle
 
    !> The angles (2) nearest to `psi` at which cos, then sin, is zero.

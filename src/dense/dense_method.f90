@@ -47,17 +47,17 @@ module dense_method
 contains
 
    !> Ready for the instants of `m`, whose equations are as many as its unknowns.
-   subroutine make_dense(d, m)
-      type(dense_t), intent(out) :: d
+   subroutine make_dense(dense, m)
+      type(dense_t), intent(out) :: dense
       type(mechanism_t), intent(in) :: m
 
-      d%system = new_system(m)
-      d%method = m%method
-      if (m%predictor /= own_predictor) d%order = min(m%predictor, order_of_paper)
-      d%tolerance = m%tolerance
-      d%configuration = new_configuration(d%system, m)
-      d%factors = new_factors(d%system%n)
-      allocate (d%drive_values(3, size(m%drives)))
+      dense%system = new_system(m)
+      dense%method = m%method
+      if (m%predictor /= own_predictor) dense%order = min(m%predictor, order_of_paper)
+      dense%tolerance = m%tolerance
+      dense%configuration = new_configuration(dense%system, m)
+      dense%factors = new_factors(dense%system%n)
+      allocate (dense%drive_values(3, size(m%drives)))
    end subroutine make_dense
 
    !> Makes of `m` what the blocks solve beside it: all its links, to the limit of rounding.
@@ -71,26 +71,26 @@ contains
    end function for_blocks
 
    !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks of `e` have found
-   !> one. `c`: how the last try ended, or the first if none found the position of the blocks; iterations are those of
-   !> all tries. c%singular: the position has no velocities but of links that drives alone move.
-   subroutine solve_all_links(d, e, found, c)
-      type(dense_t), intent(inout) :: d
+   !> one. `convergence`: how the last try ended, or the first if none found the position of the blocks; iterations are
+   !> those of all tries. convergence%singular: the position has no velocities but of links that drives alone move.
+   subroutine solve_all_links(dense, e, found, convergence)
+      type(dense_t), intent(inout) :: dense
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(out) :: convergence
       type(convergence_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
       type(motion_t) :: before
       type(state_t) :: s
-      real(wp) :: w(3), b(d%system%n), least, largest
+      real(wp) :: w(3), b(dense%system%n), least, largest
       logical :: finite
       integer :: k, iterations
 
       iterations = 0
-      call find_drive_values(d%system, e%path, found%t, d%drive_values)
+      call find_drive_values(dense%system, e%path, found%t, dense%drive_values)
       call get_motion(e, found, finite)
       there = found%position
-      there(:2, :) = there(:2, :)/d%system%length
+      there(:2, :) = there(:2, :)/dense%system%length
 
       ! It begins at the position that the blocks follow, corrected through its velocities and accelerations; at first
       ! at the deck's estimate.
@@ -98,66 +98,68 @@ contains
       before = new_motion(size(there, 2))
       call move_links(e%geometry%chain, s, e%geometry%equations%length, before, finite, .true.)
       w = 0.0_wp
-      if (e%history%filled > 0) w = order_weights(d%order, found%t - e%history%t(0), 0.0_wp)
+      if (e%history%filled > 0) w = order_weights(dense%order, found%t - e%history%t(0), 0.0_wp)
       start = before%position + w(1)*before%velocity + w(2)*before%acceleration
-      start(:2, :) = start(:2, :)/d%system%length
+      start(:2, :) = start(:2, :)/dense%system%length
 
       do k = 1, max_starts
-         d%configuration%q = start
-         call solve_position(d%system, d%drive_values(1, :), d%tolerance, d%method == method_matrix, d%configuration, &
-            d%factors, c)
-         if (is_solved(c) .and. .not. c%singular) then
-            call pivot_range(shape_t(d%system%n, d%system%n), d%factors%a, d%factors%pivots, least, largest, &
-               c%determinant)
-            c%min_pivot = least/max(largest, least)
+         dense%configuration%q = start
+         call solve_position(dense%system, dense%drive_values(1, :), dense%tolerance, dense%method == method_matrix, &
+            dense%configuration, &
+            dense%factors, convergence)
+         if (is_solved(convergence) .and. .not. convergence%singular) then
+            call pivot_range(shape_t(dense%system%n, dense%system%n), dense%factors%a, dense%factors%pivots, least, &
+               largest, &
+               convergence%determinant)
+            convergence%min_pivot = least/max(largest, least)
          end if
-         iterations = iterations + c%iterations
-         if (is_solved(c)) then
-            if (.not. is_found_by_blocks(d, e, there)) c%ended = ended_elsewhere
+         iterations = iterations + convergence%iterations
+         if (is_solved(convergence)) then
+            if (.not. is_found_by_blocks(dense, e, there)) convergence%ended = ended_elsewhere
          end if
-         if (is_solved(c)) exit
-         if (k == 1) first = c
+         if (is_solved(convergence)) exit
+         if (k == 1) first = convergence
          start = there + (start - there)/nearer
       end do
-      if (.not. is_solved(c)) c = first
-      c%iterations = iterations
-      if (.not. is_solved(c)) return
+      if (.not. is_solved(convergence)) convergence = first
+      convergence%iterations = iterations
+      if (.not. is_solved(convergence)) return
 
-      c%singular = c%singular .or. any(e%is_singular(e%blocks%needed))
-      found%position = d%configuration%q
-      if (.not. c%singular) then
+      convergence%singular = convergence%singular .or. any(e%is_singular(e%blocks%needed))
+      found%position = dense%configuration%q
+      if (.not. convergence%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
          ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f' and f'' are zero in the rows of pairs.
-         associate (s => d%system, first => d%system%n - size(d%drive_values, 2) + 1)
+         associate (s => dense%system, first => dense%system%n - size(dense%drive_values, 2) + 1)
             b = 0.0_wp
-            b(first:) = d%drive_values(2, :)
-            call solve_factored(d%factors, b)
+            b(first:) = dense%drive_values(2, :)
+            call solve_factored(dense%factors, b)
             found%velocity = 0.0_wp
             call add_to_links(s, b, found%velocity)
-            call remainder(s, d%configuration, found%velocity, b)
+            call remainder(s, dense%configuration, found%velocity, b)
             b = -b
-            b(first:) = b(first:) + d%drive_values(3, :)
-            call solve_factored(d%factors, b)
+            b(first:) = b(first:) + dense%drive_values(3, :)
+            call solve_factored(dense%factors, b)
             found%acceleration = 0.0_wp
             call add_to_links(s, b, found%acceleration)
          end associate
-         found%velocity(:2, :) = d%system%length*found%velocity(:2, :)
-         found%acceleration(:2, :) = d%system%length*found%acceleration(:2, :)
+         found%velocity(:2, :) = dense%system%length*found%velocity(:2, :)
+         found%acceleration(:2, :) = dense%system%length*found%acceleration(:2, :)
       end if
-      found%position(:2, :) = d%system%length*found%position(:2, :)
+      found%position(:2, :) = dense%system%length*found%position(:2, :)
    end subroutine solve_all_links
 
-   !> The position of `d` is the one that the blocks of `e` have found, where all links are `there` (3, links), in the
-   !> unit of the system: no other is as near to that (Newton and Kantorovich).
-   pure logical function is_found_by_blocks(d, e, there) result(is)
-      type(dense_t), intent(in) :: d
+   !> The position of `dense` is the one that the blocks of `e` have found, where all links are `there` (3, links), in
+   !> the unit of the system: no other is as near to that (Newton and Kantorovich).
+   pure logical function is_found_by_blocks(dense, e, there) result(is)
+      type(dense_t), intent(in) :: dense
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: there(:, :)
       real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 
-      off = abs(d%configuration%q - there)
-      off(:2, :) = off(:2, :)*(d%system%length/e%geometry%span)
+      off = abs(dense%configuration%q - there)
+      off(:2, :) = off(:2, :)*(dense%system%length/e%geometry%span)
       largest = maxval(off)
       is = .true.
       do k = 1, size(e%blocks%needed)

@@ -39,68 +39,71 @@ module position_iteration
 
 contains
 
-   !> Moves the links of `p` to a position where the drives have the values `driven` (drives): by Newton's method or, if
-   !> `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding. `f`: room for n
-   !> equations. If a position is found, `f` has the factors of the Jacobian for (21) and (22): there, or by Newton's
-   !> method one step of the tolerance's size before it. Otherwise those of the last matrix. `c` says how it ended.
-   subroutine solve_position(s, driven, tolerance, is_matrix, p, f, c)
-      type(system_t), intent(in) :: s
+   !> Moves the links of `configuration` to a position where the drives have the values `driven` (drives): by Newton's
+   !> method or, if `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding.
+   !> `factors`: room for n equations. If a position is found, `factors` has the factors of the Jacobian for (21) and
+   !> (22): there, or by Newton's method one step of the tolerance's size before it. Otherwise those of the last matrix.
+   !> `convergence` says how it ended.
+   subroutine solve_position(system, driven, tolerance, is_matrix, configuration, factors, convergence)
+      type(system_t), intent(in) :: system
       real(wp), intent(in) :: driven(:), tolerance
       logical, intent(in) :: is_matrix
-      type(configuration_t), intent(inout) :: p
-      type(factors_t), intent(inout) :: f
-      type(convergence_t), intent(out) :: c
-      real(wp) :: r(s%n), start(size(p%q, 2)), before, highest
+      type(configuration_t), intent(inout) :: configuration
+      type(factors_t), intent(inout) :: factors
+      type(convergence_t), intent(out) :: convergence
+      real(wp) :: r(system%n), start(size(configuration%q, 2)), before, highest
       logical :: stays
       integer :: info
 
-      call set_configuration(s, p)
-      if (is_matrix) call choose_references(s, p)
-      start = p%q(3, :)
+      call set_configuration(system, configuration)
+      if (is_matrix) call choose_references(system, configuration)
+      start = configuration%q(3, :)
       before = huge(before)
-      do while (c%iterations < merge(matrix_iterations, newton_iterations, is_matrix))
-         c%iterations = c%iterations + 1
-         call residual(s, p, driven, r)
-         highest = max(1.0_wp, maxval(abs(p%q)))
-         c%residual = maxval(abs(r))/highest
-         call jacobian(s, p, f%a)
-         call factor(f, info)
+      do while (convergence%iterations < merge(matrix_iterations, newton_iterations, is_matrix))
+         convergence%iterations = convergence%iterations + 1
+         call residual(system, configuration, driven, r)
+         highest = max(1.0_wp, maxval(abs(configuration%q)))
+         convergence%residual = maxval(abs(r))/highest
+         call jacobian(system, configuration, factors%a)
+         call factor(factors, info)
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level, tolerance)
-            c%ended = merge(ended_stalled, ended_singular, c%singular)
+            convergence%singular = convergence%residual <= max(rounding_level, tolerance)
+            convergence%ended = merge(ended_stalled, ended_singular, convergence%singular)
             exit
          end if
-         call solve(f, r)
-         c%step = maxval(abs(r))/highest
-         if (c%residual <= rounding_level .and. &
-            c%step > max(step_tolerance, tolerance, min(0.5_wp*before, root_of_rounding))) then
+         call solve(factors, r)
+         convergence%step = maxval(abs(r))/highest
+         if (convergence%residual <= rounding_level .and. &
+            convergence%step > max(step_tolerance, tolerance, min(0.5_wp*before, root_of_rounding))) then
             ! Rounding is all that is left to correct, and the position stays.
-            c%ended = ended_stalled
+            convergence%ended = ended_stalled
             exit
          end if
          stays = all(abs(r) <= bound)
          if (stays) then
-            call add_to_links(s, -r, p%q)
-            stays = all(abs(p%q(3, :)) <= angle_limit) .and. all(abs(p%q(3, :) - start) <= reach)
+            call add_to_links(system, -r, configuration%q)
+            stays = all(abs(configuration%q(3, :)) <= angle_limit) .and. all(abs(configuration%q(3, :) - start) <= &
+               reach)
          end if
          if (.not. stays) then
-            c%ended = ended_diverged
+            convergence%ended = ended_diverged
             exit
          end if
-         call set_configuration(s, p)
-         if (c%residual <= max(rounding_level, tolerance) .and. c%step <= max(step_tolerance, tolerance)) then
-            c%ended = ended_converged
+         call set_configuration(system, configuration)
+         if (convergence%residual <= max(rounding_level, tolerance) .and. convergence%step <= max(step_tolerance, &
+            tolerance)) then
+            convergence%ended = ended_converged
             exit
          end if
-         before = c%step
+         before = convergence%step
       end do
       if (.not. is_matrix) return
 
-      p%frozen = .false.
-      call set_configuration(s, p)
-      if (.not. is_solved(c)) return
-      call jacobian(s, p, f%a)
-      call factor(f, info)
-      c%singular = info > 0
+      configuration%frozen = .false.
+      call set_configuration(system, configuration)
+      if (.not. is_solved(convergence)) return
+      call jacobian(system, configuration, factors%a)
+      call factor(factors, info)
+      convergence%singular = info > 0
    end subroutine solve_position
 end module position_iteration

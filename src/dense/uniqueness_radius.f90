@@ -40,46 +40,47 @@ module uniqueness_radius
 
 contains
 
-   !> Finds the coordinates of `s`, of its slides for the time being in units of length.
-   function new_coordinates(s) result(c)
-      type(system_t), intent(in) :: s
+   !> Finds the coordinates of `system`, of its slides for the time being in units of length.
+   function new_coordinates(system) result(c)
+      type(system_t), intent(in) :: system
       type(coordinates_t) :: c
-      logical :: is_guided(size(s%pairs))
-      integer :: group(size(s%column)), link_i(size(s%pairs)), link_j(size(s%pairs)), link, k
+      logical :: is_guided(size(system%pairs))
+      integer :: group(size(system%column)), link_i(size(system%pairs)), link_j(size(system%pairs)), link, k
 
-      link_i = s%link_of(s%pairs%point_i)
-      link_j = s%link_of(s%pairs%point_j)
-      is_guided = has_guide(s%pairs%kind)
+      link_i = system%link_of(system%pairs%point_i)
+      link_j = system%link_of(system%pairs%point_j)
+      is_guided = has_guide(system%pairs%kind)
       group = joined(spread(.true., 1, size(group)), pack(link_i, is_guided), pack(link_j, is_guided))
 
       allocate (c%angle_of(size(group)), source=0)
       do link = 1, size(group)
-         if (any(group == group(link) .and. s%column == 0)) cycle
+         if (any(group == group(link) .and. system%column == 0)) cycle
          k = findloc(group, group(link), dim=1)
          if (k == link) c%angles = c%angles + 1
          c%angle_of(link) = merge(c%angles, c%angle_of(k), k == link)
       end do
       c%slides = pack([(k, k=1, size(link_i))], is_guided .and. c%angle_of(link_i) > 0)
 
-      allocate (c%forms(s%n, c%angles + 2*size(c%slides)), source=0.0_wp)
+      allocate (c%forms(system%n, c%angles + 2*size(c%slides)), source=0.0_wp)
       do k = 1, c%angles
-         c%forms(s%column(findloc(c%angle_of, k, dim=1)) + 2, k) = 1.0_wp
+         c%forms(system%column(findloc(c%angle_of, k, dim=1)) + 2, k) = 1.0_wp
       end do
    end function new_coordinates
 
-   !> Measures the slides of `c` in their unit W at configuration `p`.
-   pure subroutine measure_slides(s, p, c)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
-      type(coordinates_t), intent(inout) :: c
+   !> Measures the slides of `coordinates` in their unit W at `configuration`.
+   pure subroutine measure_slides(system, configuration, coordinates)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
+      type(coordinates_t), intent(inout) :: coordinates
       integer :: k, axis
 
-      do k = 1, size(c%slides)
-         associate (pair => s%pairs(c%slides(k)))
-            associate (i => s%column(s%link_of(pair%point_i)), j => s%column(s%link_of(pair%point_j)))
+      do k = 1, size(coordinates%slides)
+         associate (pair => system%pairs(coordinates%slides(k)))
+            associate (i => system%column(system%link_of(pair%point_i)), &
+               j => system%column(system%link_of(pair%point_j)))
                do axis = 1, 2
-                  associate (form => c%forms(:, c%angles + 2*k - 2 + axis))
-                     form(i + axis - 1) = 1.0_wp/max(1.0_wp, slide_length(s, p, c%slides(k)))
+                  associate (form => coordinates%forms(:, coordinates%angles + 2*k - 2 + axis))
+                     form(i + axis - 1) = 1.0_wp/max(1.0_wp, slide_length(system, configuration, coordinates%slides(k)))
                      if (j > 0) form(j + axis - 1) = -form(i + axis - 1)
                   end associate
                end do
@@ -88,148 +89,152 @@ contains
       end do
    end subroutine measure_slides
 
-   !> |x_i - x_j| of pair number `k` at configuration `p`.
-   pure real(wp) function slide_length(s, p, k)
-      type(system_t), intent(in) :: s
-      type(configuration_t), intent(in) :: p
+   !> |x_i - x_j| of pair number `k` at `configuration`.
+   pure real(wp) function slide_length(system, configuration, k)
+      type(system_t), intent(in) :: system
+      type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k
 
-      slide_length = norm2(p%q(:2, s%link_of(s%pairs(k)%point_i)) - p%q(:2, s%link_of(s%pairs(k)%point_j)))
+      slide_length = norm2(configuration%q(:2, system%link_of(system%pairs(k)%point_i)) - configuration%q(:2, &
+         system%link_of(system%pairs(k)%point_j)))
    end function slide_length
 
-   !> The largest coordinate of the difference `d` (n) of two positions.
-   pure real(wp) function distance(c, d)
-      type(coordinates_t), intent(in) :: c
-      real(wp), intent(in) :: d(:)
+   !> The largest coordinate of the difference `change` (n) of two positions.
+   pure real(wp) function distance(coordinates, change)
+      type(coordinates_t), intent(in) :: coordinates
+      real(wp), intent(in) :: change(:)
 
-      distance = largest(c, abs(matmul(d, c%forms)))
+      distance = largest(coordinates, abs(matmul(change, coordinates%forms)))
    end function distance
 
-   !> The largest coordinate where its forms are `x`, none negative; those of a slide are one vector.
-   pure real(wp) function largest(c, x)
-      type(coordinates_t), intent(in) :: c
-      real(wp), intent(in) :: x(:)             !< (forms)
+   !> The largest coordinate where its forms are `values`, none negative; those of a slide are one vector.
+   pure real(wp) function largest(coordinates, values)
+      type(coordinates_t), intent(in) :: coordinates
+      real(wp), intent(in) :: values(:)             !< (forms)
 
-      largest = maxval([0.0_wp, x(:c%angles), hypot(x(c%angles + 1::2), x(c%angles + 2::2))])
+      largest = maxval([0.0_wp, values(:coordinates%angles), hypot(values(coordinates%angles + 1::2), &
+         values(coordinates%angles + 2::2))])
    end function largest
 
-   !> (n, forms + 1) The forms of `c` times the inverse of the matrix with the factors `f`, in whose place of the last
-   !> row stands the `tangent`, on which the other rows are 0. If `tangent` is 0 the matrix is as it is.
-   function forms_by_inverse(c, f, tangent) result(y)
-      type(coordinates_t), intent(in) :: c
-      type(factors_t), intent(in) :: f
+   !> (n, forms + 1) The forms of `coordinates` times the inverse of the matrix with the `factors`, in whose place of
+   !> the last row stands the `tangent`, on which the other rows are 0. If `tangent` is 0 the matrix is as it is.
+   function forms_by_inverse(coordinates, factors, tangent) result(y)
+      type(coordinates_t), intent(in) :: coordinates
+      type(factors_t), intent(in) :: factors
       real(wp), intent(in) :: tangent(:)       !< (n) unit vector, or 0
-      real(wp) :: y(size(c%forms, 1), size(c%forms, 2) + 1)
+      real(wp) :: y(size(coordinates%forms, 1), size(coordinates%forms, 2) + 1)
       integer :: k, info
 
       associate (last => size(y, 2))
-         y(:, :last - 1) = c%forms
+         y(:, :last - 1) = coordinates%forms
          y(:, last) = tangent
-         call getrs('T', f%n, last, f%a, f%n, f%pivots, y, f%n, info)
+         call getrs('T', factors%n, last, factors%a, factors%n, factors%pivots, y, factors%n, info)
          do k = 1, last - 1
-            y(:, k) = y(:, k) - dot_product(c%forms(:, k), tangent)*y(:, last)
+            y(:, k) = y(:, k) - dot_product(coordinates%forms(:, k), tangent)*y(:, last)
          end do
       end associate
    end function forms_by_inverse
 
-   !> Bounds (rows) of what the rows hold beyond their linear part at configuration `p`: L_k of above. The two rows of
+   !> Bounds (rows) of what the rows hold beyond their linear part at `configuration`: L_k of above. The two rows of
    !> a revolute pair have one bound, that of their vector.
-   pure function jacobian_lipschitz(s, c, p) result(bound)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      type(configuration_t), intent(in) :: p
-      real(wp) :: bound(2*size(s%pairs) + size(s%drives))
-      real(wp) :: body(size(s%link_of))
+   pure function jacobian_lipschitz(system, coordinates, configuration) result(bound)
+      type(system_t), intent(in) :: system
+      type(coordinates_t), intent(in) :: coordinates
+      type(configuration_t), intent(in) :: configuration
+      real(wp) :: bound(2*size(system%pairs) + size(system%drives))
+      real(wp) :: body(size(system%link_of))
       integer :: k, row
 
       ! The length of the body vector of each point; 0 where the link does not turn.
-      body = merge(norm2(s%offset, dim=1), 0.0_wp, c%angle_of(s%link_of) > 0)
+      body = merge(norm2(system%offset, dim=1), 0.0_wp, coordinates%angle_of(system%link_of) > 0)
       bound = 0.0_wp
-      do k = 1, size(s%pairs)
-         associate (i => s%pairs(k)%point_i, j => s%pairs(k)%point_j, slide => slide_length(s, p, k))
-            if (.not. has_guide(s%pairs(k)%kind)) then
+      do k = 1, size(system%pairs)
+         associate (i => system%pairs(k)%point_i, j => system%pairs(k)%point_j, slide => slide_length(system, &
+            configuration, k))
+            if (.not. has_guide(system%pairs(k)%kind)) then
                bound(2*k - 1:2*k) = body(i) + body(j)
-            else if (c%angle_of(s%link_of(i)) > 0) then
+            else if (coordinates%angle_of(system%link_of(i)) > 0) then
                bound(2*k - 1) = 2.0_wp*max(1.0_wp, slide) + slide
             end if
          end associate
       end do
-      do k = 1, size(s%drives)
-         row = 2*size(s%pairs) + k
-         associate (subject => s%drives(k)%subject)
-            if (any(s%drives(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
-            if (s%drives(k)%kind == drive_slide) bound(row) = bound(2*subject - 1)
+      do k = 1, size(system%drives)
+         row = 2*size(system%pairs) + k
+         associate (subject => system%drives(k)%subject)
+            if (any(system%drives(k)%kind == [drive_x, drive_y])) bound(row) = body(subject)
+            if (system%drives(k)%kind == drive_slide) bound(row) = bound(2*subject - 1)
          end associate
       end do
    end function jacobian_lipschitz
 
-   !> K at configuration `p`: no other root is within 2/K, by `distance`. `y`: the forms of `c` times the inverse of a
-   !> matrix whose first rows are those of the system; its others are linear.
-   pure real(wp) function kantorovich(s, c, y, p) result(k)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      type(configuration_t), intent(in) :: p
-      real(wp), intent(in) :: y(:, :)          !< (n, forms or more)
-      real(wp) :: bound(2*size(s%pairs) + size(s%drives))
+   !> K at `configuration`: no other root is within 2/K, by `distance`. `columns`: the forms of `coordinates` times the
+   !> inverse of a matrix whose first rows are those of the system; its others are linear.
+   pure real(wp) function kantorovich(system, coordinates, columns, configuration) result(k)
+      type(system_t), intent(in) :: system
+      type(coordinates_t), intent(in) :: coordinates
+      type(configuration_t), intent(in) :: configuration
+      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more)
+      real(wp) :: bound(2*size(system%pairs) + size(system%drives))
       integer :: m
 
-      bound = jacobian_lipschitz(s, c, p)
-      k = largest(c, [(row_sum(y(:, m)), m=1, size(c%forms, 2))])
+      bound = jacobian_lipschitz(system, coordinates, configuration)
+      k = largest(coordinates, [(row_sum(columns(:, m)), m=1, size(coordinates%forms, 2))])
 
    contains
 
-      !> The sum over the rows of |g . J^-1 e_k| L_k for one form, `x` = g . J^-1; the two of a pair as one vector.
-      pure real(wp) function row_sum(x) result(total)
-         real(wp), intent(in) :: x(:)
+      !> The sum over the rows of |g . J^-1 e_k| L_k for one form, `row` = g . J^-1; the two of a pair as one vector.
+      pure real(wp) function row_sum(row) result(total)
+         real(wp), intent(in) :: row(:)
 
-         associate (pairs => 2*size(s%pairs), each => x(:size(bound))*bound)
+         associate (pairs => 2*size(system%pairs), each => row(:size(bound))*bound)
             total = sum(hypot(each(1:pairs:2), each(2:pairs:2))) + sum(abs(each(pairs + 1:)))
          end associate
       end function row_sum
    end function kantorovich
 
-   !> D at configuration `p` in the direction `along`; `y` as of `kantorovich`.
-   pure real(wp) function change_along(s, c, y, p, along) result(change)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      real(wp), intent(in) :: y(:, :)          !< (n, forms or more)
-      type(configuration_t), intent(in) :: p
+   !> D at `configuration` in the direction `along`; `columns` as of `kantorovich`.
+   pure real(wp) function change_along(system, coordinates, columns, configuration, along) result(change)
+      type(system_t), intent(in) :: system
+      type(coordinates_t), intent(in) :: coordinates
+      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more)
+      type(configuration_t), intent(in) :: configuration
       real(wp), intent(in) :: along(:, :)      !< (3, links)
-      real(wp) :: total(size(c%forms, 2)), part(size(c%forms, 2), 2), unit(3, size(along, 2))
-      logical :: is_of_pair(size(y, 1))
+      real(wp) :: total(size(coordinates%forms, 2)), part(size(coordinates%forms, 2), 2), unit(3, size(along, 2))
+      logical :: is_of_pair(size(columns, 1))
       integer :: k, axis
 
       total = 0.0_wp
-      do k = 1, c%angles
+      do k = 1, coordinates%angles
          unit = 0.0_wp
-         where (c%angle_of == k) unit(3, :) = 1.0_wp
-         total = total + abs(matmul(mixed_derivative(), y(:, :size(total))))
+         where (coordinates%angle_of == k) unit(3, :) = 1.0_wp
+         total = total + abs(matmul(mixed_derivative(), columns(:, :size(total))))
       end do
-      do k = 1, size(c%slides)
-         associate (pair => c%slides(k))
+      do k = 1, size(coordinates%slides)
+         associate (pair => coordinates%slides(k))
             is_of_pair = .false.
             is_of_pair(2*pair - 1) = .true.
-            is_of_pair(2*size(s%pairs) + 1:2*size(s%pairs) + size(s%drives)) = &
-               s%drives%kind == drive_slide .and. s%drives%subject == pair
+            is_of_pair(2*size(system%pairs) + 1:2*size(system%pairs) + size(system%drives)) = &
+               system%drives%kind == drive_slide .and. system%drives%subject == pair
             do axis = 1, 2
                unit = 0.0_wp
-               unit(axis, s%link_of(s%pairs(pair)%point_i)) = max(1.0_wp, slide_length(s, p, pair))
+               unit(axis, system%link_of(system%pairs(pair)%point_i)) = max(1.0_wp, &
+                  slide_length(system, configuration, pair))
                ! The link may have other slides.
-               part(:, axis) = matmul(merge(mixed_derivative(), 0.0_wp, is_of_pair), y(:, :size(total)))
+               part(:, axis) = matmul(merge(mixed_derivative(), 0.0_wp, is_of_pair), columns(:, :size(total)))
             end do
          end associate
          total = total + hypot(part(:, 1), part(:, 2))
       end do
-      change = largest(c, total)
+      change = largest(coordinates, total)
 
    contains
 
       !> (n) The rows' second derivative by `along` and by `unit`.
       pure function mixed_derivative() result(rows)
-         real(wp) :: rows(size(y, 1)), less(size(y, 1))
+         real(wp) :: rows(size(columns, 1)), less(size(columns, 1))
 
-         call remainder(s, p, along + unit, rows)
-         call remainder(s, p, along - unit, less)
+         call remainder(system, configuration, along + unit, rows)
+         call remainder(system, configuration, along - unit, less)
          rows = 0.25_wp*(rows - less)
       end function mixed_derivative
    end function change_along

@@ -52,17 +52,18 @@ module bilinear
 
 contains
 
-   !> How far (x, y) is from infinity: 0 there, about 1 where no coordinate is large.
-   pure real(dp) function finiteness(b, x, y)
-      type(bilinear_t), intent(in) :: b
-      complex(dp), intent(in) :: x(0:), y(0:)
+   !> How far (`one`, `other`) is from infinity: 0 there, about 1 where no coordinate is large.
+   pure real(dp) function finiteness(bilinear, one, other)
+      type(bilinear_t), intent(in) :: bilinear
+      complex(dp), intent(in) :: one(0:), other(0:)
 
-      finiteness = min(abs(sum(b%plane*x))/maxval(abs(x)), abs(sum(conjg(b%plane)*y))/maxval(abs(y)))
+      finiteness = min(abs(sum(bilinear%plane*one))/maxval(abs(one)), &
+         abs(sum(conjg(bilinear%plane)*other))/maxval(abs(other)))
    end function finiteness
 
-   !> The solutions of `b` with p = 1. `moves`: every x is part of one.
-   subroutine solve_quadratic(b, ends, moves)
-      type(bilinear_t), intent(in) :: b
+   !> The solutions of `bilinear` with p = 1. `moves`: every x is part of one.
+   subroutine solve_quadratic(bilinear, ends, moves)
+      type(bilinear_t), intent(in) :: bilinear
       type(ends_t), intent(out) :: ends
       logical, intent(out) :: moves
       complex(dp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
@@ -73,7 +74,7 @@ contains
       ends%paths = 2
       allocate (ends%list(0))
       ! The two rows x^T C are parallel where their determinant, a quadratic form in x, is zero.
-      associate (c => b%c)
+      associate (c => bilinear%c)
          q(0) = c(0, 0, 1)*c(0, 1, 2) - c(0, 1, 1)*c(0, 0, 2)
          q(1) = c(0, 0, 1)*c(1, 1, 2) + c(1, 0, 1)*c(0, 1, 2) - c(0, 1, 1)*c(1, 0, 2) - c(1, 1, 1)*c(0, 0, 2)
          q(2) = c(1, 0, 1)*c(1, 1, 2) - c(1, 1, 1)*c(1, 0, 2)
@@ -92,14 +93,14 @@ contains
          if (k == 2) x = [-q(1) - root, 2.0_dp*q(0)]
          if (e%is_singular .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_dp*q(0)]
          if (e%is_singular .and. abs(q(2)) >= abs(q(0))) x = [2.0_dp*q(2), -q(1)]
-         r(:, 1) = x(0)*b%c(0, :, 1) + x(1)*b%c(1, :, 1)
-         r(:, 2) = x(0)*b%c(0, :, 2) + x(1)*b%c(1, :, 2)
+         r(:, 1) = x(0)*bilinear%c(0, :, 1) + x(1)*bilinear%c(1, :, 1)
+         r(:, 2) = x(0)*bilinear%c(0, :, 2) + x(1)*bilinear%c(1, :, 2)
          if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
          y = [r(1, 1), -r(0, 1)]
          if (sum(abs(y)) <= zero_level*sum(abs(x))) then
             moves = .true.
             ends%failed = ends%failed + 1
-         else if (finiteness(b, x, y) > infinity_level) then
+         else if (finiteness(bilinear, x, y) > infinity_level) then
             e%x = [x]
             e%y = [y]
             ends%list = [ends%list, e]

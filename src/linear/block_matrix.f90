@@ -47,85 +47,86 @@ contains
    end function is_sparse_better
 
    !> Numbers that the matrix takes.
-   elemental integer function entries_of(s)
-      type(shape_t), intent(in) :: s
+   elemental integer function entries_of(shape)
+      type(shape_t), intent(in) :: shape
 
-      entries_of = s%entries
-      if (s%pattern == 0) entries_of = s%rows*s%n
+      entries_of = shape%entries
+      if (shape%pattern == 0) entries_of = shape%rows*shape%n
    end function entries_of
 
    !> Numbers that `work` takes below.
-   elemental integer function work_length(s)
-      type(shape_t), intent(in) :: s
+   elemental integer function work_length(shape)
+      type(shape_t), intent(in) :: shape
 
-      work_length = merge(4*s%n, s%n*(panel + 4) + s%rows, s%rows == s%n)
+      work_length = merge(4*shape%n, shape%n*(panel + 4) + shape%rows, shape%rows == shape%n)
    end function work_length
 
-   !> Solves `a` x = `b` (rows); the first n of `b` become x, `a` its factors where it is dense. `info` > 0: exactly
-   !> singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. A sparse matrix is one of the
-   !> `patterns`; its factors are kept in `sparse`, until `release`.
-   subroutine solve_first(s, a, pivots, work, b, info, patterns, sparse)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(inout) :: a(*), work(*), b(*)
+   !> Solves `a` x = `right` (rows); the first n of `right` become x, `a` its factors where it is dense. `info` > 0:
+   !> exactly singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. A sparse matrix is one
+   !> of the `patterns`; its factors are kept in `sparse`, until `release`.
+   subroutine solve_first(shape, a, pivots, work, right, info, patterns, sparse)
+      type(shape_t), intent(in) :: shape
+      real(wp), intent(inout) :: a(*), work(*), right(*)
       integer, intent(out) :: pivots(*), info
       type(pattern_t), intent(in), optional :: patterns(:)
       type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: i
 
       info = 0
-      if (s%pattern == 0 .and. s%rows == s%n .and. s%n > 1) then
-         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
-      else if (s%pattern > 0) then
-         call factor(patterns(s%pattern), a, sparse, info)
-         if (info == 0) call solve(sparse, b, .false.)
-      else if (s%rows > s%n .and. s%n > 0) then
-         call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
-         do i = s%n, 1, -1
+      if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 1) then
+         call gesv(shape%n, 1, a, shape%n, pivots, right, shape%n, info)
+      else if (shape%pattern > 0) then
+         call factor(patterns(shape%pattern), a, sparse, info)
+         if (info == 0) call solve(sparse, right, .false.)
+      else if (shape%rows > shape%n .and. shape%n > 0) then
+         call geqrf(shape%rows, shape%n, a, shape%rows, work, work(shape%n + 1), shape%n*panel, info)
+         do i = shape%n, 1, -1
             pivots(i) = i
-            if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
+            if (abs(a((i - 1)*shape%rows + i)) <= 0.0_wp) info = i
          end do
-         if (info == 0) call solve_again(s, a, pivots, work, b)
-      else if (s%n == 1) then
+         if (info == 0) call solve_again(shape, a, pivots, work, right)
+      else if (shape%n == 1) then
          ! One equation needs no DGESV, which takes long.
          if (abs(a(1)) <= 0.0_wp) info = 1
-         if (info == 0) b(1) = b(1)/a(1)
+         if (info == 0) right(1) = right(1)/a(1)
          pivots(1) = 1
       end if
    end subroutine solve_first
 
    !> Solves for another right-hand side, from the factors.
-   subroutine solve_again(s, a, pivots, work, b, sparse)
-      type(shape_t), intent(in) :: s
+   subroutine solve_again(shape, a, pivots, work, right, sparse)
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
-      real(wp), intent(inout) :: work(*), b(*)
+      real(wp), intent(inout) :: work(*), right(*)
       type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: info
 
-      if (s%n == 2 .and. s%rows == 2) then
+      if (shape%n == 2 .and. shape%rows == 2) then
          ! DGETRS in the order of its operations: the call itself takes many times as long.
-         if (pivots(1) == 2) b(:2) = [b(2), b(1)]
-         b(2) = b(2) - b(1)*a(2)
+         if (pivots(1) == 2) right(:2) = [right(2), right(1)]
+         right(2) = right(2) - right(1)*a(2)
          ! DTRSM leaves a zero as it is, with its sign.
-         if (abs(b(2)) > 0.0_wp) b(2) = b(2)/a(4)
-         b(1) = b(1) - b(2)*a(3)
-         if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
-      else if (s%pattern > 0) then
-         call solve(sparse, b, .false.)
-      else if (s%rows > s%n .and. s%n > 0) then
-         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
-         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
-      else if (s%n == 1) then
-         b(1) = b(1)/a(1)
-      else if (s%n > 1) then
-         call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
+         if (abs(right(2)) > 0.0_wp) right(2) = right(2)/a(4)
+         right(1) = right(1) - right(2)*a(3)
+         if (abs(right(1)) > 0.0_wp) right(1) = right(1)/a(1)
+      else if (shape%pattern > 0) then
+         call solve(sparse, right, .false.)
+      else if (shape%rows > shape%n .and. shape%n > 0) then
+         call ormqr('L', 'T', shape%rows, 1, shape%n, a, shape%rows, work, right, shape%rows, work(shape%n + 1), &
+            shape%n*panel, info)
+         call trtrs('U', 'N', 'N', shape%n, 1, a, shape%rows, right, shape%rows, info)
+      else if (shape%n == 1) then
+         right(1) = right(1)/a(1)
+      else if (shape%n > 1) then
+         call getrs('N', shape%n, 1, a, shape%n, pivots, right, shape%n, info)
       end if
    end subroutine solve_again
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
    !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
-   subroutine pivot_range(s, a, pivots, least, largest, sign_of, sparse)
-      type(shape_t), intent(in) :: s
+   subroutine pivot_range(shape, a, pivots, least, largest, sign_of, sparse)
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(out) :: least, largest
@@ -135,27 +136,27 @@ contains
       integer :: i
 
       sign_of = 1
-      if (s%pattern > 0) then
+      if (shape%pattern > 0) then
          least = 0.0_wp
-         largest = maxval(abs(a(:s%entries)))
+         largest = maxval(abs(a(:shape%entries)))
          sign_of = determinant_sign(sparse)
          return
       end if
       least = huge(least)
       largest = 0.0_wp
-      do i = 1, s%n
-         pivot = a(i + (i - 1)*s%rows)
+      do i = 1, shape%n
+         pivot = a(i + (i - 1)*shape%rows)
          least = min(least, abs(pivot))
          largest = max(largest, abs(pivot))
          if ((pivot < 0.0_wp) .neqv. (pivots(i) /= i)) sign_of = -sign_of
       end do
-      if (s%rows > s%n) sign_of = 1
+      if (shape%rows > shape%n) sign_of = 1
    end subroutine pivot_range
 
    !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2); `iwork` (n).
    !> `work` keeps what the next solve_again needs.
-   real(wp) function inverse_norm(s, a, pivots, work, iwork, sparse) result(norm)
-      type(shape_t), intent(in) :: s
+   real(wp) function inverse_norm(shape, a, pivots, work, iwork, sparse) result(norm)
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
@@ -163,10 +164,10 @@ contains
       type(sparse_factors_t), intent(inout), optional :: sparse
       integer :: asks, state(3), info
 
-      if (s%rows == 1) then
+      if (shape%rows == 1) then
          norm = 1.0_wp/abs(a(1))
          return
-      else if (s%rows == 2 .and. s%n == 2) then
+      else if (shape%rows == 2 .and. shape%n == 2) then
          ! By l = a(2) and u = a(1), a(3), a(4): columns are swapped by the pivots, row sums are not.
          norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
          return
@@ -175,15 +176,15 @@ contains
       norm = 0.0_wp
       state = 0
       do
-         associate (x => work(2*s%n + 1:3*s%n))
-            call lacn2(s%n, work(s%n + 1:2*s%n), x, iwork, norm, asks, state)
+         associate (x => work(2*shape%n + 1:3*shape%n))
+            call lacn2(shape%n, work(shape%n + 1:2*shape%n), x, iwork, norm, asks, state)
             if (asks == 0) exit
             ! DLACN2 estimates the largest column sum: that of the transposed inverse.
             associate (side => merge('T', 'N', asks == 1))
-               if (s%rows > s%n) then
-                  call trtrs('U', side, 'N', s%n, 1, a, s%rows, x, s%n, info)
-               else if (s%pattern == 0) then
-                  call getrs(side, s%n, 1, a, s%n, pivots, x, s%n, info)
+               if (shape%rows > shape%n) then
+                  call trtrs('U', side, 'N', shape%n, 1, a, shape%rows, x, shape%n, info)
+               else if (shape%pattern == 0) then
+                  call getrs(side, shape%n, 1, a, shape%n, pivots, x, shape%n, info)
                else
                   call solve(sparse, x, transposed=asks == 1)
                end if
@@ -193,36 +194,36 @@ contains
       if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
-   !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
-   subroutine spread_by_inverse(s, a, pivots, work, h, spread, sparse)
-      type(shape_t), intent(in) :: s
+   !> |A^-1| bounds for the vector `bounds` (rows), as `spread` (n), from the factors, column by column.
+   subroutine spread_by_inverse(shape, a, pivots, work, bounds, spread, sparse)
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
-      real(wp), intent(in) :: h(:)
+      real(wp), intent(in) :: bounds(:)
       real(wp), intent(out) :: spread(:)
       type(sparse_factors_t), intent(inout), optional :: sparse
-      real(wp) :: column(s%rows)
+      real(wp) :: column(shape%rows)
       integer :: j
 
       spread = 0.0_wp
-      do j = 1, s%rows
+      do j = 1, shape%rows
          column = 0.0_wp
-         column(j) = h(j)
-         call solve_again(s, a, pivots, work, column, sparse)
-         spread = spread + abs(column(:s%n))
+         column(j) = bounds(j)
+         call solve_again(shape, a, pivots, work, column, sparse)
+         spread = spread + abs(column(:shape%n))
       end do
    end subroutine spread_by_inverse
 
-   !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
+   !> The matrix of `shape` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
    !> unless it is better factored itself.
-   pure subroutine stay_near(s, a, pivots, change, near)
-      type(shape_t), intent(in) :: s
+   pure subroutine stay_near(shape, a, pivots, change, near)
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*), change
       integer, intent(in) :: pivots(*)
       type(nearby_t), intent(inout) :: near
 
-      if (s%n /= 2 .or. s%rows /= 2) return
+      if (shape%n /= 2 .or. shape%rows /= 2) return
       near%factors = a(:4)
       near%inverse = [a(4) + a(2)*a(3), -a(1)*a(2), -a(3), a(1)]/(a(1)*a(4))
       if (pivots(1) == 2) near%inverse = near%inverse([3, 4, 1, 2])
@@ -232,31 +233,31 @@ contains
       if (.not. near%distance <= max_distance) near%distance = 0.0_wp
    end subroutine stay_near
 
-   !> Solves `near` x = `b` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy and
-   !> Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two, to
-   !> what a factorization of its own would leave.
-   pure subroutine solve_nearby(near, b)
+   !> Solves `near` x = `right` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy
+   !> and Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two,
+   !> to what a factorization of its own would leave.
+   pure subroutine solve_nearby(near, right)
       type(nearby_t), intent(in) :: near
-      real(wp), intent(inout) :: b(2)
+      real(wp), intent(inout) :: right(2)
       real(wp) :: x(2), error
 
-      x = times(near%inverse, b)
+      x = times(near%inverse, right)
       error = near%distance
       do while (error > lost)
-         x = x + times(near%inverse, b - times(near%a, x))
+         x = x + times(near%inverse, right - times(near%a, x))
          error = error*near%distance
       end do
-      b = x
+      right = x
 
    contains
 
-      !> `a` (4, by columns) times `x`.
-      pure function times(a, x) result(y)
-         real(wp), intent(in) :: a(4), x(2)
+      !> `a` (4, by columns) times `vector`.
+      pure function times(a, vector) result(y)
+         real(wp), intent(in) :: a(4), vector(2)
          real(wp) :: y(2)
 
-         y(1) = a(1)*x(1) + a(3)*x(2)
-         y(2) = a(2)*x(1) + a(4)*x(2)
+         y(1) = a(1)*vector(1) + a(3)*vector(2)
+         y(2) = a(2)*vector(1) + a(4)*vector(2)
       end function times
    end subroutine solve_nearby
 end module block_matrix

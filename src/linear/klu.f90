@@ -85,10 +85,10 @@ module klu
          type(c_ptr), value :: ax, symbolic
          type(common_t), intent(inout) :: common
       end function klu_factor
-      !> Solves A x = b in place.
-      integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
+      !> Solves A x = right in place.
+      integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, right, common) bind(c)
          import :: c_int, c_ptr, common_t
-         type(c_ptr), value :: symbolic, numeric, b
+         type(c_ptr), value :: symbolic, numeric, right
          integer(c_int), value :: ldim, nrhs
          type(common_t), intent(inout) :: common
       end function klu_solve
@@ -106,21 +106,21 @@ module klu
 
 contains
 
-   !> Finds the order of elimination of `p`: the columns in that of COLAMD, so that the factors fill up little.
-   subroutine order_columns(p)
-      type(pattern_t), intent(inout) :: p
+   !> Finds the order of elimination of `pattern`: the columns in that of COLAMD, so that the factors fill up little.
+   subroutine order_columns(pattern)
+      type(pattern_t), intent(inout) :: pattern
       type(common_t) :: common
       type(c_ptr) :: symbolic
       type(symbolic_t), pointer :: found
       integer(c_int), pointer :: q(:)
       integer(c_int) :: n, done
 
-      n = size(p%first, kind=c_int) - 1_c_int
+      n = size(pattern%first, kind=c_int) - 1_c_int
       call set_common(common)
-      symbolic = klu_analyze(n, p%first, p%row, common)
+      symbolic = klu_analyze(n, pattern%first, pattern%row, common)
       call c_f_pointer(symbolic, found)
       call c_f_pointer(found%q, q, [n])
-      p%order = q
+      pattern%order = q
       done = klu_free_symbolic(symbolic, common)
    end subroutine order_columns
 
@@ -136,81 +136,81 @@ contains
       common%btf = 0
    end subroutine set_common
 
-   !> Factors the matrix `a` (entries of the pattern `p`, column by column). `info` > 0: exactly singular, no factors.
+   !> Factors the matrix `a` (entries of the `pattern`, column by column). `info` > 0: exactly singular, no factors.
    !> Rejected: to take the pivots of the matrix before while they serve. It halves the time of large matrices, but
    !> digits then depend on the way there.
-   subroutine factor(p, a, f, info)
-      type(pattern_t), intent(in) :: p
+   subroutine factor(pattern, a, factors, info)
+      type(pattern_t), intent(in) :: pattern
       real(wp), intent(in), target :: a(*)
-      type(sparse_factors_t), intent(inout), target :: f
+      type(sparse_factors_t), intent(inout), target :: factors
       integer, intent(out) :: info
       integer(c_int) :: n
 
-      call release(f)
-      call set_common(f%common)
-      n = size(p%order, kind=c_int)
-      f%order = [p%order, 0_c_int, n]
-      f%symbolic%n = n
-      f%symbolic%maxblock = n
-      f%symbolic%nz = size(p%row, kind=c_int)
-      f%symbolic%lnz_of = c_loc(unknown)
+      call release(factors)
+      call set_common(factors%common)
+      n = size(pattern%order, kind=c_int)
+      factors%order = [pattern%order, 0_c_int, n]
+      factors%symbolic%n = n
+      factors%symbolic%maxblock = n
+      factors%symbolic%nz = size(pattern%row, kind=c_int)
+      factors%symbolic%lnz_of = c_loc(unknown)
       ! Of one block nothing is off its diagonal.
-      f%symbolic%p = c_loc(f%order)
-      f%symbolic%q = f%symbolic%p
-      f%symbolic%r = c_loc(f%order(n + 1))
-      f%numeric = klu_factor(p%first, p%row, c_loc(a), c_loc(f%symbolic), f%common)
-      info = merge(0, 1, c_associated(f%numeric))
+      factors%symbolic%p = c_loc(factors%order)
+      factors%symbolic%q = factors%symbolic%p
+      factors%symbolic%r = c_loc(factors%order(n + 1))
+      factors%numeric = klu_factor(pattern%first, pattern%row, c_loc(a), c_loc(factors%symbolic), factors%common)
+      info = merge(0, 1, c_associated(factors%numeric))
    end subroutine factor
 
    !> Frees the factors, if there are any.
-   subroutine release(f)
-      type(sparse_factors_t), intent(inout) :: f
+   subroutine release(factors)
+      type(sparse_factors_t), intent(inout) :: factors
       integer(c_int) :: done
 
-      if (c_associated(f%numeric)) done = klu_free_numeric(f%numeric, f%common)
-      f%numeric = c_null_ptr
+      if (c_associated(factors%numeric)) done = klu_free_numeric(factors%numeric, factors%common)
+      factors%numeric = c_null_ptr
    end subroutine release
 
-   !> `b` (n): the right-hand side, then the solution, from the factors; with the matrix `transposed` or not.
-   subroutine solve(f, b, transposed)
-      type(sparse_factors_t), intent(inout), target :: f
-      real(wp), intent(inout), target :: b(*)
+   !> `right` (n): the right-hand side, then the solution, from the factors; with the matrix `transposed` or not.
+   subroutine solve(factors, right, transposed)
+      type(sparse_factors_t), intent(inout), target :: factors
+      real(wp), intent(inout), target :: right(*)
       logical, intent(in) :: transposed
       integer(c_int) :: done
 
-      associate (symbolic => c_loc(f%symbolic), n => f%symbolic%n)
-         if (transposed) done = klu_tsolve(symbolic, f%numeric, n, 1_c_int, c_loc(b), f%common)
-         if (.not. transposed) done = klu_solve(symbolic, f%numeric, n, 1_c_int, c_loc(b), f%common)
+      associate (symbolic => c_loc(factors%symbolic), n => factors%symbolic%n)
+         if (transposed) done = klu_tsolve(symbolic, factors%numeric, n, 1_c_int, c_loc(right), factors%common)
+         if (.not. transposed) done = klu_solve(symbolic, factors%numeric, n, 1_c_int, c_loc(right), factors%common)
       end associate
    end subroutine solve
 
    !> Finds the sign of the determinant, from the factors.
-   integer function determinant_sign(f) result(sign_of)
-      type(sparse_factors_t), intent(in) :: f
+   integer function determinant_sign(numbers) result(sign_of)
+      type(sparse_factors_t), intent(in) :: numbers
       type(numeric_t), pointer :: factors
       integer(c_int), pointer :: pivot_row(:)
       real(c_double), pointer :: pivots(:)
 
-      call c_f_pointer(f%numeric, factors)
-      call c_f_pointer(factors%pnum, pivot_row, [f%symbolic%n])
-      call c_f_pointer(factors%udiag, pivots, [f%symbolic%n])
-      sign_of = sign_of_permutation(pivot_row)*sign_of_permutation(f%order(:f%symbolic%n))
+      call c_f_pointer(numbers%numeric, factors)
+      call c_f_pointer(factors%pnum, pivot_row, [numbers%symbolic%n])
+      call c_f_pointer(factors%udiag, pivots, [numbers%symbolic%n])
+      sign_of = sign_of_permutation(pivot_row)*sign_of_permutation(numbers%order(:numbers%symbolic%n))
       if (mod(count(pivots < 0.0_c_double), 2) == 1) sign_of = -sign_of
    end function determinant_sign
 
-   !> The sign of the permutation `p` of 0 to n - 1: a cycle of length c is c - 1 exchanges.
-   pure integer function sign_of_permutation(p) result(sign_of)
-      integer(c_int), intent(in) :: p(:)
-      logical :: is_seen(size(p))
+   !> The sign of the `permutation` of 0 to n - 1: a cycle of length c is c - 1 exchanges.
+   pure integer function sign_of_permutation(permutation) result(sign_of)
+      integer(c_int), intent(in) :: permutation(:)
+      logical :: is_seen(size(permutation))
       integer :: i, next
 
       sign_of = 1
       is_seen = .false.
-      do i = 1, size(p)
-         next = p(i) + 1
+      do i = 1, size(permutation)
+         next = permutation(i) + 1
          do while (next /= i .and. .not. is_seen(i))
             is_seen(next) = .true.
-            next = p(next) + 1
+            next = permutation(next) + 1
             sign_of = -sign_of
          end do
       end do

@@ -26,22 +26,22 @@ contains
       allocate (f%pivots(n), source=0)
    end function new_factors
 
-   !> Factors `f%a` in place. `info` > 0: exactly singular, the pivot of that number is zero.
-   subroutine factor(f, info)
-      type(factors_t), intent(inout) :: f
+   !> Factors `factors%a` in place. `info` > 0: exactly singular, the pivot of that number is zero.
+   subroutine factor(factors, info)
+      type(factors_t), intent(inout) :: factors
       integer, intent(out) :: info
 
       info = 0
-      if (f%n > 0) call getrf(f%n, f%n, f%a, f%n, f%pivots, info)
+      if (factors%n > 0) call getrf(factors%n, factors%n, factors%a, factors%n, factors%pivots, info)
    end subroutine factor
 
-   !> Replaces the right-hand side `b` (n) by the solution, from the factors.
-   subroutine solve(f, b)
-      type(factors_t), intent(in) :: f
-      real(wp), intent(inout) :: b(:)
+   !> Replaces the right-hand side `right` (n) by the solution, from the factors.
+   subroutine solve(factors, right)
+      type(factors_t), intent(in) :: factors
+      real(wp), intent(inout) :: right(:)
       integer :: info
 
-      if (f%n == 0) return
-      call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
+      if (factors%n == 0) return
+      call getrs('N', factors%n, 1, factors%a, factors%n, factors%pivots, right, factors%n, info)
    end subroutine solve
 end module linear_solver

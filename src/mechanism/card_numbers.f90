@@ -37,45 +37,47 @@ module card_numbers
 
 contains
 
-   !> Whether number `n` of `m` is blank on its card: it is the one of the drawing.
-   pure logical function is_as_drawn(m, n)
+   !> Whether `number` of `m` is blank on its card: it is the one of the drawing.
+   pure logical function is_as_drawn(m, number)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
 
       is_as_drawn = .false.
-      if (n%kind == number_pair) is_as_drawn = m%pairs(n%subject)%drawn(n%place)
-      if (n%kind == number_drive .and. n%term == 0 .and. n%place == 1) is_as_drawn = m%drives(n%subject)%drawn
+      if (number%kind == number_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)
+      if (number%kind == number_drive .and. number%term == 0 .and. number%place == 1) is_as_drawn = &
+         m%drives(number%subject)%drawn
    end function is_as_drawn
 
-   !> Whether number `n` of `m` can have a tolerance. These have none: the estimates of moving links; the axes of a
+   !> Whether `number` of `m` can have a tolerance. These have none: the estimates of moving links; the axes of a
    !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
-   pure logical function takes_tolerance(m, n)
+   pure logical function takes_tolerance(m, number)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
 
       takes_tolerance = .false.
-      select case (n%kind)
+      select case (number%kind)
       case (number_link)
-         if (m%links(n%subject)%ground) takes_tolerance = .not. any(m%points%link == n%subject .and. m%points%drawn)
+         if (m%links(number%subject)%ground) takes_tolerance = .not. any(m%points%link == &
+            number%subject .and. m%points%drawn)
       case (number_point:number_pair, number_length, number_hole)
          takes_tolerance = .true.
       case (number_drive)
          takes_tolerance = .true.
-         if (n%term == 0) return
-         associate (kind => term_kinds(m%drives(n%subject)%terms(n%term)%kind))
-            takes_tolerance = kind%has_rows .or. n%place <= kind%inexact
+         if (number%term == 0) return
+         associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
+            takes_tolerance = kind%has_rows .or. number%place <= kind%inexact
          end associate
       end select
    end function takes_tolerance
 
-   !> The name of number `n` of `m` in tables and messages: its card, what that defines, and what the card calls it.
-   pure function number_name(m, n) result(name)
+   !> The name of `number` of `m` in tables and messages: its card, what that defines, and what the card calls it.
+   pure function number_name(m, number) result(name)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       character(:), allocatable :: name
 
-      associate (k => n%subject)
-         select case (n%kind)
+      associate (k => number%subject)
+         select case (number%kind)
          case (number_link)
             name = trim(merge('GROUND', 'LINK  ', m%links(k)%ground))//' '//trim(m%links(k)%name)
          case (number_point)
@@ -86,7 +88,7 @@ contains
             name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
          case (number_hole)
             name = trim(m%points(k)%name)//' IN '//trim(m%links(m%points(k)%link)%name)//' ' &
-               //trim(number_words(n%place, number_joint))
+               //trim(number_words(number%place, number_joint))
             return
          case (number_length)
             associate (one => m%lengths(k))
@@ -95,66 +97,66 @@ contains
             end associate
             return
          case (number_time)
-            name = 'TIME T'//whole(n%place - 1)
-            if (n%place == 2 .and. m%turns > 0.0_wp) name = 'TIME TURNS'
+            name = 'TIME T'//whole(number%place - 1)
+            if (number%place == 2 .and. m%turns > 0.0_wp) name = 'TIME TURNS'
             return
          case default
             name = trim(drive_name(m, m%drives(k)))
          end select
-         if (n%term == 0) then
-            name = name//' '//trim(number_words(n%place, n%kind))
+         if (number%term == 0) then
+            name = name//' '//trim(number_words(number%place, number%kind))
             return
          end if
       end associate
       ! The word and the number of the term, and what its card calls the number.
-      associate (kind => term_kinds(m%drives(n%subject)%terms(n%term)%kind))
-         name = name//' '//trim(kind%word)//' '//whole(n%term)//' '
+      associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
+         name = name//' '//trim(kind%word)//' '//whole(number%term)//' '
          if (kind%has_rows) then
-            name = name//trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
+            name = name//trim(merge('TIME', 'ROW ', number%kind == number_knot))//' '//whole(number%place)
          else
-            name = name//trim(kind%numbers(n%place))
+            name = name//trim(kind%numbers(number%place))
          end if
       end associate
    end function number_name
 
-   !> The unit of number `n` of `m`.
-   function number_unit(m, n) result(unit)
+   !> The unit of `number` of `m`.
+   function number_unit(m, number) result(unit)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       type(unit_t) :: unit
 
-      select case (n%kind)
+      select case (number%kind)
       case (number_link)
-         unit = unit_of(n%place == 3)
+         unit = unit_of(number%place == 3)
       case (number_point, number_joint, number_length, number_hole)
          unit = unit_of(.false.)
       case (number_pair)
-         unit = unit_of(n%place /= 2)
+         unit = unit_of(number%place /= 2)
       case (number_drive)
-         unit = unit_of(.not. is_length(m%drives(n%subject)))
-         if (n%term == 0) then
-            if (n%place > 1) call divide(real(n%place - 1, wp), merge('**2', '   ', n%place == 3))
-            if (n%place == 2 .and. m%drives(n%subject)%turns) &
+         unit = unit_of(.not. is_length(m%drives(number%subject)))
+         if (number%term == 0) then
+            if (number%place > 1) call divide(real(number%place - 1, wp), merge('**2', '   ', number%place == 3))
+            if (number%place == 2 .and. m%drives(number%subject)%turns) &
                unit = unit_t(2.0_wp*pi/minute_in(m%time_unit), unit%powers, turns_a_minute)
             return
          end if
-         associate (term => m%drives(n%subject)%terms(n%term))
+         associate (term => m%drives(number%subject)%terms(number%term))
             select case (term%kind)
             case (term_harmonic)
-               if (n%place > 1) unit = unit_of(.true.)
-               if (n%place == 2) call divide(1.0_wp, '')
+               if (number%place > 1) unit = unit_of(.true.)
+               if (number%place == 2) call divide(1.0_wp, '')
             case (term_power)
-               if (n%place == 1) call divide(term%r(2), '**R2')
-               if (n%place == 2) unit = unit_t(powers=[0.0_wp, 0.0_wp])
+               if (number%place == 1) call divide(term%r(2), '**R2')
+               if (number%place == 2) unit = unit_t(powers=[0.0_wp, 0.0_wp])
             case (term_table)
                ! A row has the unit of the drive.
             case default
-               if (n%place < 3) unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
+               if (number%place < 3) unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
             end select
          end associate
       case default
          unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
-         if (n%place == 2 .and. m%turns > 0.0_wp) unit = unit_t(powers=0.0_wp, name='')
+         if (number%place == 2 .and. m%turns > 0.0_wp) unit = unit_t(powers=0.0_wp, name='')
       end select
 
    contains
@@ -167,38 +169,38 @@ contains
          if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
       end function unit_of
 
-      !> Divides `unit` by the power `p` of the unit of time; `end_of_name`: the exponent, as text.
-      subroutine divide(p, end_of_name)
-         real(wp), intent(in) :: p
+      !> Divides `unit` by the `power` of the unit of time; `end_of_name`: the exponent, as text.
+      subroutine divide(power, end_of_name)
+         real(wp), intent(in) :: power
          character(*), intent(in) :: end_of_name
 
-         unit%powers(2) = -p
+         unit%powers(2) = -power
          unit%name = trim(unit%name)//'/'//trim(m%time_unit)//end_of_name
       end subroutine divide
    end function number_unit
 
-   !> The value of number `n` of `m`, in the units of `mechanism_t`. A JOINT card's is a place in the drawing.
-   real(wp) function number_value(m, n) result(value)
+   !> The value of `number` of `m`, in the units of `mechanism_t`. A JOINT card's is a place in the drawing.
+   real(wp) function number_value(m, number) result(value)
       type(mechanism_t), intent(in), target :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       real(wp), pointer :: x
       real(wp) :: place(2)
 
-      x => number_in(m, n)
+      x => number_in(m, number)
       value = x
-      if (all(n%kind /= [number_joint, number_hole])) return
-      place = point_of(m%links(m%points(n%subject)%link)%position, m%points(n%subject)%offset)
-      value = place(n%place)
+      if (all(number%kind /= [number_joint, number_hole])) return
+      place = point_of(m%links(m%points(number%subject)%link)%position, m%points(number%subject)%offset)
+      value = place(number%place)
    end function number_value
 
-   !> Where number `n` is in `m`; of a JOINT card the offset of its first point.
-   function number_in(m, n) result(x)
+   !> Where `number` is in `m`; of a JOINT card the offset of its first point.
+   function number_in(m, number) result(x)
       type(mechanism_t), intent(in), target :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       real(wp), pointer :: x
 
-      associate (k => n%subject, i => n%place)
-         select case (n%kind)
+      associate (k => number%subject, i => number%place)
+         select case (number%kind)
          case (number_link)
             x => m%links(k)%position(i)
          case (number_point, number_joint, number_hole)
@@ -210,61 +212,61 @@ contains
          case (number_length)
             x => m%lengths(k)%length
          case (number_knot)
-            x => m%drives(k)%terms(n%term)%table%x(i)
+            x => m%drives(k)%terms(number%term)%table%x(i)
          case (number_time)
             x => m%t0
             if (i == 2) x => m%t1
             if (i == 2 .and. m%turns > 0.0_wp) x => m%turns
          case default
-            if (n%term == 0) then
+            if (number%term == 0) then
                x => m%drives(k)%polynomial(i)
-            else if (term_kinds(m%drives(k)%terms(n%term)%kind)%has_rows) then
-               x => m%drives(k)%terms(n%term)%table%y(i)
+            else if (term_kinds(m%drives(k)%terms(number%term)%kind)%has_rows) then
+               x => m%drives(k)%terms(number%term)%table%y(i)
             else
-               x => m%drives(k)%terms(n%term)%r(i)
+               x => m%drives(k)%terms(number%term)%r(i)
             end if
          end select
       end associate
    end function number_in
 
-   !> Gives number `n` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
+   !> Gives `number` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
    !> the links of `m` are where the cards put them. Points follow a length; numbers as drawn follow neither a length
    !> nor the hole of one link.
-   subroutine set_number(m, n, value)
+   subroutine set_number(m, number, value)
       type(mechanism_t), intent(inout) :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       real(wp), intent(in) :: value
       type(mechanism_t), allocatable :: before
 
       if (allocated(m%lengths)) before = m
-      call put_number(m, n, value)
-      if (n%kind == number_length) call put_lengths(m)
-      if (any(n%kind == [number_drive, number_knot])) call put_table(m%drives(n%subject), n%term)
-      if (n%kind > number_pair) return
+      call put_number(m, number, value)
+      if (number%kind == number_length) call put_lengths(m)
+      if (any(number%kind == [number_drive, number_knot])) call put_table(m%drives(number%subject), number%term)
+      if (number%kind > number_pair) return
       call follow_drawing(m, before)
       ! It may have been as drawn itself.
-      if (n%kind == number_pair) call put_number(m, n, value)
+      if (number%kind == number_pair) call put_number(m, number, value)
    end subroutine set_number
 
-   !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
+   !> Gives `number` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
    !> points, or one of them, with all points of its hole. Of a table, `put_table` has to follow once all its numbers
    !> are put.
-   subroutine put_number(m, n, value)
+   subroutine put_number(m, number, value)
       type(mechanism_t), intent(inout), target :: m
-      type(card_number_t), intent(in) :: n
+      type(card_number_t), intent(in) :: number
       real(wp), intent(in) :: value
       real(wp), pointer :: x
       real(wp) :: way(2)
       integer :: i, j
 
-      if (all(n%kind /= [number_joint, number_hole])) then
-         x => number_in(m, n)
+      if (all(number%kind /= [number_joint, number_hole])) then
+         x => number_in(m, number)
          x = value
          return
       end if
       way = 0.0_wp
-      way(n%place) = value - number_value(m, n)
-      do i = n%subject, n%subject + merge(1, 0, n%kind == number_joint)
+      way(number%place) = value - number_value(m, number)
+      do i = number%subject, number%subject + merge(1, 0, number%kind == number_joint)
          do j = 1, size(m%points)
             if (j /= i .and. (m%points(j)%hole == 0 .or. m%points(j)%hole /= m%points(i)%hole)) cycle
             m%points(j)%offset = m%points(j)%offset + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))

@@ -226,12 +226,12 @@ contains
    end function usual_size
 
    !> Finds the column that has one number of the values of rows; 0: no column has it.
-   pure integer function column_at(form, c, k) result(j)
+   pure integer function column_at(form, coordinate, k) result(j)
       integer, intent(in) :: form            !< of the rows
-      integer, intent(in) :: c, k            !< coordinate (1 to 3), and derivative or axes (0 to 2)
+      integer, intent(in) :: coordinate, k            !< coordinate (1 to 3), and derivative or axes (0 to 2)
 
       do j = forms(form)%first, forms(form)%last
-         if (all(columns_of_rows(j)%at == [c, k])) return
+         if (all(columns_of_rows(j)%at == [coordinate, k])) return
       end do
       j = 0
    end function column_at

@@ -39,23 +39,23 @@ contains
    end function cylinders_of
 
    !> Finds the length of a cylinder, below 0 if Q lies behind P.
-   pure real(wp) function cylinder_length(one, i, j) result(length)
+   pure real(wp) function cylinder_length(one, link_i, link_j) result(length)
       type(cylinder_t), intent(in) :: one
-      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
 
-      length = dot_product(rotated(one%along, direction(i(3))), point_of(j, one%q) - point_of(i, one%p))
+      length = dot_product(rotated(one%along, direction(link_i(3))), point_of(link_j, one%q) - point_of(link_i, one%p))
    end function cylinder_length
 
    !> Finds the length of a cylinder with its derivatives (0:2).
-   pure function cylinder_motion(one, i, j) result(length)
+   pure function cylinder_motion(one, link_i, link_j) result(length)
       type(cylinder_t), intent(in) :: one
-      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)   !< x, y (length) and phi (rad) of its links, with derivatives
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2) !< x, y (length), phi (rad); derivatives
       real(wp) :: length(0:2), q(2, 0:2), r(2, 0:2), arm(2)
 
-      q = j(:2, :)
-      arm = rotated(one%q, direction(j(3, 0)))
-      call add_rotating(arm(1), arm(2), j(3, 1), j(3, 2), q(:, 0), q(:, 1), q(:, 2))
-      r = seen_from(i, q)
+      q = link_j(:2, :)
+      arm = rotated(one%q, direction(link_j(3, 0)))
+      call add_rotating(arm(1), arm(2), link_j(3, 1), link_j(3, 2), q(:, 0), q(:, 1), q(:, 2))
+      r = seen_from(link_i, q)
       r(:, 0) = r(:, 0) - one%p
       length = matmul(one%along, r)
    end function cylinder_motion

@@ -150,10 +150,10 @@ contains
 
    !> Finds the intersection of two circles that is nearest to a place. If they do not meet, it is a place on the line
    !> through their centres.
-   pure subroutine find_intersection(centre, radius, q, reach)
+   pure subroutine find_intersection(centre, radius, place, reach)
       real(wp), intent(in) :: centre(2, 2)   !< (coordinates, circles)
       real(wp), intent(in) :: radius(2)      !< length
-      real(wp), intent(inout) :: q(2)        !< the place; becomes the intersection
+      real(wp), intent(inout) :: place(2)    !< the place; becomes the intersection
       type(reach_t), intent(inout) :: reach
       real(wp) :: way(2), e(2), d, along, square, side
 
@@ -167,9 +167,9 @@ contains
       square = (radius(1) - along)*(radius(1) + along)
       ! They touch but for rounding.
       if (square <= same_place_tolerance*radius(1)**2) square = 0.0_wp
-      side = cross(e, q - centre(:, 1))
+      side = cross(e, place - centre(:, 1))
       reach%has_no_side = square > 0.0_wp .and. &
-         abs(side) <= same_place_tolerance*(norm2(q) + norm2(centre(:, 1)) + norm2(centre(:, 2)))
-      q = centre(:, 1) + along*e + sign(sqrt(square), side)*[-e(2), e(1)]
+         abs(side) <= same_place_tolerance*(norm2(place) + norm2(centre(:, 1)) + norm2(centre(:, 2)))
+      place = centre(:, 1) + along*e + sign(sqrt(square), side)*[-e(2), e(1)]
    end subroutine find_intersection
 end module drawn_lengths

@@ -151,10 +151,10 @@ contains
          *(abs(pair%alpha) + abs(m%links(m%points(pair%point_i)%link)%position(3)))
    end function size_of_pair
 
-   !> `x`; 0 where the roundings of numbers of the size `size_of` are larger.
-   pure real(wp) function without_rounding(x, size_of) result(rest)
-      real(wp), intent(in) :: x, size_of
+   !> `value`; 0 where the roundings of numbers of the size `size_of` are larger.
+   pure real(wp) function without_rounding(value, size_of) result(rest)
+      real(wp), intent(in) :: value, size_of
 
-      rest = merge(0.0_wp, x, abs(x) <= roundings*size_of)
+      rest = merge(0.0_wp, value, abs(value) <= roundings*size_of)
    end function without_rounding
 end module drawn_values

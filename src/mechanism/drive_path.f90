@@ -28,30 +28,30 @@ module drive_path
 
 contains
 
-   !> Value, rate and acceleration (3) of drive number `i` at the parameter `p`, in the drive's unit (length or rad) and
+   !> Value, rate and acceleration (3) of drive number `i` at the `parameter`, in the drive's unit (length or rad) and
    !> that of the parameter.
-   pure function drive_at(path, i, p) result(f)
+   pure function drive_at(path, i, parameter) result(f)
       type(drive_path_t), intent(in) :: path
       integer, intent(in) :: i
-      real(wp), intent(in) :: p
+      real(wp), intent(in) :: parameter
       real(wp) :: f(3)
 
       if (allocated(path%leg)) then
-         f = [path%leg(1, i) + p*path%leg(2, i), path%leg(2, i), 0.0_wp]
+         f = [path%leg(1, i) + parameter*path%leg(2, i), path%leg(2, i), 0.0_wp]
       else
-         f = drive_motion(path%laws(i), p)
+         f = drive_motion(path%laws(i), parameter)
       end if
    end function drive_at
 
-   !> The values (drives) at the parameter `p`, in the drives' units (length or rad).
-   pure function values_at(path, p) result(values)
+   !> The values (drives) at the `parameter`, in the drives' units (length or rad).
+   pure function values_at(path, parameter) result(values)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: p
+      real(wp), intent(in) :: parameter
       real(wp) :: values(size(path%laws)), f(3)
       integer :: i
 
       do i = 1, size(values)
-         f = drive_at(path, i, p)
+         f = drive_at(path, i, parameter)
          values(i) = f(1)
       end do
    end function values_at
@@ -112,14 +112,14 @@ contains
    end function slow_drive
 
    !> Begins a leg over the times of `span`, on which drive number `leader` has this `rate` (of its value, by the time)
-   !> from its value at the parameter `p` on; the others keep their values there.
-   subroutine lead(path, leader, p, rate, span)
+   !> from its value at the `parameter` on; the others keep their values there.
+   subroutine lead(path, leader, parameter, rate, span)
       type(drive_path_t), intent(inout) :: path
       integer, intent(in) :: leader
-      real(wp), intent(in) :: p, rate, span(2)
+      real(wp), intent(in) :: parameter, rate, span(2)
       real(wp) :: leg(2, size(path%laws))
 
-      leg(1, :) = values_at(path, p)
+      leg(1, :) = values_at(path, parameter)
       leg(2, :) = 0.0_wp
       leg(:, leader) = [leg(1, leader) - rate*span(1), rate]
       path%leg = leg

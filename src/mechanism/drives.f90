@@ -61,24 +61,24 @@ contains
    end function drive_motion
 
    !> Adds to a value, rate and acceleration those of terms at a time.
-   pure subroutine add_terms(terms, t, f)
+   pure subroutine add_terms(terms, t, motion)
       type(term_t), intent(in) :: terms(:)
       real(wp), intent(in) :: t              !< time
-      real(wp), intent(inout) :: f(3)        !< in the drive's unit (length or rad) and the deck's unit of time
+      real(wp), intent(inout) :: motion(3)        !< in the drive's unit (length or rad) and the deck's unit of time
       integer :: i
 
       do i = 1, size(terms)
          associate (term => terms(i))
             select case (term%kind)
             case (term_harmonic)
-               f = f + harmonic_motion(term%r, t)
+               motion = motion + harmonic_motion(term%r, t)
             case (term_power)
                ! The deck reader has rejected powers that do not exist.
-               f = f + power_motion(term%r, t)
+               motion = motion + power_motion(term%r, t)
             case (term_table)
-               f = f + piece_value(term%table, piece_at(term%table, t), t)
+               motion = motion + piece_value(term%table, piece_at(term%table, t), t)
             case default
-               f = f + rise_motion(term, t)
+               motion = motion + rise_motion(term, t)
             end select
          end associate
       end do
@@ -131,14 +131,14 @@ contains
       end do
    end function bounds_of
 
-   !> Widens the bounds `b` by a value and its derivatives `f` (0:2), whose terms have absolute values with the sums
+   !> Widens the `bounds` by a value and its derivatives `values` (0:2), whose terms have absolute values with the sums
    !> `magnitudes` (0:2).
-   pure subroutine widen(b, f, magnitudes)
-      type(bounds_t), intent(inout) :: b
-      real(wp), intent(in) :: f(0:2), magnitudes(0:2) !< in the units of the bounds
+   pure subroutine widen(bounds, values, magnitudes)
+      type(bounds_t), intent(inout) :: bounds
+      real(wp), intent(in) :: values(0:2), magnitudes(0:2) !< in the units of the bounds
 
-      b%low = min(b%low, f - margin*magnitudes)
-      b%high = max(b%high, f + margin*magnitudes)
+      bounds%low = min(bounds%low, values - margin*magnitudes)
+      bounds%high = max(bounds%high, values + margin*magnitudes)
    end subroutine widen
 
    !> Finds the nearest to `t` of the times from `from` to `to`.
@@ -200,29 +200,29 @@ contains
    end function largest_frequency
 
    !> Computes r1 sin(r2 t + r3) and its first two derivatives (3) at the time `t`.
-   pure function harmonic_motion(r, t) result(f)
-      real(wp), intent(in) :: r(3)           !< amplitude, frequency (rad over the unit of time), phase (rad)
+   pure function harmonic_motion(numbers, t) result(f)
+      real(wp), intent(in) :: numbers(3)           !< amplitude, frequency (rad over the unit of time), phase (rad)
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3), u
 
-      u = r(2)*t + r(3)
-      f = r(1)*[sin(u), r(2)*cos(u), -r(2)**2*sin(u)]
+      u = numbers(2)*t + numbers(3)
+      f = numbers(1)*[sin(u), numbers(2)*cos(u), -numbers(2)**2*sin(u)]
    end function harmonic_motion
 
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
-   pure function harmonic_bounds(r, from, to) result(b)
-      real(wp), intent(in) :: r(3), from, to !< amplitude, frequency, phase; times in their order
+   pure function harmonic_bounds(numbers, from, to) result(b)
+      real(wp), intent(in) :: numbers(3), from, to !< amplitude, frequency, phase; times in their order
       type(bounds_t) :: b
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
          sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
       real(wp) :: amplitudes(0:2), u1, u2, magnitude, first, last
       integer :: i, k
 
-      u1 = min(r(2)*from, r(2)*to) + r(3)
-      u2 = max(r(2)*from, r(2)*to) + r(3)
-      magnitude = max(1.0_wp, abs(r(2)*from), abs(r(2)*to)) + abs(r(3))
-      amplitudes = r(1)*[1.0_wp, r(2), r(2)**2]
+      u1 = min(numbers(2)*from, numbers(2)*to) + numbers(3)
+      u2 = max(numbers(2)*from, numbers(2)*to) + numbers(3)
+      magnitude = max(1.0_wp, abs(numbers(2)*from), abs(numbers(2)*to)) + abs(numbers(3))
+      amplitudes = numbers(1)*[1.0_wp, numbers(2), numbers(2)**2]
       call widen(b, amplitudes*sin(u1 + quarters), abs(amplitudes)*magnitude)
       call widen(b, amplitudes*sin(u2 + quarters), abs(amplitudes)*magnitude)
       first = (u1 - margin*magnitude)/quarter
@@ -239,40 +239,40 @@ contains
    end function harmonic_bounds
 
    !> Finds the sizes (3) of a harmonic at the times -`t` and `t`, as `growing_sizes` takes them.
-   pure function harmonic_sizes(r, t) result(sizes)
-      real(wp), intent(in) :: r(3)           !< amplitude, frequency and phase without their signs
+   pure function harmonic_sizes(numbers, t) result(sizes)
+      real(wp), intent(in) :: numbers(3)           !< amplitude, frequency and phase without their signs
       real(wp), intent(in) :: t              !< time
       real(wp) :: sizes(3)
 
-      sizes = (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
+      sizes = (1.0_wp + numbers(2)*t + numbers(3))*numbers(1)*[1.0_wp, numbers(2), numbers(2)**2]
    end function harmonic_sizes
 
-   !> c t**p; a whole number p is an integer exponent, so that t may be zero or negative.
-   pure real(wp) function monomial(c, p, t)
-      real(wp), intent(in) :: c, p, t        !< factor, exponent, time
+   !> factor t**exponent; a whole number is an integer exponent, so that t may be zero or negative.
+   pure real(wp) function monomial(factor, exponent, t)
+      real(wp), intent(in) :: factor, exponent, t        !< factor, exponent, time
       real(wp), parameter :: largest_whole = 1.0e6_wp
 
-      if (abs(c) <= 0.0_wp) then
+      if (abs(factor) <= 0.0_wp) then
          monomial = 0.0_wp
-      else if (abs(p) < largest_whole .and. abs(p - anint(p)) <= 0.0_wp) then
-         monomial = c*t**nint(p)
+      else if (abs(exponent) < largest_whole .and. abs(exponent - anint(exponent)) <= 0.0_wp) then
+         monomial = factor*t**nint(exponent)
       else
-         monomial = c*t**p
+         monomial = factor*t**exponent
       end if
    end function monomial
 
    !> r1 t**r2 and its first two derivatives (3) at the time `t`.
-   pure function power_motion(r, t) result(f)
-      real(wp), intent(in) :: r(3), t        !< factor, exponent; time
+   pure function power_motion(numbers, t) result(f)
+      real(wp), intent(in) :: numbers(3), t        !< factor, exponent; time
       real(wp) :: f(3)
 
-      f = [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
-         monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
+      f = [monomial(numbers(1), numbers(2), t), monomial(numbers(1)*numbers(2), numbers(2) - 1.0_wp, t), &
+         monomial(numbers(1)*numbers(2)*(numbers(2) - 1.0_wp), numbers(2) - 2.0_wp, t)]
    end function power_motion
 
    !> Finds the bounds of r1 t**r2: on either side of t = 0 each derivative is monotonic. None where it does not exist.
-   pure function power_bounds(r, from, to) result(b)
-      real(wp), intent(in) :: r(3)           !< factor, exponent
+   pure function power_bounds(numbers, from, to) result(b)
+      real(wp), intent(in) :: numbers(3)           !< factor, exponent
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       real(wp) :: times(3), f(3)
@@ -280,108 +280,109 @@ contains
 
       times = [from, to, within(0.0_wp, from, to)]
       do k = 1, 3
-         if (.not. exists(r(2), times(k))) then
+         if (.not. exists(numbers(2), times(k))) then
             b = bounds_t(-huge(1.0_wp), huge(1.0_wp))
             return
          end if
-         f = power_motion(r, times(k))
+         f = power_motion(numbers, times(k))
          call widen(b, f, abs(f))
       end do
    end function power_bounds
 
    !> Finds the sizes (3) of a power at the times -`t` and `t`; where it grows more slowly than the time, at `last`.
-   pure function power_sizes(r, t, last) result(sizes)
-      real(wp), intent(in) :: r(3)           !< factor, exponent
+   pure function power_sizes(numbers, t, last) result(sizes)
+      real(wp), intent(in) :: numbers(3)           !< factor, exponent
       real(wp), intent(in) :: t, last        !< times
       real(wp) :: sizes(3), c, power, time
       integer :: k
 
       sizes = 0.0_wp
-      c = abs(r(1))
+      c = abs(numbers(1))
       do k = 1, 3
-         power = r(2) - (k - 1)
+         power = numbers(2) - (k - 1)
          time = merge(t, last, power >= 1.0_wp)
-         if (time > 0.0_wp) sizes(k) = (1.0_wp + abs(r(2)))*monomial(c, power, time)
+         if (time > 0.0_wp) sizes(k) = (1.0_wp + abs(numbers(2)))*monomial(c, power, time)
          c = c*abs(power)
       end do
    end function power_sizes
 
-   !> Whether t**p and its first two derivatives exist at the time `t`.
-   pure logical function exists(p, t)
-      real(wp), intent(in) :: p, t           !< exponent; time
+   !> Whether t**exponent and its first two derivatives exist at the time `t`.
+   pure logical function exists(exponent, t)
+      real(wp), intent(in) :: exponent, t           !< exponent; time
 
-      exists = t > 0.0_wp .or. abs(p - anint(p)) <= 0.0_wp
-      if (abs(t) <= 0.0_wp) exists = p >= 2.0_wp .or. abs(p*(p - 1.0_wp)) <= 0.0_wp
+      exists = t > 0.0_wp .or. abs(exponent - anint(exponent)) <= 0.0_wp
+      if (abs(t) <= 0.0_wp) exists = exponent >= 2.0_wp .or. abs(exponent*(exponent - 1.0_wp)) <= 0.0_wp
    end function exists
 
    !> Finds the bounds of a table between two times: each piece there is a cubic.
-   pure function table_bounds(s, from, to) result(b)
-      type(spline_t), intent(in) :: s
+   pure function table_bounds(spline, from, to) result(b)
+      type(spline_t), intent(in) :: spline
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       integer :: k, first, last
 
-      first = piece_at(s, from)
-      last = piece_at(s, to)
+      first = piece_at(spline, from)
+      last = piece_at(spline, to)
       do k = first, last
-         call widen_by_piece(b, s, k, merge(from, s%x(k), k == first), merge(to, s%x(k + 1), k == last))
+         call widen_by_piece(b, spline, k, merge(from, spline%x(k), k == first), merge(to, spline%x(k + 1), k == last))
       end do
    end function table_bounds
 
    !> Finds the largest mean rate between two rows of a table.
-   pure real(wp) function table_rate(s) result(rate)
-      type(spline_t), intent(in) :: s
+   pure real(wp) function table_rate(spline) result(rate)
+      type(spline_t), intent(in) :: spline
 
-      associate (n => size(s%x))
-         rate = maxval(abs((s%y(2:) - s%y(:n - 1))/(s%x(2:) - s%x(:n - 1))))
+      associate (n => size(spline%x))
+         rate = maxval(abs((spline%y(2:) - spline%y(:n - 1))/(spline%x(2:) - spline%x(:n - 1))))
       end associate
    end function table_rate
 
    !> Finds the sizes (3) of a table at the times -`t` and `t`, from the differences of its rows.
-   pure function table_sizes(s, t) result(sizes)
-      type(spline_t), intent(in) :: s
+   pure function table_sizes(spline, t) result(sizes)
+      type(spline_t), intent(in) :: spline
       real(wp), intent(in) :: t              !< time
-      real(wp) :: sizes(3), bend, slope, h(size(s%x) - 1)
+      real(wp) :: sizes(3), bend, slope, h(size(spline%x) - 1)
 
-      associate (n => size(s%x))
-         h = s%x(2:) - s%x(:n - 1)
-         bend = maxval(abs(s%m))
-         slope = maxval(abs(s%y(2:) - s%y(:n - 1))/h) + bend*maxval(h)
-         sizes = [maxval(abs(s%y)) + t*slope, slope + t*bend, bend + t*maxval(abs(s%m(2:) - s%m(:n - 1))/h)]
+      associate (n => size(spline%x))
+         h = spline%x(2:) - spline%x(:n - 1)
+         bend = maxval(abs(spline%m))
+         slope = maxval(abs(spline%y(2:) - spline%y(:n - 1))/h) + bend*maxval(h)
+         sizes = [maxval(abs(spline%y)) + t*slope, slope + t*bend, bend + &
+            t*maxval(abs(spline%m(2:) - spline%m(:n - 1))/h)]
       end associate
    end function table_sizes
 
-   !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
-   !> zero.
-   pure subroutine widen_by_piece(b, s, i, t1, t2)
-      type(bounds_t), intent(inout) :: b
-      type(spline_t), intent(in) :: s
+   !> Widens `bounds` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first
+   !> derivative is zero.
+   pure subroutine widen_by_piece(bounds, spline, i, t1, t2)
+      type(bounds_t), intent(inout) :: bounds
+      type(spline_t), intent(in) :: spline
       integer, intent(in) :: i               !< number of the piece
       real(wp), intent(in) :: t1, t2         !< times in their order
       real(wp) :: f(3), u(5), h, reach, slope, q, root, magnitude, curve, away
       integer :: k
 
       ! f' = f'(x_i) + m_i u + slope u^2/2, u from the knot.
-      f = piece_value(s, i, s%x(i))
-      h = s%x(i + 1) - s%x(i)
-      slope = (s%m(i + 1) - s%m(i))/h
-      reach = max(abs(t1 - s%x(i)), abs(t2 - s%x(i)))
+      f = piece_value(spline, i, spline%x(i))
+      h = spline%x(i + 1) - spline%x(i)
+      slope = (spline%m(i + 1) - spline%m(i))/h
+      reach = max(abs(t1 - spline%x(i)), abs(t2 - spline%x(i)))
       u = 0.0_wp
-      if (abs(s%m(i)) < abs(slope)*reach) u(3) = -s%m(i)/slope
-      root = s%m(i)**2 - 2.0_wp*slope*f(2)
+      if (abs(spline%m(i)) < abs(slope)*reach) u(3) = -spline%m(i)/slope
+      root = spline%m(i)**2 - 2.0_wp*slope*f(2)
       if (root >= 0.0_wp) then
-         q = -(s%m(i) + sign(sqrt(root), s%m(i)))
+         q = -(spline%m(i) + sign(sqrt(root), spline%m(i)))
          if (abs(q) < abs(slope)*reach) u(4) = q/slope
          if (2.0_wp*abs(f(2)) < abs(q)*reach) u(5) = 2.0_wp*f(2)/q
       end if
-      u = within(s%x(i) + u, t1, t2)
+      u = within(spline%x(i) + u, t1, t2)
       u(:2) = [t1, t2]
 
-      magnitude = abs(s%y(i)) + abs(s%y(i + 1))
-      curve = abs(s%m(i)) + abs(s%m(i + 1))
+      magnitude = abs(spline%y(i)) + abs(spline%y(i + 1))
+      curve = abs(spline%m(i)) + abs(spline%m(i + 1))
       do k = 1, size(u)
-         away = max(1.0_wp, abs(u(k) - s%x(i))/h, abs(u(k) - s%x(i + 1))/h)
-         call widen(b, piece_value(s, i, u(k)), &
+         away = max(1.0_wp, abs(u(k) - spline%x(i))/h, abs(u(k) - spline%x(i + 1))/h)
+         call widen(bounds, piece_value(spline, i, u(k)), &
             [(magnitude + curve*h**2)*away**3, (magnitude/h + curve*h)*away**2, curve*away])
       end do
    end subroutine widen_by_piece
@@ -402,14 +403,14 @@ contains
       distance = joint_part*(1.0_wp + abs(term%r(1))/term%r(2))
    end function joint_distance
 
-   !> s(u) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before u = 0, and 1 from u = 1 on.
-   !> The second derivative is that of the piece in which `at` lies, continued to u.
-   pure function rise_shape(kind, u, at) result(s)
+   !> s(part) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before 0, and 1 from 1 on.
+   !> The second derivative is that of the piece in which `at` lies, continued to `part`.
+   pure function rise_shape(kind, part, at) result(s)
       integer, intent(in) :: kind            !< term_cycloid, ..., term_parabola
-      real(wp), intent(in) :: u, at          !< parts of the duration
+      real(wp), intent(in) :: part, at          !< parts of the duration
       real(wp) :: s(3), v, w
 
-      v = min(max(u, 0.0_wp), 1.0_wp)
+      v = min(max(part, 0.0_wp), 1.0_wp)
       w = 1.0_wp - v
       select case (kind)
       case (term_cycloid)
@@ -422,7 +423,7 @@ contains
          s = [merge(2.0_wp*v**2, 1.0_wp - 2.0_wp*w**2, v < w), 4.0_wp*min(v, w), merge(4.0_wp, -4.0_wp, at < 0.5_wp)]
       end select
       ! A sine of pi is not zero: a drive at rest has no rate.
-      if (u >= 1.0_wp) s(:2) = [1.0_wp, 0.0_wp]
+      if (part >= 1.0_wp) s(:2) = [1.0_wp, 0.0_wp]
       if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
    end function rise_shape
 
@@ -448,11 +449,12 @@ contains
    end function rise_rate
 
    !> Finds the sizes (3) of a rise. Beyond its end the time changes nothing.
-   pure function rise_sizes(r) result(sizes)
-      real(wp), intent(in) :: r(3)           !< start, duration and lift without their signs
+   pure function rise_sizes(numbers) result(sizes)
+      real(wp), intent(in) :: numbers(3)           !< start, duration and lift without their signs
       real(wp) :: sizes(3)
 
-      sizes = r(3)*(rise_most(:2) + (2.0_wp*r(1)/r(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, r(2), r(2)**2]
+      sizes = numbers(3)*(rise_most(:2) + (2.0_wp*numbers(1)/numbers(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, numbers(2), &
+         numbers(2)**2]
    end function rise_sizes
 
    !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
@@ -481,20 +483,20 @@ contains
       end do
    end function rise_bounds
 
-   !> Widens `b` by the rise `term` at the part `u` of its duration, with the acceleration of the piece in which `at`
-   !> lies. Where a law is steepest, a rounding of u changes its second derivative by 60 roundings; in a dwell zeros are
-   !> exact.
-   pure subroutine widen_by_rise(b, term, u, at)
-      type(bounds_t), intent(inout) :: b
+   !> Widens `bounds` by the rise `term` at the `part` of its duration, with the acceleration of the piece in which `at`
+   !> lies. Where a law is steepest, a rounding of `part` changes its second derivative by 60 roundings; in a dwell
+   !> zeros are exact.
+   pure subroutine widen_by_rise(bounds, term, part, at)
+      type(bounds_t), intent(inout) :: bounds
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: u, at          !< parts of the duration
+      real(wp), intent(in) :: part, at          !< parts of the duration
       real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
 
-      s = rise_shape(term%kind, u, at)
+      s = rise_shape(term%kind, part, at)
       factors = term%r(3)/[1.0_wp, term%r(2), term%r(2)**2]
       magnitudes = abs(factors)*[1.0_wp, 8.0_wp, 64.0_wp]
-      if (u < -margin .or. u > 1.0_wp + margin) magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
-      call widen(b, factors*s, magnitudes)
+      if (part < -margin .or. part > 1.0_wp + margin) magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
+      call widen(bounds, factors*s, magnitudes)
    end subroutine widen_by_rise
 
    !> Bounds, as (:, 0) + |t| (:, 1), of what a change of each number of `law`, or of the time, changes of value, rate

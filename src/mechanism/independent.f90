@@ -44,11 +44,11 @@ module independent
 
 contains
 
-   !> Divides the set `m` into its parts: `s`. A part has the ground links, and their points, that its pairs, drives and
-   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
-   subroutine divide(m, s)
+   !> Divides the set `m` into its parts: `set`. A part has the ground links, and their points, that its pairs, drives
+   !> and rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   subroutine divide(m, set)
       type(mechanism_t), intent(in) :: m
-      type(set_t), intent(out) :: s
+      type(set_t), intent(out) :: set
       type(sorted_t) :: links, points, pairs, measures, drives, rows
       type(numbering_t) :: place(of_drives), part(of_drives)
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:), own_rows(:), branches(:), &
@@ -57,16 +57,16 @@ contains
       integer :: link_part(size(m%links)), point_part(size(m%points)), i, k
       real(wp) :: length, rate
 
-      s%settings_t = m%settings_t
+      set%settings_t = m%settings_t
       if (allocated(m%tolerances)) then
          length = characteristic_length(m)
          rate = characteristic_rate(m, length)
-         s%largest_tolerance = min(1.0_wp, max(epsilon(1.0_wp), maxval(m%tolerances%size_of*m%tolerances%unit &
+         set%largest_tolerance = min(1.0_wp, max(epsilon(1.0_wp), maxval(m%tolerances%size_of*m%tolerances%unit &
             *rate**m%tolerances%powers(2)/length**m%tolerances%powers(1))))
       end if
       link_part = part_of_links(m)
-      s%count = maxval([1, link_part])
-      if (s%count == 1) link_part = 1
+      set%count = maxval([1, link_part])
+      if (set%count == 1) link_part = 1
       pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
       drive_part = [(part_of(drive_links(m, m%drives(i))), i=1, size(m%drives))]
       row_part = [(part_of(request_links(m, m%requests(i))), i=1, size(m%requests))]
@@ -77,12 +77,12 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind == request_point) row_part(i) = max(row_part(i), point_part(m%requests(i)%subject))
       end do
-      pairs = sorted(pair_part, s%count)
-      drives = sorted(drive_part, s%count)
-      rows = sorted(row_part, s%count)
+      pairs = sorted(pair_part, set%count)
+      drives = sorted(drive_part, set%count)
+      rows = sorted(row_part, set%count)
       call find_measured()
       measures = sorted_numbers(pack(measured%number, measured%kind == request_measure), &
-         pack(measuring, measured%kind == request_measure), s%count)
+         pack(measuring, measured%kind == request_measure), set%count)
       ! Each point, and each link, with the part that it belongs to or that uses it.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
                                    m%requests%kind == request_point .or. m%requests%kind == request_curve), &
@@ -92,7 +92,7 @@ contains
          user = [link_part(m%points%link), pair_part, pair_part, pack(measuring, is_point), row_part(of_points)]
       end associate
       call add_lengths()
-      points = sorted_numbers(used, user, s%count)
+      points = sorted_numbers(used, user, set%count)
       associate (is_link => measured%kind == request_link, &
                  others => pack([(i, i=1, size(m%requests))], m%requests%kind /= request_measure))
          used = [(i, i=1, size(m%links)), m%points(used)%link, (drive_links(m, m%drives(i)), i=1, size(m%drives)), &
@@ -101,16 +101,16 @@ contains
          user = [link_part, user, (spread(drive_part(i), 1, 3), i=1, size(m%drives)), pack(measuring, is_link), &
             (spread(row_part(others(i)), 1, 3), i=1, size(others))]
       end associate
-      links = sorted_numbers(used, user, s%count)
+      links = sorted_numbers(used, user, set%count)
 
-      allocate (s%parts(s%count), s%cards(s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
+      allocate (set%parts(set%count), set%cards(set%count), set%rows(size(m%requests)), set%drives(size(m%drives)))
       associate (n => [size(m%links), size(m%points), size(m%pairs), maxval([0, pack(measured%number, &
                        measured%kind == request_measure)]), size(m%drives)])
          do k = 1, of_drives
             allocate (place(k)%of(0:n(k)), source=0)
          end do
       end associate
-      do k = 1, s%count
+      do k = 1, set%count
          part(request_link)%of = once(members(links, k))
          part(request_point)%of = once(members(points, k))
          part(request_pair)%of = members(pairs, k)
@@ -121,10 +121,10 @@ contains
          if (allocated(m%branch_requests)) branches = pack([(i, i=1, size(m%branch_requests))], &
             [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == k, &
             i=1, size(m%branch_requests))])
-         s%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
-         s%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
-         call take_mechanism(m, part, own_rows, branches, place, s%parts(k))
-         call move_alloc(part(request_link)%of, s%cards(k)%of)
+         set%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
+         set%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
+         call take_mechanism(m, part, own_rows, branches, place, set%parts(k))
+         call move_alloc(part(request_link)%of, set%cards(k)%of)
       end do
 
    contains
@@ -144,8 +144,8 @@ contains
          if (.not. any(m%tolerances%kind == number_length)) return
          do i = 1, size(m%lengths)
             if (.not. m%links(m%points(m%lengths(i)%point(1))%link)%ground) cycle
-            used = [used, (m%lengths(i)%point, k=1, s%count)]
-            user = [user, (k, k, k=1, s%count)]
+            used = [used, (m%lengths(i)%point, k=1, set%count)]
+            user = [user, (k, k, k=1, set%count)]
          end do
       end subroutine add_lengths
 
@@ -272,19 +272,20 @@ contains
       end do
    end subroutine take_mechanism
 
-   !> Tells what row number `i` of `s` is asked for.
-   pure type(request_t) function request_of(s, i)
-      class(set_t), intent(in) :: s
+   !> Tells what row number `i` of `set` is asked for.
+   pure type(request_t) function request_of(set, i)
+      class(set_t), intent(in) :: set
       integer, intent(in) :: i
 
-      request_of = s%parts(s%rows(i)%part)%requests(s%rows(i)%number)
+      request_of = set%parts(set%rows(i)%part)%requests(set%rows(i)%number)
    end function request_of
 
-   !> The number among all drives of `s` of the first one of the mechanism that row number `i` is about; 0: it has none.
-   pure integer function first_drive(s, i)
-      class(set_t), intent(in) :: s
+   !> The number among all drives of `set` of the first one of the mechanism that row number `i` is about; 0: it has
+   !> none.
+   pure integer function first_drive(set, i)
+      class(set_t), intent(in) :: set
       integer, intent(in) :: i
 
-      first_drive = findloc(s%drives%part, s%rows(i)%part, dim=1)
+      first_drive = findloc(set%drives%part, set%rows(i)%part, dim=1)
    end function first_drive
 end module independent

@@ -41,20 +41,20 @@ module instant_centres
 
 contains
 
-   !> The instant centre of the motion of link J relative to link I, which move as `j` and `i` (3, 0:2) say: x, y, phi
-   !> and their derivatives. `length`, `rate`: characteristic ones, > 0. With o the origin of link J, u its velocity
-   !> relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and Roth,
-   !> Theoretical Kinematics, 1979, ch. VIII). At infinity it is in the direction of R u.
-   pure function pole_of(i, j, length, rate) result(c)
-      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2), length, rate
+   !> The instant centre of the motion of link J relative to link I, which move as `link_j` and `link_i` (3, 0:2) say:
+   !> x, y, phi and their derivatives. `length`, `rate`: characteristic ones, > 0. With o the origin of link J, u its
+   !> velocity relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and
+   !> Roth, Theoretical Kinematics, 1979, ch. VIII). At infinity it is in the direction of R u.
+   pure function pole_of(link_i, link_j, length, rate) result(c)
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2), length, rate
       type(centre_t) :: c
       real(wp) :: d(2), u(2), w, arm(2), to_i(2), to_j(2)
 
-      to_i = [cos(i(3, 0)), -sin(i(3, 0))]
-      to_j = [cos(j(3, 0)), -sin(j(3, 0))]
-      d = j(:2, 0) - i(:2, 0)
-      u = j(:2, 1) - i(:2, 1) - i(3, 1)*quarter_turn(d)
-      w = j(3, 1) - i(3, 1)
+      to_i = [cos(link_i(3, 0)), -sin(link_i(3, 0))]
+      to_j = [cos(link_j(3, 0)), -sin(link_j(3, 0))]
+      d = link_j(:2, 0) - link_i(:2, 0)
+      u = link_j(:2, 1) - link_i(:2, 1) - link_i(3, 1)*quarter_turn(d)
+      w = link_j(3, 1) - link_i(3, 1)
       if (max(norm2(u), abs(w)*length) <= negligible*length*rate) then
          c%state = centre_resting
          return
@@ -62,7 +62,7 @@ contains
       if (abs(w)*length <= negligible*norm2(u)) c%state = centre_infinite
       c%weight = sign(max(abs(w), least*norm2(u)/length), w)
       arm = quarter_turn(u)/c%weight
-      c%value(:2, 0) = j(:2, 0) + arm
+      c%value(:2, 0) = link_j(:2, 0) + arm
       c%value(:2, 1) = rotated(d + arm, to_i)
       c%value(:2, 2) = rotated(arm, to_j)
       c%value(3, :) = [line_angle(quarter_turn(u)), line_angle(rotated(quarter_turn(u), to_i)), &
@@ -70,12 +70,12 @@ contains
    end function pole_of
 
    !> The place, velocity and acceleration (2, 0:2) of a point in the axes of a link that moves as `frame` (3, 0:2);
-   !> `p` (2, 0:2): those in the fixed plane, counted as those of the link.
-   pure function seen_from(frame, p) result(r)
-      real(wp), intent(in) :: frame(3, 0:2), p(2, 0:2)
+   !> `motion` (2, 0:2): those in the fixed plane, counted as those of the link.
+   pure function seen_from(frame, motion) result(r)
+      real(wp), intent(in) :: frame(3, 0:2), motion(2, 0:2)
       real(wp) :: r(2, 0:2), back(2)
 
-      r = p - frame(:2, :)
+      r = motion - frame(:2, :)
       r(:, 1) = r(:, 1) - frame(3, 1)*quarter_turn(r(:, 0))
       r(:, 2) = r(:, 2) - frame(3, 2)*quarter_turn(r(:, 0)) + frame(3, 1)**2*r(:, 0) &
          - 2.0_wp*frame(3, 1)*quarter_turn(r(:, 1))
@@ -86,19 +86,19 @@ contains
    end function seen_from
 
    !> The tangent, radius and centre of curvature of the path of a point with the place, velocity v and acceleration a
-   !> `p` (2, 0:2):  radius |v|**3/|v x a|,  centre p + R v |v|**2/(v x a).  Where the point stands still its path has
-   !> the direction of a, and no curvature that v and a could tell. `length`, `rate`: characteristic ones, > 0.
-   pure function curve_of(p, length, rate) result(c)
-      real(wp), intent(in) :: p(2, 0:2), length, rate
+   !> `motion` (2, 0:2):  radius |v|**3/|v x a|,  centre P + R v |v|**2/(v x a).  Where the point stands still its path
+   !> has the direction of a, and no curvature that v and a could tell. `length`, `rate`: characteristic ones, > 0.
+   pure function curve_of(motion, length, rate) result(c)
+      real(wp), intent(in) :: motion(2, 0:2), length, rate
       type(centre_t) :: c
       real(wp) :: v(2), a(2), speed
 
       ! In units of the mechanism, cubes do not overflow.
-      v = p(:, 1)/(length*rate)
-      a = p(:, 2)/(length*rate**2)
+      v = motion(:, 1)/(length*rate)
+      a = motion(:, 2)/(length*rate**2)
       speed = norm2(v)
       c%value(3, 1:) = [speed, norm2(a)]
-      c%value(:2, 0) = p(:, 0)
+      c%value(:2, 0) = motion(:, 0)
       c%value(3, 0) = arrow_angle(v)
       if (speed <= negligible) then
          c%state = centre_resting
@@ -110,24 +110,24 @@ contains
       ! Not in parts of |v| |a|: near its end of a stroke a point is slow, and its acceleration nearly all tangential.
       if (abs(c%weight) <= negligible*speed**3) c%state = centre_infinite
       c%weight = sign(max(abs(c%weight), least*speed**3), c%weight)
-      c%value(:2, 1) = p(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
+      c%value(:2, 1) = motion(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
       c%value(1, 2) = length*speed**3/abs(c%weight)
    end function curve_of
 
-   !> The direction of `v` (2), from -pi (excluded) to pi (rad).
-   pure real(wp) function arrow_angle(v)
-      real(wp), intent(in) :: v(2)
+   !> The direction of `vector` (2), from -pi (excluded) to pi (rad).
+   pure real(wp) function arrow_angle(vector)
+      real(wp), intent(in) :: vector(2)
 
       arrow_angle = 0.0_wp
-      if (any(abs(v) > 0.0_wp)) arrow_angle = atan2(v(2), v(1))
+      if (any(abs(vector) > 0.0_wp)) arrow_angle = atan2(vector(2), vector(1))
       if (arrow_angle <= margin - pi) arrow_angle = arrow_angle + 2.0_wp*pi
    end function arrow_angle
 
-   !> The direction of the line along `v` (2), from -pi/2 (excluded) to pi/2 (rad).
-   pure real(wp) function line_angle(v)
-      real(wp), intent(in) :: v(2)
+   !> The direction of the line along `vector` (2), from -pi/2 (excluded) to pi/2 (rad).
+   pure real(wp) function line_angle(vector)
+      real(wp), intent(in) :: vector(2)
 
-      line_angle = arrow_angle(v)
+      line_angle = arrow_angle(vector)
       if (line_angle > 0.5_wp*pi + margin) line_angle = line_angle - pi
       if (line_angle <= margin - 0.5_wp*pi) line_angle = line_angle + pi
    end function line_angle

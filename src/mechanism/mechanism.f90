@@ -280,37 +280,37 @@ module mechanism
 
 contains
 
-   !> The number of instants of `m`.
-   pure integer function instant_count(m)
-      class(settings_t), intent(in) :: m
+   !> The number of instants of `settings`.
+   pure integer function instant_count(settings)
+      class(settings_t), intent(in) :: settings
 
-      instant_count = m%steps + 1 + size(m%at)
+      instant_count = settings%steps + 1 + size(settings%at)
    end function instant_count
 
    !> Instant number `k` = 0, 1, ..., instant_count - 1. The last one of TIME is exactly t1.
-   pure real(wp) function instant(m, k) result(t)
-      class(settings_t), intent(in) :: m
+   pure real(wp) function instant(settings, k) result(t)
+      class(settings_t), intent(in) :: settings
       integer, intent(in) :: k
 
-      if (k > m%steps) then
-         t = m%at(k - m%steps)
-      else if (k == m%steps) then
-         t = m%t1
+      if (k > settings%steps) then
+         t = settings%at(k - settings%steps)
+      else if (k == settings%steps) then
+         t = settings%t1
       else
-         t = m%t0 + (m%t1 - m%t0)*real(k, wp)/real(m%steps, wp)
+         t = settings%t0 + (settings%t1 - settings%t0)*real(k, wp)/real(settings%steps, wp)
       end if
    end function instant
 
-   !> The `first` and the `last` of all instants of `m` in time; the other way round where there are none.
-   pure subroutine find_instants(m, first, last)
-      class(settings_t), intent(in) :: m
+   !> The `first` and the `last` of all instants of `settings` in time; the other way round where there are none.
+   pure subroutine find_instants(settings, first, last)
+      class(settings_t), intent(in) :: settings
       real(wp), intent(out) :: first, last
 
-      first = minval(m%at)
-      last = maxval(m%at)
-      if (m%steps < 0) return
-      first = min(first, m%t0, m%t1)
-      last = max(last, m%t0, m%t1)
+      first = minval(settings%at)
+      last = maxval(settings%at)
+      if (settings%steps < 0) return
+      first = min(first, settings%t0, settings%t1)
+      last = max(last, settings%t0, settings%t1)
    end subroutine find_instants
 
    !> Finds the place (2) from which all computed places are counted: that of the first ground link that a pair uses, or

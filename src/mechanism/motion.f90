@@ -113,20 +113,20 @@ contains
    end function new_motion
 
    !> How much of the motion of `link` exists, in the values of `known`.
-   pure integer function known_of(m, link)
-      type(motion_t), intent(in) :: m
+   pure integer function known_of(q, link)
+      type(motion_t), intent(in) :: q
       integer, intent(in) :: link
 
-      known_of = m%known
-      if (allocated(m%link_known)) known_of = m%link_known(link)
+      known_of = q%known
+      if (allocated(q%link_known)) known_of = q%link_known(link)
    end function known_of
 
    !> Gives all links the `known` and `mark` of the whole.
-   pure subroutine forget_links(m)
-      type(motion_t), intent(inout) :: m
+   pure subroutine forget_links(q)
+      type(motion_t), intent(inout) :: q
 
-      if (allocated(m%link_known)) deallocate (m%link_known)
-      if (allocated(m%link_mark)) deallocate (m%link_mark)
+      if (allocated(q%link_known)) deallocate (q%link_known)
+      if (allocated(q%link_mark)) deallocate (q%link_mark)
    end subroutine forget_links
 
    !> A diagnostic of `kind` about the links (links) that are true in `chosen`, as many as there is room for.

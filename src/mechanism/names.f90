@@ -13,14 +13,14 @@ module names
 
 contains
 
-   !> The kind of drive `d` of the mechanism `m` and what it drives, as on its card.
-   pure function drive_name(m, d) result(name)
+   !> The kind of `drive` of the mechanism `m` and what it drives, as on its card.
+   pure function drive_name(m, drive) result(name)
       type(mechanism_t), intent(in) :: m
-      type(drive_t), intent(in) :: d
+      type(drive_t), intent(in) :: drive
       character(3*label_length + 2) :: name
 
-      name = trim(drive_words(d%kind))//' '//subject_name(m, driven_kinds(d%kind), d%subject)
-      if (d%kind == drive_relangle) name = trim(name)//' '//m%links(d%second)%name
+      name = trim(drive_words(drive%kind))//' '//subject_name(m, driven_kinds(drive%kind), drive%subject)
+      if (drive%kind == drive_relangle) name = trim(name)//' '//m%links(drive%second)%name
    end function drive_name
 
    !> The name of the link, point, pair or measure (`kind`, as of a request) with the number `subject`.

@@ -15,47 +15,47 @@ module pair_geometry
 contains
 
    !> Finds the vector (2) from P to Q of a pair, in the deck's unit.
-   pure function way_of(m, pair, i, j) result(way)
+   pure function way_of(m, pair, link_i, link_j) result(way)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
       real(wp) :: way(2)
 
-      way = point_of(j, m%points(pair%point_j)%offset) - point_of(i, m%points(pair%point_i)%offset)
+      way = point_of(link_j, m%points(pair%point_j)%offset) - point_of(link_i, m%points(pair%point_i)%offset)
    end function way_of
 
    !> Finds by how much a pair is open, in the deck's unit: the distance from P to Q, or h + (Q - P) . n across a guide.
-   pure real(wp) function opening_of(m, pair, i, j) result(opening)
+   pure real(wp) function opening_of(m, pair, link_i, link_j) result(opening)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
 
-      opening = norm2(way_of(m, pair, i, j))
-      if (has_guide(pair%kind)) opening = pair%offset + dot_product(way_of(m, pair, i, j), &
-         quarter_turn(direction(i(3) + pair%alpha)))
+      opening = norm2(way_of(m, pair, link_i, link_j))
+      if (has_guide(pair%kind)) opening = pair%offset + dot_product(way_of(m, pair, link_i, link_j), &
+         quarter_turn(direction(link_i(3) + pair%alpha)))
    end function opening_of
 
    !> Finds the slide of a prismatic pair, in the deck's unit.
-   pure real(wp) function slide_of(m, pair, i, j) result(slide)
+   pure real(wp) function slide_of(m, pair, link_i, link_j) result(slide)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: i(3), j(3)     !< x, y (length) and phi (rad) of its links
+      real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
 
-      slide = dot_product(way_of(m, pair, i, j), direction(i(3) + pair%alpha))
+      slide = dot_product(way_of(m, pair, link_i, link_j), direction(link_i(3) + pair%alpha))
    end function slide_of
 
    !> Finds the coordinate of a pair with its derivatives (0:2): the slide of a prismatic pair (length), or the angle
-   !> phi_j - phi_i (rad). The slide is found in the axes of link i, in which P and the guide are at rest.
-   pure function pair_motion(m, pair, i, j, q) result(coordinate)
+   !> phi_j - phi_i (rad). The slide is found in the axes of `link_i`, in which P and the guide are at rest.
+   pure function pair_motion(m, pair, link_i, link_j, point) result(coordinate)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)   !< x, y (length) and phi (rad) of its links, with derivatives
-      real(wp), intent(in) :: q(2, 0:2)      !< x and y (length) of Q, with derivatives
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2) !< x, y (length), phi (rad); derivatives
+      real(wp), intent(in) :: point(2, 0:2)      !< x and y (length) of Q, with derivatives
       real(wp) :: coordinate(0:2), r(2, 0:2)
 
-      coordinate = j(3, :) - i(3, :)
+      coordinate = link_j(3, :) - link_i(3, :)
       if (.not. has_guide(pair%kind)) return
-      r = seen_from(i, q)
+      r = seen_from(link_i, point)
       r(:, 0) = r(:, 0) - m%points(pair%point_i)%offset
       coordinate = matmul(direction(pair%alpha), r)
    end function pair_motion

@@ -46,31 +46,31 @@ contains
 
    !> Whether `request` has a row in the CSV at instant number `k` (0, 1, ...): where it is printed, and where a COLUMN
    !> card names it.
-   pure logical function is_due(m, request, k)
-      class(settings_t), intent(in) :: m
+   pure logical function is_due(settings, request, k)
+      class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_due = request%in_columns .or. is_printed(m, request, k)
+      is_due = request%in_columns .or. is_printed(settings, request, k)
    end function is_due
 
    !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
-   pure logical function is_printed(m, request, k)
-      class(settings_t), intent(in) :: m
+   pure logical function is_printed(settings, request, k)
+      class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
       is_printed = request%every > 0
-      if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+      if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(settings) - 1
    end function is_printed
 
    !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
-   pure logical function is_listed(m, request, k)
-      class(settings_t), intent(in) :: m
+   pure logical function is_listed(settings, request, k)
+      class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_listed = request%listed .or. is_printed(m, request, k)
+      is_listed = request%listed .or. is_printed(settings, request, k)
    end function is_listed
 
    !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every
@@ -267,18 +267,18 @@ contains
    !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
    !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
    !> Between points of one link d is at rest in its axes, and what is constant has no rates, not even by rounding.
-   pure recursive subroutine find_measure(m, q, i, s, state, closest)
+   pure recursive subroutine find_measure(m, q, i, values, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i               !< its number
-      real(wp), intent(out) :: s(0:2)        !< length or rad; 0 where it does not exist
+      real(wp), intent(out) :: values(0:2)        !< length or rad; 0 where it does not exist
       integer, intent(inout) :: state        !< becomes points_coincide if two of its points do
       real(wp), intent(inout) :: closest     !< least distance of two of its points, characteristic lengths
       real(wp) :: d(2, 0:2), x(3, 0:2), one(0:2), distance
       logical :: is_rigid
       integer :: k
 
-      s = 0.0_wp
+      values = 0.0_wp
       associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
          select case (measure%kind)
          case (measure_distance, measure_line)
@@ -295,17 +295,18 @@ contains
                state = points_coincide
                return
             end if
-            s(1) = cross(d(:, 0), d(:, 1))/distance
+            values(1) = cross(d(:, 0), d(:, 1))/distance
             if (measure%kind == measure_distance) then
-               s = [distance, dot_product(d(:, 0), d(:, 1))/distance, &
-                  s(1)*(s(1)/distance) + dot_product(d(:, 0), d(:, 2))/distance]
+               values = [distance, dot_product(d(:, 0), d(:, 1))/distance, &
+                  values(1)*(values(1)/distance) + dot_product(d(:, 0), d(:, 2))/distance]
             else
-               s(0) = atan2(d(2, 0), d(1, 0))
-               s(1) = s(1)/distance
-               s(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, 1))/distance)*s(1))/distance
+               values(0) = atan2(d(2, 0), d(1, 0))
+               values(1) = values(1)/distance
+               values(2) = (cross(d(:, 0), d(:, 2))/distance - 2.0_wp*(dot_product(d(:, 0), d(:, &
+                  1))/distance)*values(1))/distance
                if (is_rigid) then
                   x = link_motion(q, m%points(subjects(1)%number)%link)
-                  s = s + x(3, :)
+                  values = values + x(3, :)
                end if
             end if
          case (measure_xi, measure_eta)
@@ -315,7 +316,7 @@ contains
             else
                d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
             end if
-            s = d(merge(1, 2, measure%kind == measure_xi), :)
+            values = d(merge(1, 2, measure%kind == measure_xi), :)
          case default
             do k = 1, size(subjects)
                select case (subjects(k)%kind)
@@ -327,18 +328,19 @@ contains
                case default
                   call find_measure(m, q, subjects(k)%number, one, state, closest)
                end select
-               if (measure%kind == measure_sum) s = s + subjects(k)%factor*one
-               if (measure%kind == measure_angle) s = one - s
+               if (measure%kind == measure_sum) values = values + subjects(k)%factor*one
+               if (measure%kind == measure_angle) values = one - values
             end do
-            s(0) = s(0) + measure%constant
+            values(0) = values(0) + measure%constant
          end select
          if (.not. measure%continues .or. state == points_coincide) return
       end associate
-      s(0) = between_half_turns(s(0))
+      values(0) = between_half_turns(values(0))
       if (.not. allocated(q%turned)) return
       if (.not. q%turned(i)%is_known) return
-      associate (turns => (q%turned(i)%angle - s(0))/full_turn)
-         if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) s(0) = s(0) + full_turn*anint(turns)
+      associate (turns => (q%turned(i)%angle - values(0))/full_turn)
+         if (abs(abs(turns - anint(turns)) - 0.5_wp)*full_turn > half_turn_margin) values(0) = values(0) + &
+            full_turn*anint(turns)
       end associate
    end subroutine find_measure
 

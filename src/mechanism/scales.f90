@@ -33,10 +33,10 @@ contains
    end function solver_length
 
    !> Whether a length or rate is positive and finite.
-   pure logical function is_usable(x)
-      real(wp), intent(in) :: x
+   pure logical function is_usable(value)
+      real(wp), intent(in) :: value
 
-      is_usable = x > 0.0_wp .and. x <= huge(x)
+      is_usable = value > 0.0_wp .and. value <= huge(value)
    end function is_usable
 
    !> The largest length of `m` with those of its points that `counts` (points) marks; 0 if there is none.
@@ -94,30 +94,30 @@ contains
    end function characteristic_rate
 
    !> The largest |t| of an instant.
-   pure real(wp) function latest_time(m) result(t)
-      class(settings_t), intent(in) :: m
+   pure real(wp) function latest_time(settings) result(t)
+      class(settings_t), intent(in) :: settings
 
-      t = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
+      t = max(abs(settings%t0), abs(settings%t1), maxval([0.0_wp, abs(settings%at)]))
    end function latest_time
 
-   !> The shortest step from an instant of `m` to the next in the deck's order at another time; the largest number where
-   !> there is none.
-   pure real(wp) function shortest_step(m) result(step)
-      class(settings_t), intent(in) :: m
+   !> The shortest step from an instant of `settings` to the next in the deck's order at another time; the largest
+   !> number where there is none.
+   pure real(wp) function shortest_step(settings) result(step)
+      class(settings_t), intent(in) :: settings
       real(wp), allocatable :: times(:), steps(:)
 
-      times = m%at
-      if (m%steps >= 0) times = [m%t1, m%at]
+      times = settings%at
+      if (settings%steps >= 0) times = [settings%t1, settings%at]
       steps = abs(times(2:) - times(:size(times) - 1))
-      if (m%steps > 0) steps = [steps, abs(m%t1 - m%t0)/real(m%steps, wp)]
+      if (settings%steps > 0) steps = [steps, abs(settings%t1 - settings%t0)/real(settings%steps, wp)]
       step = minval(steps, mask=steps > 0.0_wp)
    end function shortest_step
 
-   !> The largest power of two that is not above `x` > 0: division by it is exact.
-   pure real(wp) function power_of_two(x) result(p)
-      real(wp), intent(in) :: x
+   !> The largest power of two that is not above `value` > 0: division by it is exact.
+   pure real(wp) function power_of_two(value) result(p)
+      real(wp), intent(in) :: value
 
-      p = scale(1.0_wp, exponent(x) - 1)
+      p = scale(1.0_wp, exponent(value) - 1)
    end function power_of_two
 
    !> Whether the coordinate of `drive` is a length, not an angle.

@@ -16,12 +16,12 @@ module separations
 contains
 
    !> Finds how far two positions of all links are apart at most: places in `length`, and angles but for whole turns.
-   pure function separation(p, q, length) result(apart)
-      real(wp), intent(in) :: p(:, :), q(:, :)   !< (3, links): x and y (length), phi (rad)
+   pure function separation(first, second, length) result(apart)
+      real(wp), intent(in) :: first(:, :), second(:, :)   !< (3, links): x and y (length), phi (rad)
       real(wp), intent(in) :: length         !< the unit of the result, in the deck's unit
       real(wp) :: apart(2)
 
-      apart = [maxval(abs(p(:2, :) - q(:2, :)))/length, maxval(abs(wrap_angle(p(3, :) - q(3, :))))]
+      apart = [maxval(abs(first(:2, :) - second(:2, :)))/length, maxval(abs(wrap_angle(first(3, :) - second(3, :))))]
    end function separation
 
    !> Finds how far two motions are apart at most: places, angles but for whole turns, and velocities, in characteristic

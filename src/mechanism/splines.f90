@@ -16,18 +16,18 @@ module splines
 
 contains
 
-   !> The spline through the knots `x` (strictly increasing, at least two) and the values `y`.
-   function new_spline(x, y) result(s)
-      real(wp), intent(in) :: x(:), y(:)
+   !> The spline through the knots `times` (strictly increasing, at least two) and the `values`.
+   function new_spline(times, values) result(s)
+      real(wp), intent(in) :: times(:), values(:)
       type(spline_t) :: s
-      real(wp) :: h(size(x) - 1), slope(size(x) - 1), diagonal(size(x) - 2), off(size(x) - 2)
+      real(wp) :: h(size(times) - 1), slope(size(times) - 1), diagonal(size(times) - 2), off(size(times) - 2)
       integer :: n, info
 
-      n = size(x)
-      h = x(2:) - x(:n - 1)
-      slope = (y(2:) - y(:n - 1))/h
-      s%x = x
-      s%y = y
+      n = size(times)
+      h = times(2:) - times(:n - 1)
+      slope = (values(2:) - values(:n - 1))/h
+      s%x = times
+      s%y = values
       allocate (s%m(n), source=0.0_wp)
       if (n < 3) return
       diagonal = 2.0_wp*(h(:n - 2) + h(2:))
@@ -36,44 +36,46 @@ contains
       call ptsv(n - 2, 1, diagonal, off, s%m(2:n - 1), n - 2, info)
    end function new_spline
 
-   !> Value, first and second derivative (3) at the time `t` of the cubic between the knots `i` and `i` + 1 of `s`. It
-   !> may be continued beyond them.
-   pure function piece_value(s, i, t) result(f)
-      type(spline_t), intent(in) :: s
+   !> Value, first and second derivative (3) at the time `t` of the cubic between the knots `i` and `i` + 1 of `spline`.
+   !> It may be continued beyond them.
+   pure function piece_value(spline, i, t) result(f)
+      type(spline_t), intent(in) :: spline
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       real(wp) :: f(3)
       real(wp) :: h, u, w, slope, bend
 
-      h = s%x(i + 1) - s%x(i)
-      u = t - s%x(i)
-      w = s%x(i + 1) - t
-      slope = (s%y(i + 1) - s%y(i))/h
-      bend = (s%m(i + 1) - s%m(i))/h
+      h = spline%x(i + 1) - spline%x(i)
+      u = t - spline%x(i)
+      w = spline%x(i + 1) - t
+      slope = (spline%y(i + 1) - spline%y(i))/h
+      bend = (spline%m(i + 1) - spline%m(i))/h
       ! From the nearer knot: at that the value is that of the table, and beside it, in a piece that is much longer than
       ! its neighbour, no cubes of the long way cancel.
       if (u < w) then
-         slope = slope - h*(2.0_wp*s%m(i) + s%m(i + 1))/6.0_wp
-         f = [s%y(i) + u*(slope + u*(s%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(s%m(i) + u*bend/2.0_wp), &
-            s%m(i) + u*bend]
+         slope = slope - h*(2.0_wp*spline%m(i) + spline%m(i + 1))/6.0_wp
+         f = [spline%y(i) + u*(slope + u*(spline%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(spline%m(i) + &
+            u*bend/2.0_wp), &
+            spline%m(i) + u*bend]
       else
-         slope = slope + h*(s%m(i) + 2.0_wp*s%m(i + 1))/6.0_wp
-         f = [s%y(i + 1) - w*(slope - w*(s%m(i + 1)/2.0_wp - w*bend/6.0_wp)), slope - w*(s%m(i + 1) - w*bend/2.0_wp), &
-            s%m(i + 1) - w*bend]
+         slope = slope + h*(spline%m(i) + 2.0_wp*spline%m(i + 1))/6.0_wp
+         f = [spline%y(i + 1) - w*(slope - w*(spline%m(i + 1)/2.0_wp - w*bend/6.0_wp)), &
+            slope - w*(spline%m(i + 1) - w*bend/2.0_wp), &
+            spline%m(i + 1) - w*bend]
       end if
    end function piece_value
 
    !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
-   pure integer function piece_at(s, t) result(low)
-      type(spline_t), intent(in) :: s
+   pure integer function piece_at(spline, t) result(low)
+      type(spline_t), intent(in) :: spline
       real(wp), intent(in) :: t
       integer :: high, middle
 
       low = 1
-      high = size(s%x)
+      high = size(spline%x)
       do while (high - low > 1)
          middle = (low + high)/2
-         if (s%x(middle) <= t) then
+         if (spline%x(middle) <= t) then
             low = middle
          else
             high = middle

@@ -30,10 +30,10 @@ module animation
 
 contains
 
-   !> Draws the film `d` of a set at the end of the `page`.
-   subroutine put_animation(page, d)
+   !> Draws the film `drawing` of a set at the end of the `page`.
+   subroutine put_animation(page, drawing)
       type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: d
+      type(drawing_t), intent(in), target :: drawing
       type(canvas_t) :: c
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
@@ -41,11 +41,11 @@ contains
       logical :: smooth                      ! there are positions between them
       integer :: i
 
-      if (d%films == 0) return
-      call make_canvas(page, d, d%frame(1), [(i, i=1, d%films)], c)
+      if (drawing%films == 0) return
+      call make_canvas(page, drawing, drawing%frame(1), [(i, i=1, drawing%films)], c)
       call find_course()
-      c%s = d%now
-      list = shapes_of(d, c%scale)
+      c%s = drawing%now
+      list = shapes_of(drawing, c%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
       where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
       ! A centrode may run through the pictures of other sets.
@@ -54,7 +54,7 @@ contains
          if (is_fixed(i) .and. list(i)%is_below) call put_shape(c, list(i))
       end do
       call put_group(c%o, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
-         //full(d%frame(d%films)%t)//'"', '')
+         //full(drawing%frame(drawing%films)%t)//'"', '')
       call put_moving_links()
       call put_centres()
       call put_end(c%o, 'g')
@@ -73,11 +73,11 @@ contains
       subroutine find_course()
          integer :: k, stride
 
-         stride = max(1, 1 + (d%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
-         frame = [(min(k, d%films), k=1, d%films + stride - 1, stride)]
+         stride = max(1, 1 + (drawing%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
+         frame = [(min(k, drawing%films), k=1, drawing%films + stride - 1, stride)]
          smooth = .true.
          do k = 2, size(frame)
-            associate (now => d%frame(frame(k)), before => d%frame(frame(k - 1)))
+            associate (now => drawing%frame(frame(k)), before => drawing%frame(frame(k - 1)))
                if (any(now%known .and. before%known .and. &
                   abs(wrap_angle(now%place(3, :) - before%place(3, :))) > max_turn)) smooth = .false.
             end associate
@@ -97,17 +97,18 @@ contains
          axes%s%place = 0.0_wp
          axes%s%known = .true.
          do link = 1, size(c%m%links)
-            if (c%m%links(link)%ground .or. c%m%links(link)%hidden .or. size(d%outlines(link)%corner, 2) == 0) cycle
-            known = [(d%frame(frame(k))%known(link), k=1, size(known))]
+            if (c%m%links(link)%ground .or. c%m%links(link)%hidden .or. size(drawing%outlines(link)%corner, 2) == &
+               0) cycle
+            known = [(drawing%frame(frame(k))%known(link), k=1, size(known))]
             if (.not. any(known)) cycle
             ! It turns about a corner of its own: its origin may be far away.
-            associate (corner => d%outlines(link)%corner(:, 1))
+            associate (corner => drawing%outlines(link)%corner(:, 1))
                axes%shift = -c%scale*corner*[1.0_wp, -1.0_wp]
                last = frame(findloc(known, .true., dim=1))
                turned = 0.0_wp
                do k = 1, size(known)
                   if (known(k)) last = frame(k)
-                  position = d%frame(last)%place(:, link)
+                  position = drawing%frame(last)%place(:, link)
                   place(:, k) = to_pixels(c, point_of(position, corner))
                   turned = turned + wrap_angle(position(3) - turned)
                   angle(1, k) = -in_degrees(turned)
@@ -136,19 +137,19 @@ contains
          logical :: has(size(frame))
          integer :: i, k
 
-         do i = 1, size(d%poles)
-            has = [(d%frame(frame(k))%has_centre(i), k=1, size(frame))]
+         do i = 1, size(drawing%poles)
+            has = [(drawing%frame(frame(k))%has_centre(i), k=1, size(frame))]
             if (.not. any(has)) cycle
             do k = 1, size(frame)
-               place(:, k) = to_pixels(c, d%frame(frame(k))%centre(:, i))
+               place(:, k) = to_pixels(c, drawing%frame(frame(k))%centre(:, i))
             end do
             call put_group(c%o, 'class="pole" transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1)) &
-               //')"', pole_name(c%m, d%poles(i)))
+               //')"', pole_name(c%m, drawing%poles(i)))
             call put_moving(shift, place, .false.)
             if (.not. all(has)) call put_moving('animate attributeName="opacity"', &
                reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
             call put_circle(c%o, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
-               //link_color(c%m, c%m%requests(d%poles(i))%subject)//'"')
+               //link_color(c%m, c%m%requests(drawing%poles(i))%subject)//'"')
             call put_end(c%o, 'g')
          end do
       end subroutine put_centres
@@ -160,7 +161,7 @@ contains
          real(wp) :: by(2, size(frame)), offset(2)
          integer :: i, k, last
 
-         c%s = d%frame(1)
+         c%s = drawing%frame(1)
          do i = 1, size(list)
             call note_shape(c, list(i))
          end do
@@ -172,8 +173,8 @@ contains
                   offset = offset_of(labels(i)%of, c%s%place(:, link))
                   last = 1
                   do k = 1, size(frame)
-                     if (d%frame(frame(k))%known(link)) last = frame(k)
-                     by(:, k) = to_pixels(c, point_of(d%frame(last)%place(:, link), offset)) - labels(i)%of
+                     if (drawing%frame(frame(k))%known(link)) last = frame(k)
+                     by(:, k) = to_pixels(c, point_of(drawing%frame(last)%place(:, link), offset)) - labels(i)%of
                   end do
                   call put_moving(shift, by, smooth)
                end if
@@ -205,7 +206,7 @@ contains
          up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
          call put_moving(shift, up, .false.)
          do k = 1, size(frame)
-            associate (s => d%frame(frame(k)))
+            associate (s => drawing%frame(frame(k)))
                words = caption(c, s%t)
                if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
                call put_words(c%o, real([14, y + line_height*(k - 1) - 5], wp), 'start', &

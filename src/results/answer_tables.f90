@@ -17,17 +17,17 @@ module answer_tables
 contains
 
    !> Writes the answers after the last instant.
-   subroutine put_answers(o, l, a, s)
+   subroutine put_answers(o, l, answers, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(answers_t), intent(in) :: a
-      type(set_analysis_t), intent(in) :: s
+      type(answers_t), intent(in) :: answers
+      type(set_analysis_t), intent(in) :: set
 
-      if (a%extremes_asked) call put_extremes(o, l, s%now, a%extremes, a%dwells)
-      if (s%now%ranges) call put_ranges(o, s%now, a%ranges)
-      if (s%now%assemblies) call put_assemblies(o, l, s)
-      if (allocated(a%circuits)) call put_circuits(o, s%now, a%circuits)
-      if (a%shares_asked) call put_shares(o, l, a%shares, s%now)
-      if (s%now%proves) call put_proofs(o, l, a%proofs, s%now)
+      if (answers%extremes_asked) call put_extremes(o, l, set%now, answers%extremes, answers%dwells)
+      if (set%now%ranges) call put_ranges(o, set%now, answers%ranges)
+      if (set%now%assemblies) call put_assemblies(o, l, set)
+      if (allocated(answers%circuits)) call put_circuits(o, set%now, answers%circuits)
+      if (answers%shares_asked) call put_shares(o, l, answers%shares, set%now)
+      if (set%now%proves) call put_proofs(o, l, answers%proofs, set%now)
    end subroutine put_answers
 end module answer_tables

@@ -31,18 +31,19 @@ module assembly_table
 
 contains
 
-   !> The lines of the assemblies of the set that `s` analyses.
-   subroutine put_assemblies(o, l, s)
+   !> The lines of the assemblies of the set that `set` analyses.
+   subroutine put_assemblies(o, l, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(set_analysis_t), intent(in) :: s
+      type(set_analysis_t), intent(in) :: set
       integer :: c, k
 
       call put(o, '')
-      call put(o, ' '//phrase(say_assemblies, s%now%polish)//'   T = '//time_text(l, instant(s%now, 0))//l%behind_time)
-      do c = 1, size(s%assemblies)
-         associate (m => s%now%parts(c), a => s%assemblies(c))
-            if (size(s%assemblies) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
+      call put(o, ' '//phrase(say_assemblies, set%now%polish)//'   T = '//time_text(l, instant(set%now, 0)) &
+         //l%behind_time)
+      do c = 1, size(set%assemblies)
+         associate (m => set%now%parts(c), a => set%assemblies(c))
+            if (size(set%assemblies) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
             do k = 1, size(a%blocks)
                call put_block(o, m, k, a%blocks(k))
             end do
@@ -83,29 +84,29 @@ contains
          links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
    end subroutine put_block
 
-   !> Assembly number `k` of `a` of the mechanism `m`.
-   subroutine put_assembly(o, m, k, a)
+   !> Assembly number `k` of `assemblies` of the mechanism `m`.
+   subroutine put_assembly(o, m, k, assemblies)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
-      type(assemblies_t), intent(in) :: a
+      type(assemblies_t), intent(in) :: assemblies
       character(1), parameter :: signs(-1:1) = ['-', '0', '+']
       character(:), allocatable :: text
       character(12) :: distance
       integer :: i
 
-      associate (one => a%list(k))
+      associate (one => assemblies%list(k))
          write (distance, '(f12.4)') one%distance
          text = ' '//phrase(say_assembly, m%polish)//' '//whole(k)//'   '//phrase(say_distance, m%polish)//' = ' &
             //trim(adjustl(distance))
-         if (size(a%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
-         do i = 1, size(a%blocks)
+         if (size(assemblies%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
+         do i = 1, size(assemblies%blocks)
             ! 0: it is singular; a point: the block has more equations than unknowns.
-            text = text//merge('.', signs(one%sign_of(a%blocks(i)%block)), a%blocks(i)%is_redundant)
+            text = text//merge('.', signs(one%sign_of(assemblies%blocks(i)%block)), assemblies%blocks(i)%is_redundant)
          end do
          text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
          if (one%is_out) text = text//'   '//phrase(say_out_of_stroke, m%polish)
-         if (k == a%chosen) text = text//'   '//phrase(say_chosen, m%polish)
+         if (k == assemblies%chosen) text = text//'   '//phrase(say_chosen, m%polish)
          call put(o, '')
          call put(o, text)
          call put_cards(o, m, one)
@@ -215,9 +216,9 @@ contains
       end if
    end subroutine put_card
 
-   !> `x` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
-   function number_text(x, largest, digits) result(text)
-      real(wp), intent(in) :: x, largest
+   !> `value` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
+   function number_text(value, largest, digits) result(text)
+      real(wp), intent(in) :: value, largest
       integer, intent(in) :: digits
       character(star_width) :: text
       character(16) :: form
@@ -227,7 +228,7 @@ contains
       power = floor(log10(largest))
       decimals = digits - 1 - power
       unit = 10.0_wp**(-decimals)
-      rounded = anint(x/unit)
+      rounded = anint(value/unit)
       if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp
       if (power < digits .and. decimals <= most_decimals) then
          write (form, '(a, i0, a)') '(f24.', decimals, ')'

@@ -70,39 +70,39 @@ module canvas
 
 contains
 
-   !> Makes the canvas `c` of the drawing `d` at the end of the `page`, and begins it with the title. It shows the
-   !> position `s` in full, and has room for the links at the frames `others`.
+   !> Makes the `canvas` of the `drawing` at the end of the `page`, and begins it with the title. It shows the
+   !> position `snapshot` in full, and has room for the links at the frames `others`.
    !>
    !> The scale has eight binary digits, the height is even and the shift whole: rounding errors of the results do not
    !> move the picture, and none of these is near a tie for what is symmetric or has few digits.
-   subroutine make_canvas(page, d, s, others, c)
+   subroutine make_canvas(page, drawing, snapshot, others, canvas)
       type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: d
-      type(snapshot_t), intent(in) :: s
+      type(drawing_t), intent(in), target :: drawing
+      type(snapshot_t), intent(in) :: snapshot
       integer, intent(in) :: others(:)
-      type(canvas_t), intent(out) :: c
+      type(canvas_t), intent(out) :: canvas
       type(element_t), allocatable :: list(:)
       real(wp) :: low(2), high(2), from(2), to(2)    ! what is drawn; the centrodes within the latter
       real(wp) :: room
       integer :: height, top, i, k
 
-      c%o => page%body
-      c%d => d
-      c%m => d%m
-      c%s = s
+      canvas%o => page%body
+      canvas%d => drawing
+      canvas%m => drawing%m
+      canvas%s = snapshot
 
       ! What is drawn: all shapes at the position in full, those of moving links at the others, paths; and centrodes
       ! that stay near. One that runs far away would take the room of all else.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      list = shapes_of(d, 1.0_wp)
+      list = shapes_of(drawing, 1.0_wp)
       do i = 1, size(list)
          if (list(i)%element == 'centrode') cycle
-         call widen(places_of(list(i), s))
+         call widen(places_of(list(i), snapshot))
          if (list(i)%link == 0) cycle
-         if (d%m%links(list(i)%link)%ground) cycle
+         if (drawing%m%links(list(i)%link)%ground) cycle
          do k = 1, size(others)
-            call widen(places_of(list(i), d%frame(others(k))))
+            call widen(places_of(list(i), drawing%frame(others(k))))
          end do
       end do
       if (.not. all(low <= high)) then
@@ -114,7 +114,7 @@ contains
       to = high + room
       do i = 1, size(list)
          if (list(i)%element /= 'centrode') cycle
-         associate (p => places_of(list(i), s))
+         associate (p => places_of(list(i), snapshot))
             if (all(minval(p, dim=2) >= from) .and. all(maxval(p, dim=2) <= to)) call widen(p)
          end associate
       end do
@@ -122,25 +122,28 @@ contains
       associate (extent => high - low)
          room = real(width, wp) - 2.0_wp*margin
          if (any(extent > 0.0_wp)) then
-            c%scale = 1.0_wp/max(extent(1)/room, extent(2)/max_height)
-            c%scale = c%scale*(1.0_wp + tie)
-            c%scale = scale(aint(256.0_wp*fraction(c%scale)), exponent(c%scale) - 8)
+            canvas%scale = 1.0_wp/max(extent(1)/room, extent(2)/max_height)
+            canvas%scale = canvas%scale*(1.0_wp + tie)
+            canvas%scale = scale(aint(256.0_wp*fraction(canvas%scale)), exponent(canvas%scale) - 8)
          end if
-         height = 2*ceiling(0.5_wp*max(min_height, c%scale*extent(2)) + margin - tie)
+         height = 2*ceiling(0.5_wp*max(min_height, canvas%scale*extent(2)) + margin - tie)
          top = page%height
          page%height = top + above + height + below
-         c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*extent(1)), &
-            real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*extent(2))])
+         canvas%shift = anint([0.5_wp*real(width, wp) - canvas%scale*(low(1) + 0.5_wp*extent(1)), &
+            real(top + above, wp) + 0.5_wp*real(height, wp) + canvas%scale*(low(2) + 0.5_wp*extent(2))])
       end associate
-      c%low = [4.0_wp, real(top + above, wp)]
-      c%high = [real(width - 4, wp), real(top + above + height, wp)]
-      allocate (c%ink(int((c%high(1) - c%low(1))/cell) + 1, int((c%high(2) - c%low(2))/cell) + 1), source=0.0_wp)
+      canvas%low = [4.0_wp, real(top + above, wp)]
+      canvas%high = [real(width - 4, wp), real(top + above + height, wp)]
+      allocate (canvas%ink(int((canvas%high(1) - canvas%low(1))/cell) + 1, &
+         int((canvas%high(2) - canvas%low(2))/cell) + 1), source=0.0_wp)
 
-      call put_group(c%o, 'class="set" data-set="'//whole(c%m%set_number)//'" data-scale="'//full(c%scale) &
-         //'" data-x="'//fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2)) &
-         //'" data-origin="'//full(d%origin(1))//' '//full(d%origin(2))//'" data-t="'//full(s%t)//'"', trim(c%m%title))
-      call put_words(c%o, real([14, top + 24], wp), 'start', 'class="title"', &
-         trim(whole(c%m%set_number)//'.  '//c%m%title))
+      call put_group(canvas%o, 'class="set" data-set="'//whole(canvas%m%set_number)//'" data-scale="' &
+         //full(canvas%scale) &
+         //'" data-x="'//fitted(canvas%shift(1))//'" data-y="'//fitted(canvas%shift(2)) &
+         //'" data-origin="'//full(drawing%origin(1))//' '//full(drawing%origin(2))//'" data-t="'//full(snapshot%t) &
+            //'"', trim(canvas%m%title))
+      call put_words(canvas%o, real([14, top + 24], wp), 'start', 'class="title"', &
+         trim(whole(canvas%m%set_number)//'.  '//canvas%m%title))
 
    contains
 
@@ -153,111 +156,111 @@ contains
       end subroutine widen
    end subroutine make_canvas
 
-   !> The places (2, :) of `shape` at the position `s`; none where its link has no position there.
-   pure function places_of(shape, s) result(p)
+   !> The places (2, :) of `shape` at the position `snapshot`; none where its link has no position there.
+   pure function places_of(shape, snapshot) result(p)
       type(element_t), intent(in) :: shape
-      type(snapshot_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: snapshot
       real(wp), allocatable :: p(:, :)
 
       p = shape%p
       if (shape%link == 0) return
-      p = moved(p, s%place(:, shape%link))
-      if (.not. s%known(shape%link)) p = p(:, :0)
+      p = moved(p, snapshot%place(:, shape%link))
+      if (.not. snapshot%known(shape%link)) p = p(:, :0)
    end function places_of
 
    !> The pixel (2) of the place `p` (2), which is counted from the drawing's origin.
-   pure function to_pixels(c, p) result(q)
-      type(canvas_t), intent(in) :: c
+   pure function to_pixels(canvas, p) result(q)
+      type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: p(2)
       real(wp) :: q(2)
 
-      q = c%shift + c%scale*[p(1), -p(2)]
+      q = canvas%shift + canvas%scale*[p(1), -p(2)]
    end function to_pixels
 
-   !> The pixels (2, :) of `shape` at the position `s`; none where its link is not known there.
-   pure function pixels_of(c, shape, s) result(q)
-      type(canvas_t), intent(in) :: c
+   !> The pixels (2, :) of `shape` at the position `snapshot`; none where its link is not known there.
+   pure function pixels_of(canvas, shape, snapshot) result(q)
+      type(canvas_t), intent(in) :: canvas
       type(element_t), intent(in) :: shape
-      type(snapshot_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: snapshot
       real(wp), allocatable :: q(:, :)
       real(wp) :: e(2)
       integer :: k
 
       e = [1.0_wp, 0.0_wp]
-      if (shape%link > 0) e = direction(s%place(3, shape%link))
-      q = places_of(shape, s)
+      if (shape%link > 0) e = direction(snapshot%place(3, shape%link))
+      q = places_of(shape, snapshot)
       do k = 1, size(q, 2)
-         q(:, k) = to_pixels(c, q(:, k)) + rotated(shape%add(:, k), e)*[1.0_wp, -1.0_wp]
+         q(:, k) = to_pixels(canvas, q(:, k)) + rotated(shape%add(:, k), e)*[1.0_wp, -1.0_wp]
       end do
    end function pixels_of
 
    !> Draws `shape` at the position that the canvas shows, unless its link is not known there.
-   subroutine put_shape(c, shape)
-      type(canvas_t), intent(inout) :: c
+   subroutine put_shape(canvas, shape)
+      type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: shape
       real(wp), allocatable :: q(:, :)
 
-      q = pixels_of(c, shape, c%s)
+      q = pixels_of(canvas, shape, canvas%s)
       if (size(q) == 0) return
       select case (shape%element)
       case ('circle')
-         call put_circle(c%o, q(:, 1), shape%radius, shape%attributes)
+         call put_circle(canvas%o, q(:, 1), shape%radius, shape%attributes)
       case ('polygon')
-         call put_line(c%o, 'polygon', q, shape%attributes)
+         call put_line(canvas%o, 'polygon', q, shape%attributes)
       case default
-         call put_line(c%o, 'polyline', q, shape%attributes)
+         call put_line(canvas%o, 'polyline', q, shape%attributes)
       end select
    end subroutine put_shape
 
    !> Notes what names should keep clear of: `shape` at the position that the canvas shows.
-   subroutine note_shape(c, shape)
-      type(canvas_t), intent(inout) :: c
+   subroutine note_shape(canvas, shape)
+      type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: shape
       real(wp), allocatable :: q(:, :)
 
-      q = pixels_of(c, shape, c%s)
+      q = pixels_of(canvas, shape, canvas%s)
       if (size(q) == 0) return
       if (shape%weight < 0.0_wp) then
-         call add_box(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
+         call add_box(canvas, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
       else if (shape%weight > 0.0_wp) then
          if (shape%element == 'polygon') q = reshape([q, q(:, 1)], [2, size(q, 2) + 1])
-         call add_lines(c, q, shape%weight)
+         call add_lines(canvas, q, shape%weight)
       end if
    end subroutine note_shape
 
-   !> Draws the outlines of the moving ones of the shapes `list` as thin lines at the position `s`.
-   subroutine put_outlines(c, list, s)
-      type(canvas_t), intent(inout) :: c
+   !> Draws the outlines of the moving ones of the shapes `list` as thin lines at the position `snapshot`.
+   subroutine put_outlines(canvas, list, snapshot)
+      type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: list(:)
-      type(snapshot_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: snapshot
       real(wp), allocatable :: q(:, :)
       integer :: i
 
       do i = 1, size(list)
-         if (.not. list(i)%is_faint .or. c%m%links(max(1, list(i)%link))%ground) cycle
-         q = pixels_of(c, list(i), s)
-         if (size(q) > 0) call put_line(c%o, list(i)%element, q, 'class="thin"')
+         if (.not. list(i)%is_faint .or. canvas%m%links(max(1, list(i)%link))%ground) cycle
+         q = pixels_of(canvas, list(i), snapshot)
+         if (size(q) > 0) call put_line(canvas%o, list(i)%element, q, 'class="thin"')
       end do
    end subroutine put_outlines
 
    !> The time `t` in words, with the values of the drives, as far as there is room.
-   function caption(c, t) result(words)
-      type(canvas_t), intent(in) :: c
+   function caption(canvas, t) result(words)
+      type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: t
       character(:), allocatable :: words, next
       real(wp) :: f(0:2)
       integer :: i
 
-      words = 'T = '//fitted(t)//' '//trim(c%m%time_unit)
-      do i = 1, size(c%m%drives)
-         associate (drive => c%m%drives(i))
+      words = 'T = '//fitted(t)//' '//trim(canvas%m%time_unit)
+      do i = 1, size(canvas%m%drives)
+         associate (drive => canvas%m%drives(i))
             f = drive_motion(drive, t)
             if (is_length(drive)) then
-               next = fitted(f(0))//' '//trim(c%m%length_unit)
+               next = fitted(f(0))//' '//trim(canvas%m%length_unit)
             else
-               next = fitted(merge(in_degrees(f(0)), f(0), c%m%degrees))//' '//trim(angle_unit(c%m))
+               next = fitted(merge(in_degrees(f(0)), f(0), canvas%m%degrees))//' '//trim(angle_unit(canvas%m))
             end if
-            next = ', '//trim(drive_name(c%m, drive))//' = '//next
+            next = ', '//trim(drive_name(canvas%m, drive))//' = '//next
          end associate
          if (len(words) + len(next) > max_caption) exit
          words = words//next
@@ -266,26 +269,27 @@ contains
 
    !> Ends the picture: below it when and why the first flagged instant is flagged, and how many are; and at the foot on
    !> the right the scale bar.
-   subroutine put_foot(c)
-      type(canvas_t), intent(in) :: c
+   subroutine put_foot(canvas)
+      type(canvas_t), intent(in) :: canvas
       character(:), allocatable :: words
 
-      if (c%d%flagged > 0) then
-         associate (s => c%d%flag)
-            words = 'T = '//fitted(s%t)//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
+      if (canvas%d%flagged > 0) then
+         associate (s => canvas%d%flag)
+            words = 'T = '//fitted(s%t)//': '//words_of_mark(s%mark, s%singularity, canvas%m%polish)
          end associate
-         if (c%d%flagged > 1) words = words//'; '//phrase(say_flagged_in_all, c%m%polish)//' '//whole(c%d%flagged)
-         call put_words(c%o, [14.0_wp, c%high(2) + 45.0_wp], 'start', 'class="flag"', words)
+         if (canvas%d%flagged > 1) words = words//'; '//phrase(say_flagged_in_all, canvas%m%polish)//' ' &
+            //whole(canvas%d%flagged)
+         call put_words(canvas%o, [14.0_wp, canvas%high(2) + 45.0_wp], 'start', 'class="flag"', words)
       end if
-      call put_bar(c, c%high(2) + 16.0_wp, c%scale, trim(c%m%length_unit), 'class="scale"')
-      call put_end(c%o, 'g')
+      call put_bar(canvas, canvas%high(2) + 16.0_wp, canvas%scale, trim(canvas%m%length_unit), 'class="scale"')
+      call put_end(canvas%o, 'g')
    end subroutine put_foot
 
-   !> Draws a scale bar on the right at the height `y` (pixels): 1, 2 or 5 times a power of ten of the `unit`, of which
-   !> one has so many pixels (`scale`).
-   subroutine put_bar(c, y, scale, unit, attributes)
-      type(canvas_t), intent(in) :: c
-      real(wp), intent(in) :: y, scale
+   !> Draws a scale bar on the right at the height `level` (pixels): 1, 2 or 5 times a power of ten of the `unit`, of
+   !> which one has so many pixels (`scale`).
+   subroutine put_bar(canvas, level, scale, unit, attributes)
+      type(canvas_t), intent(in) :: canvas
+      real(wp), intent(in) :: level, scale
       character(*), intent(in) :: unit, attributes
       real(wp) :: length, from, x
 
@@ -297,55 +301,57 @@ contains
       end if
       x = real(width - 24, wp)
       from = x - length*scale
-      call put_line(c%o, 'polyline', reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, &
-         x, y + 4.0_wp], [2, 6]), attributes)
-      call put_words(c%o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//unit)
+      call put_line(canvas%o, 'polyline', reshape([from, level - 4.0_wp, from, level + 4.0_wp, from, level, x, level, &
+         x, level - 4.0_wp, &
+         x, level + 4.0_wp], [2, 6]), attributes)
+      call put_words(canvas%o, [from - 8.0_wp, level + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//unit)
    end subroutine put_bar
 
-   !> Notes the lines through the pixels `q` (2, :), which names should not cross, the less the more they weigh.
-   pure subroutine add_lines(c, q, weight)
-      type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: q(:, :), weight
+   !> Notes the lines through the pixels `points` (2, :), which names should not cross, the less the more they weigh.
+   pure subroutine add_lines(canvas, points, weight)
+      type(canvas_t), intent(inout) :: canvas
+      real(wp), intent(in) :: points(:, :), weight
       real(wp) :: length, at(2)
       integer :: pieces, i, j, k(2)
 
-      do j = 2, size(q, 2)
-         length = norm2(q(:, j) - q(:, j - 1))
+      do j = 2, size(points, 2)
+         length = norm2(points(:, j) - points(:, j - 1))
          pieces = ceiling(min(length/cell, real(max_pieces, wp)))
          do i = 1, pieces
-            at = q(:, j - 1) + (real(i, wp) - 0.5_wp)/real(pieces, wp)*(q(:, j) - q(:, j - 1))
-            if (any(at < c%low) .or. any(at > c%high)) cycle
-            k = cell_of(c, at)
-            c%ink(k(1), k(2)) = c%ink(k(1), k(2)) + weight*length/real(pieces, wp)
+            at = points(:, j - 1) + (real(i, wp) - 0.5_wp)/real(pieces, wp)*(points(:, j) - points(:, j - 1))
+            if (any(at < canvas%low) .or. any(at > canvas%high)) cycle
+            k = cell_of(canvas, at)
+            canvas%ink(k(1), k(2)) = canvas%ink(k(1), k(2)) + weight*length/real(pieces, wp)
          end do
       end do
    end subroutine add_lines
 
-   !> Notes a box from its upper left corner `p` to its lower right one `q` (2), in pixels, that names should not cover.
-   pure subroutine add_box(c, p, q)
-      type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(2), q(2)
+   !> Notes a box from its upper left corner `p` to its lower right one `corner` (2), in pixels, that names should not
+   !> cover.
+   pure subroutine add_box(canvas, p, corner)
+      type(canvas_t), intent(inout) :: canvas
+      real(wp), intent(in) :: p(2), corner(2)
 
-      associate (from => cell_of(c, p), to => cell_of(c, q))
-         c%ink(from(1):to(1), from(2):to(2)) = c%ink(from(1):to(1), from(2):to(2)) + over_name
+      associate (from => cell_of(canvas, p), to => cell_of(canvas, corner))
+         canvas%ink(from(1):to(1), from(2):to(2)) = canvas%ink(from(1):to(1), from(2):to(2)) + over_name
       end associate
    end subroutine add_box
 
    !> The numbers (2) of the cell at the pixel `p` (2), or of the cell of the window nearest to it. Rounding errors of
    !> whole pixels, at which lines often lie, do not choose.
-   pure function cell_of(c, p) result(k)
-      type(canvas_t), intent(in) :: c
+   pure function cell_of(canvas, p) result(k)
+      type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: p(2)
       integer :: k(2)
 
-      k = 1 + int((min(max(p, c%low), c%high) - c%low + tie)/cell)
+      k = 1 + int((min(max(p, canvas%low), canvas%high) - canvas%low + tie)/cell)
    end function cell_of
 
    !> Finds the place of the `name` of what is at one of the pixels `p` (2, :), where it covers the least of what is
    !> drawn, or is nearer to it than `clear` (pixels): of places on eight sides at several distances. It is noted as
    !> drawn.
-   subroutine place_name(c, p, clear, name, label)
-      type(canvas_t), intent(inout) :: c
+   subroutine place_name(canvas, p, clear, name, label)
+      type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: p(:, :), clear
       character(*), intent(in) :: name
       type(label_t), intent(inout) :: label
@@ -366,7 +372,7 @@ contains
                   distance = distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)
                   low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distance) - half
                   high = low + 2.0_wp*half
-                  cost = cover(c, low - clear, high + clear) + distance_weight*distances(d)
+                  cost = cover(canvas, low - clear, high + clear) + distance_weight*distances(d)
                   if (cost >= least - tie) cycle
                   least = cost
                   label%start = [low(1), high(2)]
@@ -377,40 +383,40 @@ contains
          end do
       end do
       associate (start => label%start)
-         call add_box(c, start - [0.0_wp, 2.0_wp*half(2)], start + [2.0_wp*half(1), 0.0_wp])
+         call add_box(canvas, start - [0.0_wp, 2.0_wp*half(2)], start + [2.0_wp*half(1), 0.0_wp])
       end associate
    end subroutine place_name
 
    !> Writes the name of a `label`, with a thin line to what it names if it is far from it.
-   subroutine put_label(c, label)
-      type(canvas_t), intent(in) :: c
+   subroutine put_label(canvas, label)
+      type(canvas_t), intent(in) :: canvas
       type(label_t), intent(in) :: label
 
       if (norm2(label%near - label%of) > label%clear + max_alone) &
-         call put_line(c%o, 'polyline', reshape([label%of, label%near], [2, 2]), 'class="leader"')
-      call put_words(c%o, label%start, 'start', label%attributes, label%name)
+         call put_line(canvas%o, 'polyline', reshape([label%of, label%near], [2, 2]), 'class="leader"')
+      call put_words(canvas%o, label%start, 'start', label%attributes, label%name)
    end subroutine put_label
 
    !> How much of what is drawn the line through the places `p` (2, :) would cover or come near.
-   pure real(wp) function cover_of(c, p)
-      type(canvas_t), intent(in) :: c
+   pure real(wp) function cover_of(canvas, p)
+      type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: p(:, :)
       integer :: i
 
       cover_of = 0.0_wp
       do i = 1, size(p, 2)
-         cover_of = cover_of + cover(c, p(:, i) - near, p(:, i) + near)
+         cover_of = cover_of + cover(canvas, p(:, i) - near, p(:, i) + near)
       end do
    end function cover_of
 
    !> How much of what is drawn the box from `low` to `high` (2) covers, in pixels of lines.
-   pure real(wp) function cover(c, low, high)
-      type(canvas_t), intent(in) :: c
+   pure real(wp) function cover(canvas, low, high)
+      type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: low(2), high(2)
 
-      associate (from => cell_of(c, low), to => cell_of(c, high))
-         cover = sum(c%ink(from(1):to(1), from(2):to(2)))
+      associate (from => cell_of(canvas, low), to => cell_of(canvas, high))
+         cover = sum(canvas%ink(from(1):to(1), from(2):to(2)))
       end associate
-      if (any(low < c%low) .or. any(high > c%high)) cover = cover + outside
+      if (any(low < canvas%low) .or. any(high > canvas%high)) cover = cover + outside
    end function cover
 end module canvas

@@ -53,13 +53,13 @@ module circuits_picture
 
 contains
 
-   !> Draws the diagrams of the circuits `found` of the set `m`, which `s` analyses, at the end of the `page`: a chart
+   !> Draws the diagrams of the circuits `found` of the set `m`, which `set` analyses, at the end of the `page`: a chart
    !> for each number that PRINT asks for and that varies, not driven; above them the names of the circuits in their
    !> colours, as far as there is room.
-   subroutine put_circuits(page, m, s, found)
+   subroutine put_circuits(page, m, set, found)
       type(page_t), intent(inout) :: page
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: s
+      type(set_analysis_t), intent(in) :: set
       type(circuits_t), intent(in) :: found(:)
       logical :: does_vary
       integer :: i, k, column
@@ -74,16 +74,16 @@ contains
             end do
          end associate
          page%height = page%height + head
-         associate (own => s%now%parts(found(i)%part))
+         associate (own => set%now%parts(found(i)%part))
             do k = 1, merge(size(own%requests), 0, size(found(i)%list) > 0)
                associate (r => own%requests(k))
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
                   ! Of a link that turns its angle alone.
-                  if (r%kind == request_link) call put_chart(page, s, own, found(i), r, phi, does_vary)
+                  if (r%kind == request_link) call put_chart(page, set, own, found(i), r, phi, does_vary)
                   if (does_vary) cycle
                   do column = 1, min(forms(form_of(own, r))%coordinates, merge(phi - 1, phi, r%kind == request_link))
-                     call put_chart(page, s, own, found(i), r, column, does_vary)
+                     call put_chart(page, set, own, found(i), r, column, does_vary)
                   end do
                end associate
             end do
@@ -93,9 +93,9 @@ contains
 
    !> Draws `column` of the row of `request` along the circuits `found` of `m`, over their drive, if it is not constant
    !> (`does_vary`) nor the drive itself.
-   subroutine put_chart(page, s, m, found, request, column, does_vary)
+   subroutine put_chart(page, set, m, found, request, column, does_vary)
       type(page_t), intent(inout) :: page
-      type(set_analysis_t), intent(in) :: s
+      type(set_analysis_t), intent(in) :: set
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
       type(request_t), intent(in) :: request
@@ -122,7 +122,7 @@ contains
       ! The curves, and whether they vary.
       q = new_motion(size(m%links))
       q%known = 0
-      q%origin = s%now%motions(found%part)%origin
+      q%origin = set%now%motions(found%part)%origin
       angular = [found%curve%is_angle, columns_of_rows(column_at(form_of(m, request), column, 0))%dimension == of_angle]
       unit = merge(degree, 1.0_wp, angular .and. m%degrees)
       turn = merge(2.0_wp*pi/unit, 0.0_wp, angular)
@@ -237,10 +237,10 @@ contains
          end do
       end function first_equal
 
-      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `q` (2,
+      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `line` (2,
       !> :), but for whole turns.
-      pure logical function lies_on(p, q)
-         real(wp), intent(in) :: p(:, :), q(:, :)
+      pure logical function lies_on(p, line)
+         real(wp), intent(in) :: p(:, :), line(:, :)
          real(wp) :: a(2), u(2), v(2), least
          integer :: point, side, k, j
 
@@ -251,9 +251,9 @@ contains
                do k = merge(-1, 0, turn(1) > 0.0_wp), merge(1, 0, turn(1) > 0.0_wp)
                   do j = merge(-1, 0, turn(2) > 0.0_wp), merge(1, 0, turn(2) > 0.0_wp)
                      a = p(:, point) + [k, j]*period
-                     do side = 1, size(q, 2) - 1
-                        u = a - q(:, side)
-                        v = q(:, side + 1) - q(:, side)
+                     do side = 1, size(line, 2) - 1
+                        u = a - line(:, side)
+                        v = line(:, side + 1) - line(:, side)
                         least = min(least, norm2(u - v*min(max(dot_product(u, v) &
                            /max(dot_product(v, v), tiny(1.0_wp)), 0.0_wp), 1.0_wp)))
                      end do

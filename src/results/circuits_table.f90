@@ -27,17 +27,17 @@ module circuits_table
 
 contains
 
-   !> Writes the circuits `list` of the set `s` at its end.
-   subroutine put_circuits(o, s, list)
+   !> Writes the circuits `list` of the `set` at its end.
+   subroutine put_circuits(o, set, list)
       type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: s
+      class(set_t), intent(in) :: set
       type(circuits_t), intent(in) :: list(:)
       integer :: n
 
       call put(o, '')
       do n = 1, size(list)
          if (n > 1) call put(o, '')
-         associate (found => list(n), m => s%parts(list(n)%part))
+         associate (found => list(n), m => set%parts(list(n)%part))
             call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
                //trim(drive_name(m, m%drives(found%drive))))
             if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
@@ -103,42 +103,43 @@ contains
       end do
    end subroutine put_branches
 
-   !> The range of the drive on branch `b`.
-   function range_words(m, found, b) result(text)
+   !> The range of the drive on `branch`.
+   function range_words(m, found, branch) result(text)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      type(circuit_branch_t), intent(in) :: b
+      type(circuit_branch_t), intent(in) :: branch
       character(:), allocatable :: text
       logical :: rises
       integer :: side
 
-      associate (circuit => found%list(b%circuit))
+      associate (circuit => found%list(branch%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, b%range(1))
-         else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
+            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, branch%range(1))
+         else if (all(circuit%ends == end_closed) .and. all(branch%dead == 0)) then
             text = full_turn_words(turns_of(circuit), m%polish)
          else
             ! The head of the column has their unit.
-            text = value_words(m, found, b%range(1))
-            text = text(:index(text, ' '))//'.. '//value_words(m, found, b%range(2))
+            text = value_words(m, found, branch%range(1))
+            text = text(:index(text, ' '))//'.. '//value_words(m, found, branch%range(2))
             text = text(:index(text, ' ', back=.true.) - 1)
-            rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
+            rises = circuit%points(branch%first)%value(0) < circuit%points(branch%last)%value(0)
             do side = 1, 2
-               if (b%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
+               if (branch%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
                   //phrase(end_words(circuit%ends(merge(side, 3 - side, rises))), m%polish)
             end do
          end if
       end associate
    end function range_words
 
-   !> The value `x` (rad or length) of the free drive of `found`, 0 if it is rounding, with its unit.
-   function value_words(m, found, x) result(words)
+   !> The value `number` (rad or length) of the free drive of `found`, 0 if it is rounding, with its unit.
+   function value_words(m, found, number) result(words)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: number
       character(:), allocatable :: words
 
-      words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), value_digits)
+      words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(number)), &
+         value_digits)
    end function value_words
 
    !> BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT

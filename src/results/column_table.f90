@@ -48,39 +48,39 @@ module column_table
 contains
 
    !> Makes the tables of a set ready for its first instant.
-   subroutine new_column_table(l, s, t)
+   subroutine new_column_table(l, set, table)
       type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: s
-      type(column_table_t), intent(out) :: t
+      class(set_t), intent(in) :: set
+      type(column_table_t), intent(out) :: table
       integer :: i, c, used
 
-      if (.not. allocated(s%columns)) return
-      t%alone = .not. any([(any(s%parts(c)%requests%every > 0), c=1, s%count)])
-      allocate (t%columns(1 + size(l%drives) + size(s%columns)))
-      call put_heads(t%columns(1), '', 'T', l%time, trim(s%time_unit))
+      if (.not. allocated(set%columns)) return
+      table%alone = .not. any([(any(set%parts(c)%requests%every > 0), c=1, set%count)])
+      allocate (table%columns(1 + size(l%drives) + size(set%columns)))
+      call put_heads(table%columns(1), '', 'T', l%time, trim(set%time_unit))
       do i = 1, size(l%drives)
-         t%columns(1 + i)%drive = i
-         call take_drive(t%columns(1 + i))
+         table%columns(1 + i)%drive = i
+         call take_drive(table%columns(1 + i))
       end do
-      do i = 1, size(s%columns)
-         call take_number(i, t%columns(1 + size(l%drives) + i))
+      do i = 1, size(set%columns)
+         call take_number(i, table%columns(1 + size(l%drives) + i))
       end do
 
       ! A table ends where a line has no room for the next column. After the time there is the flag.
-      t%starts = [2]
-      used = t%columns(1)%width + len(flag)
-      do i = 2, size(t%columns)
-         used = used + t%columns(i)%width
+      table%starts = [2]
+      used = table%columns(1)%width + len(flag)
+      do i = 2, size(table%columns)
+         used = used + table%columns(i)%width
          if (used <= line_length) cycle
-         t%starts = [t%starts, i]
-         used = t%columns(1)%width + len(flag) + t%columns(i)%width
+         table%starts = [table%starts, i]
+         used = table%columns(1)%width + len(flag) + table%columns(i)%width
       end do
-      t%starts = [t%starts, size(t%columns) + 1]
-      allocate (t%lines(size(t%starts) - 1))
-      do i = 1, size(t%lines)
-         call open_held(t%lines(i))
+      table%starts = [table%starts, size(table%columns) + 1]
+      allocate (table%lines(size(table%starts) - 1))
+      do i = 1, size(table%lines)
+         call open_held(table%lines(i))
       end do
-      call open_held(t%remarks)
+      call open_held(table%remarks)
 
    contains
 
@@ -90,8 +90,8 @@ contains
          character(:), allocatable :: name
          integer :: border
 
-         associate (place => s%drives(column%drive), drive => l%drives(column%drive))
-            name = trim(drive_name(s%parts(place%part), s%parts(place%part)%drives(place%number)))
+         associate (place => set%drives(column%drive), drive => l%drives(column%drive))
+            name = trim(drive_name(set%parts(place%part), set%parts(place%part)%drives(place%number)))
             border = index(name, ' ')
             call put_heads(column, name(:border - 1), name(border + 1:), drive%format, &
                trim(l%unit(merge(of_angle, of_length, drive%format%is_angle))))
@@ -105,14 +105,14 @@ contains
          type(request_t) :: request
          character(:), allocatable :: name
 
-         column%request = s%columns(i)%request
-         request = request_of(s, column%request)
-         associate (part => s%rows(column%request)%part)
-            column%number = columns_of_rows(column_at(form_of(s%parts(part), request), s%columns(i)%at(1), &
-               s%columns(i)%at(2)))
-            name = subject_name(s%parts(part), request%kind, request%subject)
-            if (request%drive > 0) name = trim(name)//' '//phrase(say_by, s%polish)//' ' &
-               //drive_name(s%parts(part), s%parts(part)%drives(request%drive))
+         column%request = set%columns(i)%request
+         request = request_of(set, column%request)
+         associate (part => set%rows(column%request)%part)
+            column%number = columns_of_rows(column_at(form_of(set%parts(part), request), set%columns(i)%at(1), &
+               set%columns(i)%at(2)))
+            name = subject_name(set%parts(part), request%kind, request%subject)
+            if (request%drive > 0) name = trim(name)//' '//phrase(say_by, set%polish)//' ' &
+               //drive_name(set%parts(part), set%parts(part)%drives(request%drive))
             call put_heads(column, trim(name), column_name(l, column%number), &
                l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
          end associate
@@ -133,64 +133,66 @@ contains
    end subroutine new_column_table
 
    !> Takes the rows of an instant: a line for each table.
-   subroutine note_columns(t, l, s, rows)
-      type(column_table_t), intent(inout) :: t
+   subroutine note_columns(table, l, motions, rows)
+      type(column_table_t), intent(inout) :: table
       type(layout_t), intent(in) :: l
-      type(set_motion_t), intent(in) :: s
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
       character(line_length) :: line
       character(numeral_length) :: field, time
       real(wp) :: f(3)
       integer :: n, i, last, cell
 
-      call put_number(t%columns(1)%format, 0, s%motions(1)%t, 0.0_wp, time, t%masked)
-      t%flagged = t%flagged .or. is_flagged(s)
-      do n = 1, size(t%lines)
-         line = right(time, t%columns(1)%width)
-         last = t%columns(1)%width + len(flag)
-         if (is_flagged(s)) line(last:last) = flag
-         do i = t%starts(n), t%starts(n + 1) - 1
-            associate (c => t%columns(i))
+      call put_number(table%columns(1)%format, 0, motions%motions(1)%t, 0.0_wp, time, table%masked)
+      table%flagged = table%flagged .or. is_flagged(motions)
+      do n = 1, size(table%lines)
+         line = right(time, table%columns(1)%width)
+         last = table%columns(1)%width + len(flag)
+         if (is_flagged(motions)) line(last:last) = flag
+         do i = table%starts(n), table%starts(n + 1) - 1
+            associate (c => table%columns(i))
                if (c%drive > 0) then
-                  f = drive_motion(l%drives(c%drive)%law, s%motions(1)%t)
-                  call put_number(c%format, 0, f(1), law_error(l%drives(c%drive), s%motions(1)%t), field, t%masked)
+                  f = drive_motion(l%drives(c%drive)%law, motions%motions(1)%t)
+                  call put_number(c%format, 0, f(1), law_error(l%drives(c%drive), motions%motions(1)%t), field, &
+                     table%masked)
                else
                   associate (row => rows(c%request), at => c%number%at)
                      cell = cell_of(c%number, row%known, row%state)
                      call put_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, &
-                        field, t%masked)
+                        field, table%masked)
                   end associate
                end if
                last = last + c%width
                line(last - numeral_length + 1:last) = field
             end associate
          end do
-         call put(t%lines(n), line(:len_trim(line)))
+         call put(table%lines(n), line(:len_trim(line)))
       end do
    end subroutine note_columns
 
    !> Writes the tables, and below them what there is to say.
-   subroutine put_columns(o, t, s)
+   subroutine put_columns(o, table, settings)
       type(output_t), intent(inout) :: o
-      type(column_table_t), intent(inout) :: t   !< gives up its lines
-      class(settings_t), intent(in) :: s
+      type(column_table_t), intent(inout) :: table   !< gives up its lines
+      class(settings_t), intent(in) :: settings
       character(:), allocatable :: line
       integer :: n, k, i
 
-      if (.not. allocated(t%columns)) return
-      do n = 1, size(t%lines)
+      if (.not. allocated(table%columns)) return
+      do n = 1, size(table%lines)
          call put(o, '')
          do k = 1, head_lines
-            line = right(trim(t%columns(1)%heads(k)), t%columns(1)%width)//repeat(' ', len(flag))
-            do i = t%starts(n), t%starts(n + 1) - 1
-               line = line//right(trim(t%columns(i)%heads(k)), t%columns(i)%width)
+            line = right(trim(table%columns(1)%heads(k)), table%columns(1)%width)//repeat(' ', len(flag))
+            do i = table%starts(n), table%starts(n + 1) - 1
+               line = line//right(trim(table%columns(i)%heads(k)), table%columns(i)%width)
             end do
             if (line /= '') call put(o, trim(line))
          end do
-         call move_text(t%lines(n), o)
+         call move_text(table%lines(n), o)
       end do
-      if (t%flagged .and. .not. t%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, s%polish))
-      if (t%masked) call put(o, mask_words(s))
-      call move_text(t%remarks, o)
+      if (table%flagged .and. .not. table%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, &
+         settings%polish))
+      if (table%masked) call put(o, mask_words(settings))
+      call move_text(table%remarks, o)
    end subroutine put_columns
 end module column_table

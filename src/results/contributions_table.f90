@@ -28,50 +28,50 @@ module contributions_table
 
 contains
 
-   !> Writes the shares after the last instant of the set `s`.
-   subroutine put_shares(o, l, a, s)
+   !> Writes the shares after the last instant of the `set`.
+   subroutine put_shares(o, l, shares, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(shares_t), intent(in) :: a
-      class(set_t), intent(in) :: s
+      type(shares_t), intent(in) :: shares
+      class(set_t), intent(in) :: set
       type(request_t) :: request
       integer :: i, c, d, j, form
 
       call put(o, '')
-      call put(o, ' '//phrase(say_shares, s%polish))
-      if (any([(any(is_centre(s%parts(c)%requests%kind)), c=1, s%count)])) &
-         call put(o, ' --- '//phrase(say_no_shares, s%polish))
-      if (any([(any(s%parts(c)%requests%drive > 0), c=1, s%count)])) &
-         call put(o, ' --- '//phrase(say_no_ratio_shares, s%polish))
-      do c = 1, s%count
-         do d = 1, size(s%parts(c)%tolerances)
-            if (a%jams(d, c)) &
-               call put(o, ' *** '//trim(s%parts(c)%tolerances(d)%name)//': '//phrase(say_jams, s%polish))
+      call put(o, ' '//phrase(say_shares, set%polish))
+      if (any([(any(is_centre(set%parts(c)%requests%kind)), c=1, set%count)])) &
+         call put(o, ' --- '//phrase(say_no_shares, set%polish))
+      if (any([(any(set%parts(c)%requests%drive > 0), c=1, set%count)])) &
+         call put(o, ' --- '//phrase(say_no_ratio_shares, set%polish))
+      do c = 1, set%count
+         do d = 1, size(set%parts(c)%tolerances)
+            if (shares%jams(d, c)) &
+               call put(o, ' *** '//trim(set%parts(c)%tolerances(d)%name)//': '//phrase(say_jams, set%polish))
          end do
       end do
-      do i = 1, size(s%rows)
-         request = request_of(s, i)
-         associate (part => s%rows(i)%part)
-            if (.not. has_tolerances(s%parts(part), request)) cycle
-            form = merge(row_turning, form_of(s%parts(part), request), request%angle_alone)
+      do i = 1, size(set%rows)
+         request = request_of(set, i)
+         associate (part => set%rows(i)%part)
+            if (.not. has_tolerances(set%parts(part), request)) cycle
+            form = merge(row_turning, form_of(set%parts(part), request), request%angle_alone)
             do j = forms(form)%first, forms(form)%last
                associate (c => columns_of_rows(j))
-                  call put_quantity(o, l, l%own(part)%format(c%dimension, c%order), s%parts(part), request, c, &
-                     a%list(c%at(1), c%at(2), i))
+                  call put_quantity(o, l, l%own(part)%format(c%dimension, c%order), set%parts(part), request, c, &
+                     shares%list(c%at(1), c%at(2), i))
                end associate
             end do
          end associate
       end do
    end subroutine put_shares
 
-   !> Writes the lines of a quantity, one column of a row; none where the tables, with the digits `d`, have zero.
-   subroutine put_quantity(o, l, d, m, request, c, share)
+   !> Writes the lines of a quantity, one column of a row; none where the tables, with the digits `format`, have zero.
+   subroutine put_quantity(o, l, format, m, request, column, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(format_t), intent(in) :: d
+      type(format_t), intent(in) :: format
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
-      type(row_column_t), intent(in) :: c
+      type(row_column_t), intent(in) :: column
       type(share_t), intent(in) :: share
       character(:), allocatable :: unit, word
       type(format_t) :: f
@@ -81,15 +81,15 @@ contains
       character(max(number_name, len(m%tolerances%name))) :: name
 
       if (.not. allocated(share%s)) return
-      f = d
-      f%decimals = d%decimals + l%more_decimals
+      f = format
+      f%decimals = format%decimals + l%more_decimals
       if (share%root/f%unit < 0.5_wp*10.0_wp**(f%power - f%decimals)) return
-      unit = unit_of(f%power, column_unit(l, c))
+      unit = unit_of(f%power, column_unit(l, column))
       associate (kind => kinds_of_rows(request%kind))
          word = trim(merge(kind%polish, kind%english, l%polish))
       end associate
       call put(o, ' '//word//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
-         //column_name(l, c)//'   T = '//time_text(l, share%t)//l%behind_time &
+         //column_name(l, column)//'   T = '//time_text(l, share%t)//l%behind_time &
          //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
          //value_text(share%worst)//' '//unit)
 
@@ -113,11 +113,11 @@ contains
    contains
 
       !> Gives a value of the quantity.
-      function value_text(x) result(text)
-         real(wp), intent(in) :: x           !< in the deck's units and rad
+      function value_text(value) result(text)
+         real(wp), intent(in) :: value           !< in the deck's units and rad
          character(:), allocatable :: text
 
-         text = number_text(f, x, 0.0_wp)
+         text = number_text(f, value, 0.0_wp)
       end function value_text
    end subroutine put_quantity
 end module contributions_table

@@ -75,18 +75,18 @@ contains
    end subroutine csv_head
 
    !> Writes the rows of an instant that are due, with their errors where these are asked for.
-   subroutine csv_instant(o, s, rows, step, varies)
+   subroutine csv_instant(o, motions, rows, step, varies)
       type(output_t), intent(inout) :: o
-      type(set_motion_t), intent(in) :: s
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)
       integer, intent(in) :: step            !< the number of the instant, from 0
       logical, intent(in) :: varies          !< as in the head
       character(:), allocatable :: start
       integer :: i, k
 
-      start = whole(s%set_number)//','
-      if (varies) start = start//whole(s%variant)//','
-      start = start//whole(step)//','//full(s%motions(1)%t)//','
+      start = whole(motions%set_number)//','
+      if (varies) start = start//whole(motions%variant)//','
+      start = start//whole(step)//','//full(motions%motions(1)%t)//','
       do i = 1, size(rows)
          associate (row => rows(i))
             if (.not. row%due) cycle
@@ -143,7 +143,7 @@ contains
                if (mark == '' .and. is_unknown) mark = mark_unknown
                call add(o, mark(:len_trim(mark)))
 
-               if (s%errors(1)%asked) then
+               if (motions%errors(1)%asked) then
                   has_error = error < nothing_known
                   ! A derivative has no error where no digit of the one before is known.
                   do k = 0, 2
@@ -175,7 +175,7 @@ contains
                associate (column => columns_of_rows(place(c, k)), at => columns_of_rows(place(c, k))%at)
                   if (.not. has_digit(at(1), at(2))) cycle
                   x = value(at(1), at(2))
-                  if (s%degrees .and. column%dimension == of_angle) x = in_degrees(x)
+                  if (motions%degrees .and. column%dimension == of_angle) x = in_degrees(x)
                end associate
                call put_full(x, cells(used + 1:used + full_length), length)
                used = used + length
@@ -187,8 +187,8 @@ contains
 
    !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
    !> the rows of PRINT.
-   function new_table(s, chosen) result(t)
-      class(set_t), intent(in) :: s
+   function new_table(set, chosen) result(t)
+      class(set_t), intent(in) :: set
       integer, intent(in), optional :: chosen(:)   !< instead, these rows, with the numbers whose extremes are asked for
       type(table_t) :: t
       type(name_table_t) :: links
@@ -196,22 +196,22 @@ contains
       integer, allocatable :: rows(:), form(:)
       integer :: i, j, k, n
 
-      t%drives = drive_columns(s)
+      t%drives = drive_columns(set)
 
       ! The rows, and which names links have among them.
-      requests = [(request_of(s, i), i=1, size(s%rows))]
-      rows = [(i, i=1, size(s%rows))]
-      form = [(form_of(s%parts(s%rows(i)%part), requests(i)), i=1, size(s%rows))]
+      requests = [(request_of(set, i), i=1, size(set%rows))]
+      rows = [(i, i=1, size(set%rows))]
+      form = [(form_of(set%parts(set%rows(i)%part), requests(i)), i=1, size(set%rows))]
       if (present(chosen)) then
          rows = chosen
-      else if (allocated(s%columns)) then
-         rows = s%columns%request
+      else if (allocated(set%columns)) then
+         rows = set%columns%request
       else
          rows = pack(rows, requests%every > 0)
       end if
       do i = 1, size(rows)
          if (requests(rows(i))%kind /= request_link) cycle
-         associate (own => s%parts(s%rows(rows(i))%part))
+         associate (own => set%parts(set%rows(rows(i))%part))
             call put_name(links, own%links(requests(rows(i))%subject)%name, i, k)
          end associate
       end do
@@ -223,9 +223,9 @@ contains
       allocate (t%columns(n))
 
       n = 0
-      if (allocated(s%columns) .and. .not. present(chosen)) then
-         do i = 1, size(s%columns)
-            associate (one => s%columns(i))
+      if (allocated(set%columns) .and. .not. present(chosen)) then
+         do i = 1, size(set%columns)
+            associate (one => set%columns(i))
                call add_column(one%request, column_at(form(one%request), one%at(1), one%at(2)))
             end associate
          end do
@@ -253,14 +253,15 @@ contains
          integer, intent(in) :: j            !< the column, in `columns_of_rows`
          character(:), allocatable :: name
 
-         associate (request => requests(i), own => s%parts(s%rows(i)%part))
+         associate (request => requests(i), own => set%parts(set%rows(i)%part))
             name = trim(subject_name(own, request%kind, request%subject))
             ! A point that has the name of a link in the table has that of its own link before it.
             if (request%kind == request_point .and. find_name(links, name) > 0) &
                name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
             ! Of a ratio the first word comes before the name of the drive.
             if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
-               //trim(t%drives(findloc(s%drives%part == s%rows(i)%part .and. s%drives%number == request%drive, .true., &
+               //trim(t%drives(findloc(set%drives%part == set%rows(i)%part .and. set%drives%number == request%drive, &
+                  .true., &
                dim=1)))
          end associate
          n = n + 1
@@ -274,14 +275,14 @@ contains
 
    !> Names the columns of all drives. If several drive the same coordinate, the second has .2 after its name, and so
    !> on: ANGLE.CRANK, ANGLE.CRANK.2.
-   function drive_columns(s) result(columns)
-      class(set_t), intent(in) :: s
+   function drive_columns(set) result(columns)
+      class(set_t), intent(in) :: set
       character(drive_length), allocatable :: columns(:)
       integer :: i, number
 
-      allocate (columns(size(s%drives)))
+      allocate (columns(size(set%drives)))
       do i = 1, size(columns)
-         associate (own => s%parts(s%drives(i)%part), n => s%drives(i)%number)
+         associate (own => set%parts(set%drives(i)%part), n => set%drives(i)%number)
             columns(i) = dotted(drive_name(own, own%drives(n)))
             associate (these => own%drives(:n))
                number = count(these%kind == these(n)%kind .and. these%subject == these(n)%subject &
@@ -301,33 +302,33 @@ contains
    end function dotted
 
    !> Writes the heading of the table: the names of all columns.
-   subroutine table_head(o, t)
+   subroutine table_head(o, table)
       type(output_t), intent(inout) :: o
-      type(table_t), intent(in) :: t
+      type(table_t), intent(in) :: table
       integer :: i
 
       call add(o, 't')
-      do i = 1, size(t%drives)
+      do i = 1, size(table%drives)
          call add(o, ',')
-         call add_name(o, trim(t%drives(i)))
+         call add_name(o, trim(table%drives(i)))
       end do
-      do i = 1, size(t%columns)
+      do i = 1, size(table%columns)
          call add(o, ',')
-         call add_name(o, trim(t%columns(i)%name))
+         call add_name(o, trim(table%columns(i)%name))
       end do
       call put(o, '')
    end subroutine table_head
 
    !> Writes the row of the table for an instant.
-   subroutine table_instant(o, t, s, rows)
+   subroutine table_instant(o, table, motions, rows)
       type(output_t), intent(inout) :: o
-      type(table_t), intent(in) :: t
-      type(set_motion_t), intent(in) :: s
+      type(table_t), intent(in) :: table
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
-      real(wp) :: values(table_width(t))
+      real(wp) :: values(table_width(table))
       integer :: i
 
-      call find_table_row(t, s, rows, values)
+      call find_table_row(table, motions, rows, values)
       do i = 1, size(values)
          if (i > 1) call add(o, ',')
          if (ieee_is_nan(values(i))) then
@@ -340,25 +341,25 @@ contains
    end subroutine table_instant
 
    !> Finds the numbers of the row of the table for an instant, in the deck's units.
-   subroutine find_table_row(t, s, rows, values)
-      type(table_t), intent(in) :: t
-      type(set_motion_t), intent(in) :: s
+   subroutine find_table_row(table, motions, rows, values)
+      type(table_t), intent(in) :: table
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
       real(wp), intent(out) :: values(:)     !< (table_width) NaN: it does not exist or has no known digit
       real(wp) :: f(3)
       integer :: i, n
 
-      values(1) = s%motions(1)%t
+      values(1) = motions%motions(1)%t
       n = 1
-      do i = 1, size(s%drives)
-         associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
-            f = drive_motion(drive, s%motions(1)%t)
+      do i = 1, size(motions%drives)
+         associate (drive => motions%parts(motions%drives(i)%part)%drives(motions%drives(i)%number))
+            f = drive_motion(drive, motions%motions(1)%t)
             n = n + 1
             values(n) = in_units(f(1), .not. is_length(drive))
          end associate
       end do
-      do i = 1, size(t%columns)
-         associate (c => t%columns(i), at => t%columns(i)%at, row => rows(t%columns(i)%request))
+      do i = 1, size(table%columns)
+         associate (c => table%columns(i), at => table%columns(i)%at, row => rows(table%columns(i)%request))
             n = n + 1
             if (row%has_digit(at(1), at(2)) .and. cell_of(c%row_column_t, row%known, row%state) == cell_number) then
                values(n) = in_units(row%value(at(1), at(2)), c%dimension == of_angle)
@@ -376,14 +377,14 @@ contains
          logical, intent(in) :: is_angle     !< it is an angle, or its derivative
 
          in_units = value
-         if (s%degrees .and. is_angle) in_units = in_degrees(value)
+         if (motions%degrees .and. is_angle) in_units = in_degrees(value)
       end function in_units
    end subroutine find_table_row
 
    !> Counts the columns of the table.
-   pure integer function table_width(t)
-      type(table_t), intent(in) :: t
+   pure integer function table_width(table)
+      type(table_t), intent(in) :: table
 
-      table_width = 1 + size(t%drives) + size(t%columns)
+      table_width = 1 + size(table%drives) + size(table%columns)
    end function table_width
 end module csv

@@ -182,71 +182,72 @@ contains
    end function new_drawing
 
    !> Whether instant number `k` (0, 1, ...) is a frame: of TIME, or of AT if the deck has no TIME.
-   pure logical function is_frame(d, k)
-      type(drawing_t), intent(in) :: d
+   pure logical function is_frame(drawing, k)
+      type(drawing_t), intent(in) :: drawing
       integer, intent(in) :: k
 
-      is_frame = mod(k, d%stride) == 0 .or. k == d%m%steps
-      if (k > d%m%steps) is_frame = d%every == 0
+      is_frame = mod(k, drawing%stride) == 0 .or. k == drawing%m%steps
+      if (k > drawing%m%steps) is_frame = drawing%every == 0
    end function is_frame
 
    !> The ground links where the deck has them; the others are not known.
-   pure function snapshot_of_ground(d) result(s)
-      type(drawing_t), intent(in) :: d
+   pure function snapshot_of_ground(drawing) result(s)
+      type(drawing_t), intent(in) :: drawing
       type(snapshot_t) :: s
       integer :: i
 
-      allocate (s%place(3, size(d%m%links)), s%rate(size(d%m%links)), s%centre(2, size(d%poles)), source=0.0_wp)
-      allocate (s%has_centre(size(d%poles)), source=.false.)
-      if (d%has_arrows) allocate (s%velocity(2, size(d%m%links)), source=0.0_wp)
-      s%known = d%m%links%ground
-      do i = 1, size(d%m%links)
-         if (s%known(i)) s%place(:, i) = d%m%links(i)%position - [d%origin, 0.0_wp]
+      allocate (s%place(3, size(drawing%m%links)), s%rate(size(drawing%m%links)), s%centre(2, size(drawing%poles)), &
+         source=0.0_wp)
+      allocate (s%has_centre(size(drawing%poles)), source=.false.)
+      if (drawing%has_arrows) allocate (s%velocity(2, size(drawing%m%links)), source=0.0_wp)
+      s%known = drawing%m%links%ground
+      do i = 1, size(drawing%m%links)
+         if (s%known(i)) s%place(:, i) = drawing%m%links(i)%position - [drawing%origin, 0.0_wp]
       end do
    end function snapshot_of_ground
 
-   !> Takes what is drawn of instant number `k` (0, 1, ...) of the motion `s`.
-   subroutine record_instant(d, s, k)
-      type(drawing_t), intent(inout) :: d
-      type(set_motion_t), intent(in) :: s
+   !> Takes what is drawn of instant number `k` (0, 1, ...) of the motion `motions`.
+   subroutine record_instant(drawing, motions, k)
+      type(drawing_t), intent(inout) :: drawing
+      type(set_motion_t), intent(in) :: motions
       integer, intent(in) :: k
       type(snapshot_t) :: now
       logical :: is_own
       real(wp) :: along
       integer :: i
 
-      is_own = k > d%m%steps
-      if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
+      is_own = k > drawing%m%steps
+      if (.not. is_own .and. drawing%every > 0) is_own = mod(k, drawing%every) == 0
       ! The instants of a deck without TIME are a motion of their own.
-      if (d%every == 0 .and. k == d%m%steps + 1) d%now = snapshot_of_ground(d)
+      if (drawing%every == 0 .and. k == drawing%m%steps + 1) drawing%now = snapshot_of_ground(drawing)
       call find_snapshot()
-      d%now%t = now%t
-      d%now%centre = now%centre
-      d%now%has_centre = now%has_centre
+      drawing%now%t = now%t
+      drawing%now%centre = now%centre
+      drawing%now%has_centre = now%has_centre
       do i = 1, size(now%known)
-         if (now%known(i)) d%now%place(:, i) = now%place(:, i)
+         if (now%known(i)) drawing%now%place(:, i) = now%place(:, i)
       end do
-      d%now%known = d%now%known .or. now%known
+      drawing%now%known = drawing%now%known .or. now%known
 
-      do i = 1, size(d%guides)
-         associate (g => d%guides(i))
+      do i = 1, size(drawing%guides)
+         associate (g => drawing%guides(i))
             if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
-            along = dot_product(point_place(d%m, now, g%point) - point_place(d%m, now, g%pivot), &
+            along = dot_product(point_place(drawing%m, now, g%point) - point_place(drawing%m, now, g%pivot), &
                direction(now%place(3, g%carrier) + g%angle))
             g%low = min(g%low, along)
             g%high = max(g%high, along)
          end associate
       end do
 
-      if (is_own .and. is_flagged(s)) then
-         if (d%flagged == 0) d%flag = now
-         d%flagged = d%flagged + 1
+      if (is_own .and. is_flagged(motions)) then
+         if (drawing%flagged == 0) drawing%flag = now
+         drawing%flagged = drawing%flagged + 1
       end if
-      if (.not. is_frame(d, k)) return
-      d%frames = d%frames + 1
-      d%frame(d%frames) = now
-      if (k <= d%m%steps) d%films = d%frames
-      if (is_own) d%own = [d%own, d%frames]
+      if (.not. is_frame(drawing, k)) return
+      drawing%frames = drawing%frames + 1
+      drawing%frame(drawing%frames) = now
+      if (k <= drawing%m%steps) drawing%films = drawing%frames
+      if (is_own) drawing%own = [drawing%own, drawing%frames]
 
    contains
 
@@ -255,52 +256,53 @@ contains
          type(row_t) :: row
          integer :: c, i
 
-         now = snapshot_of_ground(d)
-         now%t = s%motions(1)%t
-         do c = s%count, 1, -1
-            associate (links => s%cards(c)%of, q => s%motions(c))
+         now = snapshot_of_ground(drawing)
+         now%t = motions%motions(1)%t
+         do c = motions%count, 1, -1
+            associate (links => motions%cards(c)%of, q => motions%motions(c))
                if (q%mark /= mark_none .and. is_own) then
                   now%mark = q%mark
                   now%singularity = q%singularity
                end if
                do i = 1, size(links)
-                  if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
-                  now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
+                  if (drawing%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
+                  now%place(:, links(i)) = q%position(:, i) + [q%origin - drawing%origin, 0.0_wp]
                   now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
                   if (known_of(q, i) == 0) cycle
                   now%rate(links(i)) = q%velocity(3, i)
-                  if (d%has_arrows) now%velocity(:, links(i)) = q%velocity(:2, i)
+                  if (drawing%has_arrows) now%velocity(:, links(i)) = q%velocity(:2, i)
                end do
             end associate
          end do
-         do i = 1, size(d%poles)
-            call find_row_in_set(s, d%poles(i), row)
+         do i = 1, size(drawing%poles)
+            call find_row_in_set(motions, drawing%poles(i), row)
             now%has_centre(i) = all(abs(row%value(:2, :)) < max_place) .and. cell_number &
                == cell_of(columns_of_rows(column_at(row%form, 1, 0)), row%known, row%state)
-            if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
+            if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - drawing%origin
          end do
       end subroutine find_snapshot
    end subroutine record_instant
 
-   !> Place (2) of point number `i` at the position `s`.
-   pure function point_place(m, s, i) result(p)
+   !> Place (2) of point number `i` at the position `snapshot`.
+   pure function point_place(m, snapshot, i) result(p)
       type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: snapshot
       integer, intent(in) :: i
       real(wp) :: p(2)
 
-      p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
+      p = point_of(snapshot%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
 
-   !> Velocity (2) of point number `i` at the position `s` of a drawing with arrows; 0 where it is not known.
-   pure function point_velocity(m, s, i) result(v)
+   !> Velocity (2) of point number `i` at the position `snapshot` of a drawing with arrows; 0 where it is not known.
+   pure function point_velocity(m, snapshot, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: snapshot
       integer, intent(in) :: i
       real(wp) :: v(2)
 
       associate (link => m%points(i)%link)
-         v = s%velocity(:, link) + s%rate(link)*quarter_turn(point_place(m, s, i) - s%place(:2, link))
+         v = snapshot%velocity(:, link) + snapshot%rate(link)*quarter_turn(point_place(m, snapshot, &
+            i) - snapshot%place(:2, link))
       end associate
    end function point_velocity
 

@@ -33,9 +33,9 @@ module dxf
 contains
 
    !> Begins the paths of the points that PRINT cards of `m` ask for, without those of the ground.
-   subroutine new_paths(m, s, paths)
+   subroutine new_paths(m, motions, paths)
       type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: s    !< the motion of the set `m`
+      type(set_motion_t), intent(in) :: motions    !< the motion of the set `m`
       type(point_path_t), allocatable, intent(out) :: paths(:)
       integer :: i, count, instants
 
@@ -51,30 +51,31 @@ contains
          allocate (paths(count)%p(2, instants), paths(count)%known(instants))
       end do
       paths = paths(:count)
-      if (count > 0) allocate (paths(1)%first(s%count))
+      if (count > 0) allocate (paths(1)%first(motions%count))
    end subroutine new_paths
 
-   !> Adds instant number `k`, from 0, of the motion `s` to the `paths`; the last one tells whether the motion closes.
-   subroutine note_paths(paths, s, k)
+   !> Adds instant number `k`, from 0, of the motion `motions` to the `paths`; the last one tells whether the motion
+   !> closes.
+   subroutine note_paths(paths, motions, k)
       type(point_path_t), intent(inout) :: paths(:)
-      type(set_motion_t), intent(in) :: s
+      type(set_motion_t), intent(in) :: motions
       integer, intent(in) :: k
       type(row_t) :: row
       real(wp) :: apart(3)
       integer :: i
 
       do i = 1, size(paths)
-         call find_row_in_set(s, paths(i)%request, row)
+         call find_row_in_set(motions, paths(i)%request, row)
          paths(i)%p(:, k + 1) = row%value(:2, 0)
          paths(i)%known(k + 1) = row%known >= 0
       end do
       if (size(paths) == 0) return
       associate (one => paths(1))
-         if (k == 0) one%first = s%motions
+         if (k == 0) one%first = motions%motions
          if (k == 0 .or. k + 1 < size(one%known)) return
          one%is_closed = all(one%known)
-         do i = 1, s%count
-            apart = motions_apart(s%parts(i), one%first(i), s%motions(i))
+         do i = 1, motions%count
+            apart = motions_apart(motions%parts(i), one%first(i), motions%motions(i))
             one%is_closed = one%is_closed .and. closes(apart(:2))
          end do
       end associate
@@ -96,11 +97,11 @@ contains
       call put_pair(o, 0, 'EOF')
    end subroutine end_dxf
 
-   !> Writes the entities of the drawing `d` of a set, whose first frame is the first instant, and the `paths`. Layers
+   !> Writes the entities of the `drawing` of a set, whose first frame is the first instant, and the `paths`. Layers
    !> of the first set of the file have no number.
-   subroutine put_dxf(o, d, paths, number)
+   subroutine put_dxf(o, drawing, paths, number)
       type(output_t), intent(inout) :: o
-      type(drawing_t), intent(in) :: d
+      type(drawing_t), intent(in) :: drawing
       type(point_path_t), intent(in) :: paths(:)
       integer, intent(in) :: number          !< of the set in the file, from 1
       character(:), allocatable :: layer
@@ -112,29 +113,29 @@ contains
       do i = 1, size(paths)
          call put_path(o, layer//'PATHS', paths(i), paths(1)%is_closed)
       end do
-      associate (m => d%m, s => d%frame(1))
+      associate (m => drawing%m, s => drawing%frame(1))
          do i = 1, size(m%pairs)
             if (has_guide(m%pairs(i)%kind) .or. .not. s%known(m%points(m%pairs(i)%point_i)%link)) cycle
             call put_pair(o, 0, 'CIRCLE')
             call put_pair(o, 8, layer//'JOINTS')
-            call put_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + d%origin)
+            call put_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + drawing%origin)
             call put_number(o, 40, joint_radius*characteristic_length(m))
          end do
          ! The sides of links; a bar has one.
          do i = 1, size(m%links)
-            n = size(d%outlines(i)%corner, 2)
+            n = size(drawing%outlines(i)%corner, 2)
             if (m%links(i)%ground .or. n < 2 .or. .not. s%known(i)) cycle
-            p = moved(d%outlines(i)%corner, s%place(:, i))
+            p = moved(drawing%outlines(i)%corner, s%place(:, i))
             do k = 1, merge(n, 1, n > 2)
-               call put_side(o, layer, p(:, k) + d%origin, p(:, 1 + modulo(k, n)) + d%origin)
+               call put_side(o, layer, p(:, k) + drawing%origin, p(:, 1 + modulo(k, n)) + drawing%origin)
             end do
          end do
          ! Guides between the ends of the slide at this instant: from the foot to the block.
-         do i = 1, size(d%guides)
-            associate (g => d%guides(i))
+         do i = 1, size(drawing%guides)
+            associate (g => drawing%guides(i))
                if (.not. (s%known(g%carrier) .and. s%known(g%block)) .or. g%low > g%high) cycle
                p = moved(reshape([g%foot, g%foot + g%low*direction(g%angle)], [2, 2]), s%place(:, g%carrier))
-               call put_side(o, layer, p(:, 1) + d%origin, p(:, 2) + d%origin)
+               call put_side(o, layer, p(:, 1) + drawing%origin, p(:, 2) + drawing%origin)
             end associate
          end do
       end associate
@@ -173,16 +174,16 @@ contains
       end do
    end subroutine put_path
 
-   !> Writes a line from `p` to `q` (2) on the layer of links.
-   subroutine put_side(o, layer, p, q)
+   !> Writes a line from `p` to `corner` (2) on the layer of links.
+   subroutine put_side(o, layer, p, corner)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: layer      !< its number, or ''
-      real(wp), intent(in) :: p(2), q(2)
+      real(wp), intent(in) :: p(2), corner(2)
 
       call put_pair(o, 0, 'LINE')
       call put_pair(o, 8, layer//'LINKS')
       call put_place(o, 0, p)
-      call put_place(o, 1, q)
+      call put_place(o, 1, corner)
    end subroutine put_side
 
    !> Writes a place `p` (2): `which` is 0 for the first place of an entity, 1 for the second.
@@ -197,12 +198,12 @@ contains
    end subroutine put_place
 
    !> Writes a number with the group code `code`.
-   subroutine put_number(o, code, x)
+   subroutine put_number(o, code, value)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: code
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: value
 
-      call put_pair(o, code, rounded(x, digits, 1.0e-3_wp, 1.0e9_wp))
+      call put_pair(o, code, rounded(value, digits, 1.0e-3_wp, 1.0e9_wp))
    end subroutine put_number
 
    !> Writes a pair of DXF: a group code and its value.

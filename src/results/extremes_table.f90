@@ -33,72 +33,72 @@ module extremes_table
 
 contains
 
-   !> The extremes `x` and `dwells` of the set `s`.
-   subroutine put_extremes(o, l, s, x, dwells)
+   !> The `extremes` and `dwells` of the `set`.
+   subroutine put_extremes(o, l, set, extremes, dwells)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      class(set_t), intent(in) :: s
-      type(extremes_t), intent(in) :: x
+      class(set_t), intent(in) :: set
+      type(extremes_t), intent(in) :: extremes
       type(dwell_t), intent(in) :: dwells(:)
       type(listing_state_t) :: table
       type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
       integer :: q, c, k, part, drive, links_table
-      logical :: moves, goes_on(size(x%tracks))
+      logical :: moves, goes_on(size(extremes%tracks))
       character(:), allocatable :: driven, line
 
-      call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
+      call put_times(o, l, ' '//phrase(say_extremes, set%polish), [set%t0, set%t1], table)
       moves = .false.
       goes_on = .false.
       ! Links of which only angles are asked for have no columns of places.
       links_table = table_turning
-      do c = 1, size(x%tracks)
-         associate (list => x%tracks(c)%coordinates)
+      do c = 1, size(extremes%tracks)
+         associate (list => extremes%tracks(c)%coordinates)
             if (any(forms(list%form)%kind == request_link .and. list%column < 3)) links_table = request_link
          end associate
       end do
-      do q = 1, size(x%asked)
-         part = s%rows(x%asked(q))%part
-         own = pack(x%tracks(part)%coordinates, x%tracks(part)%coordinates%request == x%asked(q))
+      do q = 1, size(extremes%asked)
+         part = set%rows(extremes%asked(q))%part
+         own = pack(extremes%tracks(part)%coordinates, extremes%tracks(part)%coordinates%request == extremes%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
-         request = request_of(s, x%asked(q))
+         request = request_of(set, extremes%asked(q))
          call put_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
             request%kind == request_link), table)
          ! A drive that does not stand over the table has no name in it.
-         drive = first_drive(s, x%asked(q))
+         drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0
-         associate (m => s%parts(part))
+         associate (m => set%parts(part))
             if (drive > 0) driven = trim(drive_name(m, m%drives(1)))
             call put_subject(subject_name(m, request%kind, request%subject))
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
-               if (w%request /= x%asked(q)) cycle
+               if (w%request /= extremes%asked(q)) cycle
                c = findloc(own%column, w%column, dim=1)
-               call put_at(phrase(say_dwell, s%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which)//' +- ' &
+               call put_at(phrase(say_dwell, set%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which)//' +- ' &
                   //text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
             end associate
          end do
       end do
       ! What is not sought may move.
-      if (.not. moves .and. all([(all(request_sought(x%asked(q))), q=1, size(x%asked))])) &
-         call put(o, ' '//phrase(say_at_rest, s%polish))
-      if (table%masked) call put(o, mask_words(s))
-      call put_gaps(x%open, say_may_be_missed)
-      call put_gaps(x%gaps, say_not_covered)
-      do k = 1, size(x%tracks)
+      if (.not. moves .and. all([(all(request_sought(extremes%asked(q))), q=1, size(extremes%asked))])) &
+         call put(o, ' '//phrase(say_at_rest, set%polish))
+      if (table%masked) call put(o, mask_words(set))
+      call put_gaps(extremes%open, say_may_be_missed)
+      call put_gaps(extremes%gaps, say_not_covered)
+      do k = 1, size(extremes%tracks)
          ! Why there are no time ratios.
-         associate (closure => x%tracks(k)%closure)
+         associate (closure => extremes%tracks(k)%closure)
             if (.not. (goes_on(k) .and. all(closure < huge(1.0_wp)))) cycle
-            line = ' --- '//phrase(say_no_period, s%polish)
+            line = ' --- '//phrase(say_no_period, set%polish)
             if (closes(closure(:2))) then
-               line = line//' '//phrase(say_in_velocity, s%polish)
+               line = line//' '//phrase(say_in_velocity, set%polish)
             else
                line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
-                  //phrase(say_lengths_apart, s%polish)//', ' &
+                  //phrase(say_lengths_apart, set%polish)//', ' &
                   //rounded(closure(2)/l%format(of_angle, 0)%unit, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
-                  //trim(angle_unit(s))
+                  //trim(angle_unit(set))
             end if
             call put(o, line)
          end associate
@@ -112,7 +112,7 @@ contains
          logical :: sought(3, 0:2)
          type(request_t) :: one
 
-         one = request_of(s, i)
+         one = request_of(set, i)
          sought = one%sought
       end function request_sought
 
@@ -126,7 +126,7 @@ contains
          integer :: which, c, k, i
 
          if (drive > 0) then
-            call put(o, ' '//name//'   '//phrase(say_drive, s%polish)//' '//driven//','//l%drives(drive)%behind)
+            call put(o, ' '//name//'   '//phrase(say_drive, set%polish)//' '//driven//','//l%drives(drive)%behind)
          else
             call put(o, ' '//trim(name))
          end if
@@ -150,36 +150,38 @@ contains
                end do
             end do
             call put_fields(extreme_words(which), value)
-            call put_fields(phrase(say_at_time, s%polish), time)
-            if (drive > 0) call put_fields(phrase(say_at_drive, s%polish), place)
+            call put_fields(phrase(say_at_time, set%polish), time)
+            if (drive > 0) call put_fields(phrase(say_at_drive, set%polish), place)
          end do
 
          ! The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times
          ! of both strokes and their ratio, or a line for each dead centre if there are more than two.
          value = ''
          do c = 1, size(own)
-            strokes(c) = strokes_of(x, own(c))
+            strokes(c) = strokes_of(extremes, own(c))
             associate (length => strokes(c)%length)
                if (length%exists) value(c, 0) = text_of(own(c), 0, length%value, length%error)
             end associate
          end do
-         if (any(value /= '')) call put_fields(phrase(say_stroke, s%polish), value)
+         if (any(value /= '')) call put_fields(phrase(say_stroke, set%polish), value)
          do c = 1, size(own)
             if (value(c, 0) == '') cycle
             if (strokes(c)%ratio > 0.0_wp) then
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
                error = sum(own(c)%found(:, 0)%t_error)
-               line = '  '//name_of(own(c))//'   '//phrase(say_forward, s%polish)//' ' &
-                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
-                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
+               line = '  '//name_of(own(c))//'   '//phrase(say_forward, set%polish)//' ' &
+                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, set%polish) &
+                     //' ' &
+                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, set%polish)//' ' &
                   //number_text(ratio_format, strokes(c)%ratio, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
             end if
-            if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, part)) goes_on(part) = .true.
+            if (strokes(c)%in_run >= 2 .and. is_covered(extremes) .and. .not. is_cyclic(extremes, &
+               part)) goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
-                  call put_at(phrase(say_dead_centre, s%polish)//'  '//name_of(own(c))//'  ' &
+                  call put_at(phrase(say_dead_centre, set%polish)//'  '//name_of(own(c))//'  ' &
                      //text_of(own(c), 0, dead(i)%value, 0.0_wp), [dead(i)%t], [0.0_wp])
                end do
             end associate
@@ -217,24 +219,24 @@ contains
          integer :: i
 
          line = ''
-         text = ' --- '//phrase(say, s%polish)
+         text = ' --- '//phrase(say, set%polish)
          do i = 1, min(size(list), max_gaps)
             if (i > 1) text = text//','
             text = text//' '//time_text(l, list(i)%from)
             if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
-            next = text//l%behind_time//more(size(list) - i, s%polish)
+            next = text//l%behind_time//more(size(list) - i, set%polish)
             if (i > 1 .and. len(next) > line_length) exit
             line = next
          end do
          if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
 
-      !> The name of the coordinate `c`.
-      pure function name_of(c) result(name)
-         type(coordinate_t), intent(in) :: c
+      !> The name of the `coordinate`.
+      pure function name_of(coordinate) result(name)
+         type(coordinate_t), intent(in) :: coordinate
          character(:), allocatable :: name
 
-         name = column_name(l, columns_of_rows(c%columns(0)))
+         name = column_name(l, columns_of_rows(coordinate%columns(0)))
       end function name_of
 
       !> A row of `fields` (own coordinates, 0:2), with a label before it.
@@ -257,14 +259,14 @@ contains
          call put(o, line(:len_trim(line)))
       end subroutine put_fields
 
-      !> A value of derivative number `k` of the coordinate `c`, with the digits of the table; `error` is unknown of it.
-      pure function text_of(c, k, value, error) result(text)
-         type(coordinate_t), intent(in) :: c
+      !> A value of derivative number `k` of the `coordinate`, with the digits of the table; `error` is unknown of it.
+      pure function text_of(coordinate, k, value, error) result(text)
+         type(coordinate_t), intent(in) :: coordinate
          integer, intent(in) :: k
          real(wp), intent(in) :: value, error
          character(:), allocatable :: text
 
-         associate (column => columns_of_rows(c%columns(k)))
+         associate (column => columns_of_rows(coordinate%columns(k)))
             text = number_text(l%own(part)%format(column%dimension, column%order), value, error)
          end associate
       end function text_of

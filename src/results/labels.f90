@@ -21,17 +21,17 @@ module labels
 
 contains
 
-   !> Finds the names of points and links in the picture `c`; none if they are too many.
-   subroutine labels_of(c, labels)
-      type(canvas_t), intent(inout) :: c
+   !> Finds the names of points and links in the picture `canvas`; none if they are too many.
+   subroutine labels_of(canvas, labels)
+      type(canvas_t), intent(inout) :: canvas
       type(label_t), allocatable, intent(out) :: labels(:)
       integer :: used
 
       used = 0
-      allocate (labels(size(c%m%points) + size(c%m%links)))
-      if (max(size(c%m%links), size(c%m%points)) <= max_names) then
-         call name_points(c, labels, used)
-         call name_links(c, labels, used)
+      allocate (labels(size(canvas%m%points) + size(canvas%m%links)))
+      if (max(size(canvas%m%links), size(canvas%m%points)) <= max_names) then
+         call name_points(canvas, labels, used)
+         call name_links(canvas, labels, used)
       end if
       labels = labels(:used)
    end subroutine labels_of
@@ -40,51 +40,52 @@ contains
    !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT
    !> asks for, of several the one with the shortest name, the first of these. The name of its link would stand there
    !> twice.
-   subroutine name_points(c, labels, used)
-      type(canvas_t), intent(inout) :: c
+   subroutine name_points(canvas, labels, used)
+      type(canvas_t), intent(inout) :: canvas
       type(label_t), intent(inout) :: labels(:)
       integer, intent(inout) :: used         !< so many are found
-      logical, dimension(size(c%m%points)) :: open, printed
-      real(wp) :: p(2, size(c%m%points))
+      logical, dimension(size(canvas%m%points)) :: open, printed
+      real(wp) :: p(2, size(canvas%m%points))
       integer :: i, best
 
-      open = .not. c%m%links(c%m%points%link)%ground
-      do i = 1, size(c%m%pairs)
-         if (.not. has_guide(c%m%pairs(i)%kind)) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
+      open = .not. canvas%m%links(canvas%m%points%link)%ground
+      do i = 1, size(canvas%m%pairs)
+         if (.not. has_guide(canvas%m%pairs(i)%kind)) open([canvas%m%pairs(i)%point_i, canvas%m%pairs(i)%point_j]) = &
+            .true.
       end do
-      open = open .and. .not. c%m%links(c%m%points%link)%hidden
-      open = open .and. c%s%known(c%m%points%link)
+      open = open .and. .not. canvas%m%links(canvas%m%points%link)%hidden
+      open = open .and. canvas%s%known(canvas%m%points%link)
       printed = .false.
-      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point &
-         .and. .not. is_listed_alone(c%m%requests))) = .true.
-      do i = 1, size(c%m%points)
-         if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
+      printed(pack(canvas%m%requests%subject, canvas%m%requests%kind == request_point &
+         .and. .not. is_listed_alone(canvas%m%requests))) = .true.
+      do i = 1, size(canvas%m%points)
+         if (open(i)) p(:, i) = to_pixels(canvas, point_place(canvas%m, canvas%s, i))
       end do
       do while (any(open))
-         best = minloc(len_trim(c%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
-         do i = 1, size(c%m%points)
+         best = minloc(len_trim(canvas%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
+         do i = 1, size(canvas%m%points)
             if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
          end do
-         if (c%m%points(best)%name == c%m%links(c%m%points(best)%link)%name) cycle
+         if (canvas%m%points(best)%name == canvas%m%links(canvas%m%points(best)%link)%name) cycle
          used = used + 1
          labels(used)%attributes = 'class="name"'
-         labels(used)%link = c%m%points(best)%link
-         call place_name(c, p(:, best:best), clear_of_point, trim(c%m%points(best)%name), labels(used))
+         labels(used)%link = canvas%m%points(best)%link
+         call place_name(canvas, p(:, best:best), clear_of_point, trim(canvas%m%points(best)%name), labels(used))
       end do
    end subroutine name_points
 
    !> The names of the moving links, each in its color: beside a bar, in or beside a polygon. They may stand along the
    !> sides of the link, or at its only place.
-   subroutine name_links(c, labels, used)
-      type(canvas_t), intent(inout) :: c
+   subroutine name_links(canvas, labels, used)
+      type(canvas_t), intent(inout) :: canvas
       type(label_t), intent(inout) :: labels(:)
       integer, intent(inout) :: used         !< so many are found
       real(wp), allocatable :: corners(:, :), p(:, :)
       integer :: i, j, k, n, places
 
-      do i = 1, size(c%m%links)
-         if (c%m%links(i)%ground .or. c%m%links(i)%hidden .or. .not. c%s%known(i)) cycle
-         corners = moved(c%d%outlines(i)%corner, c%s%place(:, i))
+      do i = 1, size(canvas%m%links)
+         if (canvas%m%links(i)%ground .or. canvas%m%links(i)%hidden .or. .not. canvas%s%known(i)) cycle
+         corners = moved(canvas%d%outlines(i)%corner, canvas%s%place(:, i))
          n = size(corners, 2)
          if (n == 0) cycle
          places = merge(size(along), 1, n > 1)
@@ -92,14 +93,14 @@ contains
          do k = 1, n
             associate (side => corners(:, 1 + modulo(k, n)) - corners(:, k))
                do j = 1, places
-                  p(:, places*(k - 1) + j) = to_pixels(c, corners(:, k) + along(j)*side)
+                  p(:, places*(k - 1) + j) = to_pixels(canvas, corners(:, k) + along(j)*side)
                end do
             end associate
          end do
          used = used + 1
          labels(used)%attributes = 'class="link" style="fill:'//color_of(i)//'"'
          labels(used)%link = i
-         call place_name(c, p, clear_of_link, trim(c%m%links(i)%name), labels(used))
+         call place_name(canvas, p, clear_of_link, trim(canvas%m%links(i)%name), labels(used))
          deallocate (p)
       end do
    end subroutine name_links

@@ -110,23 +110,23 @@ contains
    !> and diagnostics of the instant follow. After these the next instant has its heads again. Beyond a limit of motion
    !> that the instant before has told a part has no words and no rows without values. Instants that have nothing else
    !> wait in `table` for one line.
-   subroutine listing_instant(o, l, s, rows, step, table)
+   subroutine listing_instant(o, l, motions, rows, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(set_motion_t), intent(in) :: s
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)
       integer, intent(in) :: step            !< the number of the instant, from 0
       type(listing_state_t), intent(inout) :: table   !< as the instant before has left it
       type(row_t) :: other
-      real(wp) :: limits(s%count)
-      logical :: begun, is_told(s%count), has_news
+      real(wp) :: limits(motions%count)
+      logical :: begun, is_told(motions%count), has_news
       integer :: i, c, k
 
-      limits = [(limit_before(s%motions(c)), c=1, s%count)]
+      limits = [(limit_before(motions%motions(c)), c=1, motions%count)]
       is_told = .false.
       if (allocated(table%limits)) is_told = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
-      has_news = any([((s%motions(c)%mark /= mark_none .or. allocated(s%motions(c)%diagnostics)) .and. &
-         .not. is_told(c), c=1, s%count)])
+      has_news = any([((motions%motions(c)%mark /= mark_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
+         .not. is_told(c), c=1, motions%count)])
       table%limits = limits
       begun = .false.
       table%masked = .false.
@@ -144,7 +144,7 @@ contains
                if (all(row%others(k)%word /= [character(5) :: word_worst, word_rss])) cycle
                other = row%others(k)%row
                other%name = ' '//word_rss
-               if (row%others(k)%word == word_worst) other%name = ' '//phrase(say_worst, s%polish)
+               if (row%others(k)%word == word_worst) other%name = ' '//phrase(say_worst, motions%polish)
                call put_row(o, l, d, other, row%shown, row%others(k)%doubt, l%more_decimals, table)
             end do
          end associate
@@ -154,49 +154,50 @@ contains
          table%last = step
          return
       end if
-      if (.not. begun .and. is_flagged(s)) call begin_instant()
+      if (.not. begun .and. is_flagged(motions)) call begin_instant()
       if (table%masked .or. has_news) table%kind = no_table
       call put_marks()
-      if (table%masked) call put(o, mask_words(s))
-      do c = 1, s%count
-         if (allocated(s%motions(c)%diagnostics)) call put_diagnostics(o, s%parts(c), s%motions(c)%diagnostics)
+      if (table%masked) call put(o, mask_words(motions))
+      do c = 1, motions%count
+         if (allocated(motions%motions(c)%diagnostics)) call put_diagnostics(o, motions%parts(c), &
+            motions%motions(c)%diagnostics)
       end do
 
    contains
 
       !> The line over the tables, after that of the instants before it without values.
       subroutine begin_instant()
-         call put_untold(o, s%polish, table)
+         call put_untold(o, motions%polish, table)
          if (any(limits < huge(1.0_wp) .and. .not. is_told)) table%told = step
-         call put_instant(o, l, s%motions(1)%t, step, table)
+         call put_instant(o, l, motions%motions(1)%t, step, table)
          begun = .true.
       end subroutine begin_instant
 
-      !> Why some part of `s` has not all of its motion, each line once: of a limit of motion before it the time, of
-      !> singular positions the links.
+      !> Why some part of `motions` has not all of its motion, each line once: of a limit of motion before it the time,
+      !> of singular positions the links.
       subroutine put_marks()
          character(:), allocatable :: line, lines, text
          integer :: k
 
          lines = ''
-         do c = 1, s%count
-            associate (q => s%motions(c), m => s%parts(c))
+         do c = 1, motions%count
+            associate (q => motions%motions(c), m => motions%parts(c))
                if (q%mark == mark_none .or. is_told(c)) cycle
-               line = words_of_mark(q%mark, q%singularity, s%polish)
+               line = words_of_mark(q%mark, q%singularity, motions%polish)
                if (q%mark == mark_inconsistent) then
                   k = 0
                   if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
                   if (k > 0) call put_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
                   ! A tolerance is no cure for a drive that is too many.
                   table%surplus = table%surplus .or. k > 0
-                  if (.not. (table%surplus .or. s%closing > 0.0_wp)) &
-                     line = line//': '//phrase(say_give_closing, s%polish)
+                  if (.not. (table%surplus .or. motions%closing > 0.0_wp)) &
+                     line = line//': '//phrase(say_give_closing, motions%polish)
                else if (limits(c) < huge(1.0_wp)) then
-                  line = phrase(say_beyond, s%polish)//' '//time(m, limits(c))
+                  line = phrase(say_beyond, motions%polish)//' '//time(m, limits(c))
                else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
                   text = links(m, q%singular_links)
-                  if (q%singular_links%in_line) text = text//' '//phrase(say_in_line, s%polish)
+                  if (q%singular_links%in_line) text = text//' '//phrase(say_in_line, motions%polish)
                   line = line(:k - 1)//', '//text//line(k:)
                end if
             end associate
@@ -250,9 +251,9 @@ contains
    !> characteristic length; negative where none are), and the error to which a closing tolerance lets them agree;
    !> `diagnostics`; what is certified of the branches on which the
    !> instants were found; how many instants were `solved` and how many are `flagged`.
-   subroutine listing_end(o, s, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
+   subroutine listing_end(o, set, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
       type(output_t), intent(inout) :: o
-      class(set_t), intent(in) :: s
+      class(set_t), intent(in) :: set
       integer, intent(in) :: solved, flagged
       type(certificate_counts_t), intent(in) :: certificate_counts
       real(wp), intent(in) :: closure_error
@@ -266,25 +267,25 @@ contains
       if (closure_error >= 0.0_wp) then
          write (number, '(es8.0e2)') max(closure_error, min_closure_error)
          number = adjustl(number)
-         if (closure_error < min_closure_error) number = phrase(say_below, s%polish)//' '//number
-         call put(o, ' '//phrase(say_closure_error, s%polish)//' '//trim(number))
+         if (closure_error < min_closure_error) number = phrase(say_below, set%polish)//' '//number
+         call put(o, ' '//phrase(say_closure_error, set%polish)//' '//trim(number))
       end if
       if (allowed_error > 0.0_wp) then
          write (number, '(es9.1e2)') allowed_error
-         call put_folded(o, ' --- ', phrase(say_not_better, s%polish)//' '//trim(adjustl(number)))
+         call put_folded(o, ' --- ', phrase(say_not_better, set%polish)//' '//trim(adjustl(number)))
       end if
       do i = 1, size(diagnostics)
-         call put_diagnostics(o, s%parts(diagnostics(i)%part), diagnostics(i:i))
+         call put_diagnostics(o, set%parts(diagnostics(i)%part), diagnostics(i:i))
       end do
       associate (c => certificate_counts)
-         call put(o, ' '//phrase(say_continuation, s%polish)//':  '//phrase(say_certified, s%polish)//' ' &
-            //whole(c%followed)//' '//phrase(say_out_of, s%polish)//' '//whole(c%followed + c%uncertain) &
-            //', '//phrase(say_passed, s%polish)//' '//whole(c%passed))
+         call put(o, ' '//phrase(say_continuation, set%polish)//':  '//phrase(say_certified, set%polish)//' ' &
+            //whole(c%followed)//' '//phrase(say_out_of, set%polish)//' '//whole(c%followed + c%uncertain) &
+            //', '//phrase(say_passed, set%polish)//' '//whole(c%passed))
       end associate
-      end_of = ' '//phrase(say_end, s%polish)//' '//whole(s%set_number)
-      if (s%variant > 0) end_of = ' '//phrase(say_end_variant, s%polish)//' '//whole(s%variant)
-      call put(o, end_of//':  '//phrase(say_instants, s%polish)//' '//phrase(say_are_solved, s%polish)//' ' &
-         //whole(solved)//', '//phrase(say_flagged, s%polish)//' '//whole(flagged))
+      end_of = ' '//phrase(say_end, set%polish)//' '//whole(set%set_number)
+      if (set%variant > 0) end_of = ' '//phrase(say_end_variant, set%polish)//' '//whole(set%variant)
+      call put(o, end_of//':  '//phrase(say_instants, set%polish)//' '//phrase(say_are_solved, set%polish)//' ' &
+         //whole(solved)//', '//phrase(say_flagged, set%polish)//' '//whole(flagged))
       call put(o, '')
    end subroutine listing_end
 
@@ -335,76 +336,80 @@ contains
    end subroutine put_diagnostics
 
    !> LINKS A, B AT THE LIMIT, COLLINEAR
-   function at_limit(m, r) result(text)
+   function at_limit(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
+      type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
 
-      if (r%pair > 0) then
-         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(r%pair)%name)//': ' &
-            //phrase(merge(say_out_of_stroke, say_length_0, r%other), m%polish)
+      if (diagnostic%pair > 0) then
+         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': ' &
+            //phrase(merge(say_out_of_stroke, say_length_0, diagnostic%other), m%polish)
          return
       end if
-      text = links(m, r)//' '//phrase(say_at_limit, m%polish)
-      if (r%in_line) text = text//', '//phrase(say_in_line, m%polish)
+      text = links(m, diagnostic)//' '//phrase(say_at_limit, m%polish)
+      if (diagnostic%in_line) text = text//', '//phrase(say_in_line, m%polish)
    end function at_limit
 
-   !> The sentence of diagnostic `r`.
-   function words_of(m, r) result(text)
+   !> The sentence of `diagnostic`.
+   function words_of(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
+      type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
       integer :: k
 
       text = ''
-      select case (r%kind)
+      select case (diagnostic%kind)
       case (diagnostic_inconsistent)
-         text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, error_digits)
+         text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_limit)
-         text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(r%drive)))//' = ' &
-            //measure(m, r, value_digits)
-         if (r%links(1) + r%pair > 0) text = text//', '//at_limit(m, r)
+         text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))//' = ' &
+            //measure(m, diagnostic, value_digits)
+         if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(m, diagnostic)
       case (diagnostic_stroke)
-         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(r%pair)%name)//': '//phrase(say_length, m%polish) &
-            //' '//measure(m, r, value_digits)
+         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '//phrase(say_length, &
+            m%polish) &
+            //' '//measure(m, diagnostic, value_digits)
       case (diagnostic_far_estimate)
-         text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
+         text = links(m, diagnostic)//': '//phrase(say_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_second)
-         text = links(m, r)//': '//phrase(say_second, m%polish)
+         text = links(m, diagnostic)//': '//phrase(say_second, m%polish)
       case (diagnostic_incomplete)
-         text = links(m, r)//': '//phrase(say_incomplete, m%polish)
+         text = links(m, diagnostic)//': '//phrase(say_incomplete, m%polish)
       case (diagnostic_begins)
          text = phrase(say_begins, m%polish)
       case (diagnostic_redundant)
          text = phrase(say_redundant, m%polish)//': '//owner()
-         if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
-            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
+         if (diagnostic%equations > 1) text = phrase(say_redundant_many, m%polish)//': ' &
+            //whole(diagnostic%equations)//' ' &
+            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
       case (diagnostic_change)
-         text = place()//phrase(merge(merge(say_returns_other, say_returns, r%other), &
-            merge(say_here, merge(say_other, say_smoothly, r%other), r%here), r%returns), m%polish)
+         text = place()//phrase(merge(merge(say_returns_other, say_returns, diagnostic%other), &
+            merge(say_here, merge(say_other, say_smoothly, diagnostic%other), diagnostic%here), diagnostic%returns), &
+               m%polish)
       case (diagnostic_dead_end)
          text = place()//phrase(say_not_found, m%polish)
       case (diagnostic_unused)
          text = 'BRANCH '
-         if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
-         text = text//phrase(say_branch_from, m%polish)//' '//time(m, r%t)//': ' &
+         if (diagnostic%links(1) > 0) text = text//trim(m%links(diagnostic%links(1))%name)//' '
+         text = text//phrase(say_branch_from, m%polish)//' '//time(m, diagnostic%t)//': ' &
             //phrase(say_no_change, m%polish)
       case (diagnostic_long)
-         text = phrase(say_way, m%polish)//' '//time(m, r%t)//' '//phrase(say_too_long, m%polish)
+         text = phrase(say_way, m%polish)//' '//time(m, diagnostic%t)//' '//phrase(say_too_long, m%polish)
       case (diagnostic_close)
-         text = phrase(say_blocked, m%polish)//' '//time(m, r%t)//': '//phrase(say_close, m%polish)
+         text = phrase(say_blocked, m%polish)//' '//time(m, diagnostic%t)//': '//phrase(say_close, m%polish)
       case (diagnostic_method)
          text = phrase(say_method, m%polish)
-         if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text
+         if (diagnostic%other) text = phrase(say_elsewhere, m%polish)//': '//text
       case (diagnostic_surplus)
-         text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(r%links(k))), &
-            k=1, count(r%links > 0))], m%polish)//more(r%more, m%polish)
+         text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(diagnostic%links(k))), &
+            k=1, count(diagnostic%links > 0))], m%polish)//more(diagnostic%more, m%polish)
       case (diagnostic_turned)
-         text = 'LINE '//trim(m%measures(r%measure)%name)//' '//phrase(say_turned_by, m%polish)//' ' &
-            //measure(m, r, error_digits)//' '//phrase(say_in_step, m%polish)//' '//time(m, r%t)//': ' &
+         text = 'LINE '//trim(m%measures(diagnostic%measure)%name)//' '//phrase(say_turned_by, m%polish)//' ' &
+            //measure(m, diagnostic, error_digits)//' '//phrase(say_in_step, m%polish)//' '//time(m, diagnostic%t) &
+               //': ' &
             //phrase(say_turned_far, m%polish)
       case (diagnostic_mobile)
-         text = links(m, r)//' '//phrase(say_mobile, m%polish)
+         text = links(m, diagnostic)//' '//phrase(say_mobile, m%polish)
       end select
 
    contains
@@ -413,7 +418,8 @@ contains
       function place() result(text)
          character(:), allocatable :: text
 
-         text = phrase(merge(say_singular_at, say_change, r%returns), m%polish)//' '//time(m, r%t)//', '//links(m, r) &
+         text = phrase(merge(say_singular_at, say_change, diagnostic%returns), m%polish)//' '//time(m, diagnostic%t) &
+            //', '//links(m, diagnostic) &
             //': '
       end function place
 
@@ -422,23 +428,23 @@ contains
          character(:), allocatable :: text
 
          text = ''
-         if (r%pair > 0) then
-            text = phrase(say_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
-         else if (r%drive > 0) then
-            text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(r%drive)))
+         if (diagnostic%pair > 0) then
+            text = phrase(say_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+         else if (diagnostic%drive > 0) then
+            text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))
          end if
       end function owner
    end function words_of
 
-   !> Where a drive is at the limit `r` of its range, and which links are there.
-   function limit_words(m, r) result(text)
+   !> Where a drive is at the limit `diagnostic` of its range, and which links are there.
+   function limit_words(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
+      type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
 
-      text = measure(m, r, value_digits)
-      if (r%links(1) + r%pair == 0) return
-      text = text//'   '//at_limit(m, r)
+      text = measure(m, diagnostic, value_digits)
+      if (diagnostic%links(1) + diagnostic%pair == 0) return
+      text = text//'   '//at_limit(m, diagnostic)
    end function limit_words
 
    !> TURNS FULLY, CLOSES AFTER 1 TURN
@@ -451,42 +457,43 @@ contains
    end function full_turn_words
 
    !> LINKS A, B AND 3 MORE
-   function links(m, r) result(text)
+   function links(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
+      type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
       integer, allocatable :: shown(:)
 
-      shown = shown_links(m, pack(r%links, r%links > 0))
+      shown = shown_links(m, pack(diagnostic%links, diagnostic%links > 0))
       text = phrase(merge(say_link, say_links, size(shown) == 1), m%polish)
       if (size(shown) > 0) text = text//' '//listed(m%links(shown)%name, m%polish)
-      text = text//more(r%more, m%polish)
+      text = text//more(diagnostic%more, m%polish)
    end function links
 
    !> The diagnostic's value with so many `digits`, and its unit.
-   function measure(m, r, digits) result(text)
-      class(settings_t), intent(in) :: m
-      type(diagnostic_t), intent(in) :: r
+   function measure(settings, diagnostic, digits) result(text)
+      class(settings_t), intent(in) :: settings
+      type(diagnostic_t), intent(in) :: diagnostic
       integer, intent(in) :: digits
       character(:), allocatable :: text
       !> Numbers between these have no exponent.
       real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
 
-      if (r%is_angle) then
-         text = rounded(r%value/merge(degree, 1.0_wp, m%degrees), digits, smallest, largest)//' '//trim(angle_unit(m))
+      if (diagnostic%is_angle) then
+         text = rounded(diagnostic%value/merge(degree, 1.0_wp, settings%degrees), digits, smallest, largest)//' ' &
+            //trim(angle_unit(settings))
       else
-         text = rounded(r%value, digits, smallest, largest)//' '//trim(m%length_unit)
+         text = rounded(diagnostic%value, digits, smallest, largest)//' '//trim(settings%length_unit)
       end if
    end function measure
 
-   !> A time as the tables of `m` have it, with its unit.
-   function time(m, t) result(text)
-      class(settings_t), intent(in) :: m
+   !> A time as the tables of `settings` have it, with its unit.
+   function time(settings, t) result(text)
+      class(settings_t), intent(in) :: settings
       real(wp), intent(in) :: t
       character(:), allocatable :: text
       type(format_t) :: f
 
-      call choose_time_digits(m, f)
-      text = number_text(f, t, 0.0_wp)//' '//unit_of(f%power, trim(m%time_unit))
+      call choose_time_digits(settings, f)
+      text = number_text(f, t, 0.0_wp)//' '//unit_of(f%power, trim(settings%time_unit))
    end function time
 end module listing

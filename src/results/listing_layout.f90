@@ -70,15 +70,15 @@ module listing_layout
 contains
 
    !> Makes the layout of the tables of a set.
-   function new_layout(s) result(l)
-      class(set_t), intent(in) :: s          !< only its deck counts
+   function new_layout(set) result(l)
+      class(set_t), intent(in) :: set          !< only its deck counts
       type(layout_t) :: l
 
-      l%polish = s%polish
-      l%words = words_of_cells(s%polish)
+      l%polish = set%polish
+      l%words = words_of_cells(set%polish)
       ! The effect of a tolerance has four digits.
-      if (s%largest_tolerance > 0.0_wp) &
-         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(s%largest_tolerance)))
+      if (set%largest_tolerance > 0.0_wp) &
+         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(set%largest_tolerance)))
       call choose_own_digits()
       call lay_out_tables()
       call write_instant()
@@ -94,11 +94,11 @@ contains
          logical :: mixed
 
          angle = 1.0_wp
-         if (s%degrees) angle = degree
-         allocate (l%own(s%count))
-         do c = 1, s%count
-            length = characteristic_length(s%parts(c))
-            rate = characteristic_rate(s%parts(c), length)
+         if (set%degrees) angle = degree
+         allocate (l%own(set%count))
+         do c = 1, set%count
+            length = characteristic_length(set%parts(c))
+            rate = characteristic_rate(set%parts(c), length)
             associate (f => l%own(c)%format)
                do k = 0, 2
                   f(:, k) = [format_t(), format_t(is_angle=.true., unit=angle)]
@@ -106,10 +106,10 @@ contains
                   call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
                      f(of_angle, k))
                end do
-               if (all(s%parts(c)%requests%drive == 0)) cycle
+               if (all(set%parts(c)%requests%drive == 0)) cycle
                do i = of_angle + 1, last_dimension
                   do k = 0, 1
-                     call choose_digits(log10(usual_size(i, k, length, rate, s%degrees)), 0, f(i, k))
+                     call choose_digits(log10(usual_size(i, k, length, rate, set%degrees)), 0, f(i, k))
                   end do
                end do
             end associate
@@ -117,7 +117,7 @@ contains
          l%digits_t = l%own(1)
          largest = l%own(1)%format(:of_angle, :)
          mixed = .false.
-         do c = 2, s%count
+         do c = 2, set%count
             associate (all_of => l%format(:of_angle, :), own => l%own(c)%format(:of_angle, :))
                mixed = mixed .or. any(own%power /= l%own(1)%format(:of_angle, :)%power)
                all_of%decimals = min(all_of%decimals, own%decimals)
@@ -125,7 +125,7 @@ contains
             end associate
          end do
          if (mixed .or. any(largest%decimals - l%format(:of_angle, :)%decimals > 1)) return
-         do c = 1, s%count
+         do c = 1, set%count
             l%own(c)%format(:of_angle, :) = l%format(:of_angle, :)
          end do
       end subroutine choose_own_digits
@@ -135,12 +135,12 @@ contains
          type(request_t), allocatable :: requests(:)
          integer :: i, k
 
-         requests = [(request_of(s, i), i=1, size(s%rows))]
+         requests = [(request_of(set, i), i=1, size(set%rows))]
          if (any(requests%angle_alone) .and. .not. any(requests%kind == request_link .and. requests%every > 0 .and. &
             .not. requests%angle_alone)) l%links_table = table_turning
 
          do i = 1, size(requests)
-            l%has(form_of(s%parts(s%rows(i)%part), requests(i))) = .true.
+            l%has(form_of(set%parts(set%rows(i)%part), requests(i))) = .true.
          end do
          do k = table_turning, last_table
             associate (of_table => kinds_of_rows(k)%forms)
@@ -152,9 +152,9 @@ contains
             end associate
          end do
 
-         l%unit(:of_angle) = [character(label_length) :: s%length_unit, angle_unit(s)]
+         l%unit(:of_angle) = [character(label_length) :: set%length_unit, angle_unit(set)]
          do i = of_length, of_angle
-            l%per(i, :) = [character(label_length + 4) :: '', '/'//s%time_unit, '/'//trim(s%time_unit)//'**2']
+            l%per(i, :) = [character(label_length + 4) :: '', '/'//set%time_unit, '/'//trim(set%time_unit)//'**2']
          end do
          l%per_below = maxval(len_trim(l%unit)) + len_trim(l%per(of_length, 2)) >= numeral_length
          ! Of a ratio they are those of the quantity and of the drive.
@@ -166,7 +166,7 @@ contains
          end do
          do k = table_turning, last_table
             if (is_ratio(kinds_of_rows(k)%forms(1)) .and. .not. l%has(kinds_of_rows(k)%forms(1))) cycle
-            do i = 1, s%count
+            do i = 1, set%count
                call take_heads(l, l%own(i), k)
             end do
          end do
@@ -177,13 +177,14 @@ contains
          real(wp) :: sizes(3, 0:1)
          integer :: k, dimension
 
-         call choose_time_digits(s, l%time)
-         l%before_instant = ' '//phrase(say_instant, s%polish)//' '
-         l%behind_time = ' '//unit_of(l%time%power, trim(s%time_unit))
-         allocate (l%drives(min(size(s%drives), max_drives)))
+         call choose_time_digits(set, l%time)
+         l%before_instant = ' '//phrase(say_instant, set%polish)//' '
+         l%behind_time = ' '//unit_of(l%time%power, trim(set%time_unit))
+         allocate (l%drives(min(size(set%drives), max_drives)))
          do k = 1, size(l%drives)
-            associate (m => s%parts(s%drives(k)%part), law => s%parts(s%drives(k)%part)%drives(s%drives(k)%number), &
-               d => l%own(s%drives(k)%part), drive => l%drives(k))
+            associate (m => set%parts(set%drives(k)%part), &
+               law => set%parts(set%drives(k)%part)%drives(set%drives(k)%number), &
+               d => l%own(set%drives(k)%part), drive => l%drives(k))
                dimension = merge(of_length, of_angle, is_length(law))
                drive%law = law
                drive%format = d%format(dimension, 0)
@@ -193,14 +194,14 @@ contains
                drive%size_of = sizes(1, :)
             end associate
          end do
-         l%more_drives = more(size(s%drives) - size(l%drives), s%polish)
+         l%more_drives = more(size(set%drives) - size(l%drives), set%polish)
       end subroutine write_instant
    end function new_layout
 
    !> Writes the lines over rows in tables of one kind: names, powers of ten if there are any, units.
-   subroutine take_heads(l, d, kind)
+   subroutine take_heads(l, digits, kind)
       type(layout_t), intent(in) :: l
-      type(digits_t), intent(inout) :: d     !< of a part: its formats; gets the lines
+      type(digits_t), intent(inout) :: digits     !< of a part: its formats; gets the lines
       integer, intent(in) :: kind            !< of the table: table_turning, request_link, ...
       character(row_length) :: lines(4)
       integer :: i, j, n
@@ -214,7 +215,7 @@ contains
          do j = forms(n)%first, forms(n)%last
             associate (c => columns_of_rows(j), last => end_of_column(l, n, j))
                if (c%place == 0) cycle
-               associate (power => d%format(c%dimension, c%order)%power)
+               associate (power => digits%format(c%dimension, c%order)%power)
                   call put_word(lines(1), column_name(l, c), last)
                   if (power /= 0) call put_word(lines(2), power_text(power), last)
                   if (l%per_below) then
@@ -227,15 +228,15 @@ contains
             end associate
          end do
       end do
-      d%heads(kind) = lines(1)
+      digits%heads(kind) = lines(1)
       n = len_trim(lines(1))
       do i = 2, size(lines)
          ! The line of units is always there.
          if (lines(i) == '' .and. i /= 3) cycle
-         d%heads(kind)(n + 1:) = new_line('a')//lines(i)
+         digits%heads(kind)(n + 1:) = new_line('a')//lines(i)
          n = n + 1 + len_trim(lines(i))
       end do
-      d%head_length(kind) = n
+      digits%head_length(kind) = n
 
    contains
 
@@ -260,21 +261,21 @@ contains
    end function end_of_column
 
    !> Gives the head of a column.
-   pure function column_name(l, c) result(name)
+   pure function column_name(l, column) result(name)
       type(layout_t), intent(in) :: l
-      type(row_column_t), intent(in) :: c        !< the column
+      type(row_column_t), intent(in) :: column        !< the column
       character(:), allocatable :: name
 
-      name = column_word(c%english, c%polish, l%polish)
+      name = column_word(column%english, column%polish, l%polish)
    end function column_name
 
    !> Gives the unit of a column, without its power of ten.
-   pure function column_unit(l, c) result(unit)
+   pure function column_unit(l, column) result(unit)
       type(layout_t), intent(in) :: l
-      type(row_column_t), intent(in) :: c        !< the column
+      type(row_column_t), intent(in) :: column        !< the column
       character(:), allocatable :: unit
 
-      unit = trim(l%unit(c%dimension))//trim(l%per(c%dimension, c%order))
+      unit = trim(l%unit(column%dimension))//trim(l%per(column%dimension, column%order))
    end function column_unit
 
    !> Chooses between two words by the language of the listing.
@@ -289,27 +290,27 @@ contains
 
    !> Chooses the digits of times: as many as other numbers have, and as many as show two digits of the shortest step,
    !> or one, if there is room for them. Reason: two instants must not show the same time.
-   pure subroutine choose_time_digits(m, f)
-      class(settings_t), intent(in) :: m     !< its instants
-      type(format_t), intent(out) :: f       !< of its times
+   pure subroutine choose_time_digits(settings, format)
+      class(settings_t), intent(in) :: settings     !< its instants
+      type(format_t), intent(out) :: format       !< of its times
       integer :: before, room, needed
 
-      associate (time => latest_time(m))
+      associate (time => latest_time(settings))
          if (.not. time > 0.0_wp) return
-         call choose_digits(log10(time), 0, f)
-         before = max(1, 1 + digits_after_first - f%decimals)
+         call choose_digits(log10(time), 0, format)
+         before = max(1, 1 + digits_after_first - format%decimals)
          ! Beside the point, and a blank before it; those before zero have a sign.
-         room = numeral_length - 2 - before - merge(1, 0, min(m%t0, m%t1, minval(m%at)) < 0.0_wp)
-         needed = f%power + 1 + ceiling(-log10(shortest_step(m)) - order_margin)
-         if (needed <= room + 1) f%decimals = max(f%decimals, min(room, needed))
+         room = numeral_length - 2 - before - merge(1, 0, min(settings%t0, settings%t1, minval(settings%at)) < 0.0_wp)
+         needed = format%power + 1 + ceiling(-log10(shortest_step(settings)) - order_margin)
+         if (needed <= room + 1) format%decimals = max(format%decimals, min(room, needed))
       end associate
    end subroutine choose_time_digits
 
    !> Gives the deck's unit of angles.
-   pure character(label_length) function angle_unit(m)
-      class(settings_t), intent(in) :: m     !< of the deck
+   pure character(label_length) function angle_unit(settings)
+      class(settings_t), intent(in) :: settings     !< of the deck
 
-      angle_unit = merge('DEG', 'RAD', m%degrees)
+      angle_unit = merge('DEG', 'RAD', settings%degrees)
    end function angle_unit
 
    !> Writes a sentence in one line, or in several if it is long. A line ends before three blanks; if there are none,

@@ -109,25 +109,25 @@ contains
    end subroutine append
 
    !> Appends a number without blanks to a line.
-   pure subroutine append_number(f, x, error, line, used, masked)
-      type(format_t), intent(in) :: f
-      real(wp), intent(in) :: x              !< the number, in the deck's units and rad
+   pure subroutine append_number(format, value, error, line, used, masked)
+      type(format_t), intent(in) :: format
+      real(wp), intent(in) :: value              !< the number, in the deck's units and rad
       real(wp), intent(in) :: error          !< its rounding error
       character(*), intent(inout) :: line    !< which has room for it
       integer, intent(inout) :: used         !< the characters of the line that are written
       logical, intent(inout) :: masked       !< becomes true where a digit is masked
       character(numeral_length) :: number
 
-      call put_number(f, 0, x, error, number, masked)
+      call put_number(format, 0, value, error, number, masked)
       call append(number(verify(number, ' '):), line, used)
    end subroutine append_number
 
    !> Bounds the error of the value of a drive by roundings of its numbers and of the time, in rad or lengths.
-   pure real(wp) function law_error(d, t) result(error)
-      type(head_drive_t), intent(in) :: d
+   pure real(wp) function law_error(drive, t) result(error)
+      type(head_drive_t), intent(in) :: drive
       real(wp), intent(in) :: t              !< the time, in the deck's unit
 
-      error = epsilon(1.0_wp)*(d%size_of(0) + d%size_of(1)*abs(t))
+      error = epsilon(1.0_wp)*(drive%size_of(0) + drive%size_of(1)*abs(t))
    end function law_error
 
    !> Gives a time with the digits of the set, without blanks.
@@ -144,19 +144,19 @@ contains
    end function time_text
 
    !> Gives the value of a drive at a time, without blanks.
-   pure function drive_text(d, t, error) result(text)
-      type(head_drive_t), intent(in) :: d
+   pure function drive_text(drive, t, error) result(text)
+      type(head_drive_t), intent(in) :: drive
       real(wp), intent(in) :: t              !< the time, in the deck's unit
       real(wp), intent(in) :: error          !< the error of the time
       character(:), allocatable :: text
       real(wp) :: f(3), unknown
 
-      f = drive_motion(d%law, t)
+      f = drive_motion(drive%law, t)
       unknown = nothing_known
       ! No time is as long as the square root, whose square is in the range of reals.
       if (error < sqrt(nothing_known)) &
-         unknown = law_error(d, t) + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2
-      text = number_text(d%format, f(1), unknown)
+         unknown = law_error(drive, t) + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2
+      text = number_text(drive%format, f(1), unknown)
    end function drive_text
 
    !> Writes the heads over rows, unless they stand there: names, powers of ten if there are any, units.
@@ -178,13 +178,13 @@ contains
    end subroutine put_heads
 
    !> Writes a row. A number that is not known is a word; a column that the row does not have is blank.
-   subroutine put_row(o, l, d, row, form, error, more, table)
+   subroutine put_row(o, l, digits, row, form, error, more, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
+      type(digits_t), intent(in) :: digits
       class(row_t), intent(in) :: row
       integer, intent(in) :: form            !< of the row in the listing: row_link, ...
-      integer, intent(in) :: more            !< decimals in addition to those of `d`
+      integer, intent(in) :: more            !< decimals in addition to those of `digits`
       real(wp), intent(in) :: error(3, 0:2)  !< the rounding error of its value
       type(listing_state_t), intent(inout) :: table
       character(row_length) :: line
@@ -214,7 +214,7 @@ contains
             if (cell == cell_spare .and. error(1, 0) >= nothing_known) cell = cell_number
             last = start + numeral_length*c%place
             end_of = max(end_of, last)
-            associate (f => d%format(c%dimension, c%order), field => line(last - numeral_length + 1:last))
+            associate (f => digits%format(c%dimension, c%order), field => line(last - numeral_length + 1:last))
                if (cell == cell_number .and. .not. off > 0.0_wp) then
                   ! Nearly all cells: as `put_cell`, without the call.
                   value = x
@@ -232,12 +232,12 @@ contains
       table%lines = table%lines + 1
    end subroutine put_row
 
-   !> Finds the line that explains the mark of an unknown digit in the set `s`.
-   function mask_words(s) result(line)
-      class(settings_t), intent(in) :: s
+   !> Finds the line that explains the mark of an unknown digit in the set `settings`.
+   function mask_words(settings) result(line)
+      class(settings_t), intent(in) :: settings
       character(:), allocatable :: line
 
-      line = ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish)
-      if (s%closing > 0.0_wp) line = ' --- '//unknown_digit//': '//phrase(say_unclosed, s%polish)
+      line = ' --- '//unknown_digit//': '//phrase(say_unknown, settings%polish)
+      if (settings%closing > 0.0_wp) line = ' --- '//unknown_digit//': '//phrase(say_unclosed, settings%polish)
    end function mask_words
 end module listing_tables

@@ -249,13 +249,13 @@ module phrases
 
 contains
 
-   !> The words of `p`, without trailing blanks, in Polish or in English.
-   pure function phrase(p, polish) result(text)
-      type(phrase_t), intent(in) :: p
+   !> The words of `words`, without trailing blanks, in Polish or in English.
+   pure function phrase(words, polish) result(text)
+      type(phrase_t), intent(in) :: words
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      if (polish) text = p%polish(:len_trim(p%polish))
-      if (.not. polish) text = p%english(:len_trim(p%english))
+      if (polish) text = words%polish(:len_trim(words%polish))
+      if (.not. polish) text = words%english(:len_trim(words%english))
    end function phrase
 end module phrases

@@ -42,10 +42,10 @@ module picture
 
 contains
 
-   !> Draws the set that the drawing `d` has recorded, at the end of the `page`.
-   subroutine put_picture(page, d)
+   !> Draws the set that the `drawing` has recorded, at the end of the `page`.
+   subroutine put_picture(page, drawing)
       type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: d
+      type(drawing_t), intent(in), target :: drawing
       type(canvas_t) :: c
       type(snapshot_t) :: s
       type(element_t), allocatable :: list(:)
@@ -53,20 +53,20 @@ contains
       integer, allocatable :: faint(:)
       integer :: best, k
 
-      s = d%now
+      s = drawing%now
       faint = [integer ::]
-      if (size(d%own) > 0) then
-         best = clearest(d, d%own)
-         faint = faint_frames(d, d%own, best)
-         s = d%frame(best)
+      if (size(drawing%own) > 0) then
+         best = clearest(drawing, drawing%own)
+         faint = faint_frames(drawing, drawing%own, best)
+         s = drawing%frame(best)
       end if
-      call make_canvas(page, d, s, faint, c)
+      call make_canvas(page, drawing, s, faint, c)
 
-      list = shapes_of(d, c%scale)
+      list = shapes_of(drawing, c%scale)
       call put_window(c%o, c%low, c%high)
       call put_group(c%o, 'class="faint"', '')
       do k = 1, size(faint)
-         call put_outlines(c, list, d%frame(faint(k)))
+         call put_outlines(c, list, drawing%frame(faint(k)))
       end do
       call put_end(c%o, 'g')
       do k = 1, size(list)
@@ -75,8 +75,8 @@ contains
       end do
       call put_end(c%o, 'svg')
       call put_drives(c)
-      if (d%has_arrows) call put_velocities(c)
-      do k = 1, size(d%poles)
+      if (drawing%has_arrows) call put_velocities(c)
+      do k = 1, size(drawing%poles)
          call put_centre(c, page, k)
       end do
       call labels_of(c, labels)
@@ -85,40 +85,40 @@ contains
       end do
 
       ! At the foot: the instant that is drawn in full.
-      if (size(d%own) > 0) call put_words(c%o, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
+      if (size(drawing%own) > 0) call put_words(c%o, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
          caption(c, s%t))
       call put_foot(c)
    end subroutine put_picture
 
    !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
    !> that of its acceleration.
-   subroutine put_drives(c)
-      type(canvas_t), intent(inout) :: c
+   subroutine put_drives(canvas)
+      type(canvas_t), intent(inout) :: canvas
       real(wp) :: f(0:2), sense
       integer :: i, k
 
-      do i = 1, size(c%m%drives)
-         associate (drive => c%m%drives(i), known => c%s%known)
-            f = drive_motion(drive, c%s%t)
+      do i = 1, size(canvas%m%drives)
+         associate (drive => canvas%m%drives(i), known => canvas%s%known)
+            f = drive_motion(drive, canvas%s%t)
             sense = sign(1.0_wp, f(2))
             if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
-            call put_group(c%o, 'class="drives"', trim(drive_name(c%m, drive)))
+            call put_group(canvas%o, 'class="drives"', trim(drive_name(canvas%m, drive)))
             select case (drive%kind)
             case (drive_angle)
                if (known(drive%subject)) call put_arc(0, drive%subject, sense)
             case (drive_relangle)
                if (known(drive%subject) .and. known(drive%second)) call put_arc(drive%subject, drive%second, sense)
             case (drive_x, drive_y)
-               if (known(c%m%points(drive%subject)%link)) call put_arrow(drive%subject, &
+               if (known(canvas%m%points(drive%subject)%link)) call put_arrow(drive%subject, &
                   sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x))
             case (drive_slide)
-               k = findloc(c%d%guides%pair, drive%subject, dim=1)
-               associate (g => c%d%guides(k))
+               k = findloc(canvas%d%guides%pair, drive%subject, dim=1)
+               associate (g => canvas%d%guides(k))
                   if (known(g%carrier) .and. known(g%block)) call put_arrow(g%point, &
-                     sense*real(g%sense, wp)*direction(c%s%place(3, g%carrier) + g%angle))
+                     sense*real(g%sense, wp)*direction(canvas%s%place(3, g%carrier) + g%angle))
                end associate
             end select
-            call put_end(c%o, 'g')
+            call put_end(canvas%o, 'g')
          end associate
       end do
 
@@ -133,27 +133,27 @@ contains
          integer :: i, k, ends(2), point
 
          point = 0
-         do i = 1, size(c%m%pairs)
-            ends = [c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]
-            k = findloc(c%m%points(ends)%link, link, dim=1)
-            if (has_guide(c%m%pairs(i)%kind) .or. k == 0) cycle
-            associate (other => c%m%points(ends(3 - k))%link)
-               if (point == 0 .or. other == base .or. (base == 0 .and. c%m%links(other)%ground)) point = ends(k)
+         do i = 1, size(canvas%m%pairs)
+            ends = [canvas%m%pairs(i)%point_i, canvas%m%pairs(i)%point_j]
+            k = findloc(canvas%m%points(ends)%link, link, dim=1)
+            if (has_guide(canvas%m%pairs(i)%kind) .or. k == 0) cycle
+            associate (other => canvas%m%points(ends(3 - k))%link)
+               if (point == 0 .or. other == base .or. (base == 0 .and. canvas%m%links(other)%ground)) point = ends(k)
             end associate
          end do
-         center = c%s%place(:2, link)
-         if (point > 0) center = point_place(c%m, c%s, point)
-         start = c%s%place(3, link)
-         associate (corners => moved(c%d%outlines(link)%corner, c%s%place(:, link)))
+         center = canvas%s%place(:2, link)
+         if (point > 0) center = point_place(canvas%m, canvas%s, point)
+         start = canvas%s%place(3, link)
+         associate (corners => moved(canvas%d%outlines(link)%corner, canvas%s%place(:, link)))
             if (size(corners, 2) > 1) then
                e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
-               if (c%scale*norm2(e) > 1.0_wp) start = atan2(e(2), e(1))
+               if (canvas%scale*norm2(e) > 1.0_wp) start = atan2(e(2), e(1))
             end if
          end associate
          do k = 1, size(arc_starts)
             do i = 0, pieces
                e = direction(start + sense*degree*(arc_starts(k) + arc_angle*real(i, wp)/real(pieces, wp)))
-               lines(:, i, k) = to_pixels(c, center) + arc_radius*[e(1), -e(2)]
+               lines(:, i, k) = to_pixels(canvas, center) + arc_radius*[e(1), -e(2)]
             end do
          end do
          call put_clearest(lines)
@@ -169,7 +169,7 @@ contains
 
          e = sense*[1.0_wp, -1.0_wp]
          do k = 1, size(asides)
-            start = to_pixels(c, point_place(c%m, c%s, point)) - 0.5_wp*arrow_length*e &
+            start = to_pixels(canvas, point_place(canvas%m, canvas%s, point)) - 0.5_wp*arrow_length*e &
                + merge(asides(k), -asides(k), e(1) < 0.0_wp)*quarter_turn(e)
             do i = 0, pieces
                lines(:, i, k) = start + arrow_length*real(i, wp)/real(pieces, wp)*e
@@ -187,35 +187,35 @@ contains
          best = 1
          least = huge(least)
          do k = 1, size(lines, 3)
-            cover = cover_of(c, lines(:, :, k))
+            cover = cover_of(canvas, lines(:, :, k))
             if (cover >= least - tie) cycle
             least = cover
             best = k
          end do
-         call put_arrow_line(c, reshape([lines(:, :pieces - of_tip, best), lines(:, pieces, best)], &
+         call put_arrow_line(canvas, reshape([lines(:, :pieces - of_tip, best), lines(:, pieces, best)], &
             [2, 2 + pieces - of_tip]), 'class="drive"', 'class="tip"')
       end subroutine put_clearest
    end subroutine put_drives
 
    !> Draws an arrow along the pixels `line` (2, :), whose last piece is its tip.
-   subroutine put_arrow_line(c, line, of_line, of_tip)
-      type(canvas_t), intent(inout) :: c
+   subroutine put_arrow_line(canvas, line, of_line, of_tip)
+      type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: line(:, :)
       character(*), intent(in) :: of_line, of_tip   !< attributes
       real(wp) :: e(2)
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
          e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
-         call put_line(c%o, 'polyline', line(:, :n - 1), of_line)
-         call put_line(c%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
+         call put_line(canvas%o, 'polyline', line(:, :n - 1), of_line)
+         call put_line(canvas%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
       end associate
-      call add_lines(c, line, arrow_weight)
+      call add_lines(canvas, line, arrow_weight)
    end subroutine put_arrow_line
 
    !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a
    !> line with its place at the foot of the `page`.
-   subroutine put_centre(c, page, i)
-      type(canvas_t), intent(inout) :: c
+   subroutine put_centre(canvas, page, i)
+      type(canvas_t), intent(inout) :: canvas
       type(page_t), intent(inout) :: page
       integer, intent(in) :: i
       real(wp), parameter :: radius = 4.0_wp
@@ -223,80 +223,81 @@ contains
       character(:), allocatable :: color, name
       real(wp) :: p(2)
 
-      if (.not. c%s%has_centre(i)) return
-      p = to_pixels(c, c%s%centre(:, i))
-      color = 'style="fill:'//link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"'
-      name = pole_name(c%m, c%d%poles(i))
-      if (any(p < c%low) .or. any(p > c%high)) then
-         associate (at => c%s%centre(:, i) + c%d%origin)
-            call put_words(c%o, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
-               phrase(say_centre_outside, c%m%polish)//': '//fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
+      if (.not. canvas%s%has_centre(i)) return
+      p = to_pixels(canvas, canvas%s%centre(:, i))
+      color = 'style="fill:'//link_color(canvas%m, canvas%m%requests(canvas%d%poles(i))%subject)//'"'
+      name = pole_name(canvas%m, canvas%d%poles(i))
+      if (any(p < canvas%low) .or. any(p > canvas%high)) then
+         associate (at => canvas%s%centre(:, i) + canvas%d%origin)
+            call put_words(canvas%o, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
+               phrase(say_centre_outside, canvas%m%polish)//': '//fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
          end associate
          page%height = page%height + line_height
          return
       end if
-      call put_circle(c%o, p, radius, 'class="centre" style="stroke:' &
-         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"')
-      call put_circle(c%o, p, 1.0_wp, 'class="point"')
-      call add_box(c, p - radius, p + radius)
+      call put_circle(canvas%o, p, radius, 'class="centre" style="stroke:' &
+         //link_color(canvas%m, canvas%m%requests(canvas%d%poles(i))%subject)//'"')
+      call put_circle(canvas%o, p, 1.0_wp, 'class="point"')
+      call add_box(canvas, p - radius, p + radius)
       label%attributes = 'class="link" '//color
-      call place_name(c, reshape(p, [2, 1]), clear_of_point, name, label)
-      call put_label(c, label)
+      call place_name(canvas, reshape(p, [2, 1]), clear_of_point, name, label)
+      call put_label(canvas, label)
    end subroutine put_centre
 
    !> Draws the velocities of the points whose paths are drawn, as arrows, and their scale below that of lengths.
-   subroutine put_velocities(c)
-      type(canvas_t), intent(inout) :: c
-      real(wp) :: v(2, size(c%d%curves)), scale, p(2), tip(2)
+   subroutine put_velocities(canvas)
+      type(canvas_t), intent(inout) :: canvas
+      real(wp) :: v(2, size(canvas%d%curves)), scale, p(2), tip(2)
       integer :: k
 
-      do k = 1, size(c%d%curves)
-         v(:, k) = point_velocity(c%m, c%s, c%d%curves(k))*[1.0_wp, -1.0_wp]
+      do k = 1, size(canvas%d%curves)
+         v(:, k) = point_velocity(canvas%m, canvas%s, canvas%d%curves(k))*[1.0_wp, -1.0_wp]
       end do
       if (.not. any(abs(v) > 0.0_wp)) return
       scale = longest_arrow/maxval(norm2(v, dim=1))
-      do k = 1, size(c%d%curves)
+      do k = 1, size(canvas%d%curves)
          if (norm2(v(:, k))*scale < tip_length) cycle
-         associate (point => c%d%curves(k))
-            p = to_pixels(c, point_place(c%m, c%s, point))
-            call put_group(c%o, 'class="velocity" '//attribute('data-point', trim(c%m%points(point)%name)) &
+         associate (point => canvas%d%curves(k))
+            p = to_pixels(canvas, point_place(canvas%m, canvas%s, point))
+            call put_group(canvas%o, 'class="velocity" '//attribute('data-point', trim(canvas%m%points(point)%name)) &
                //' data-scale="'//full(scale)//'"', '')
             tip = p + scale*v(:, k)
-            call put_arrow_line(c, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
+            call put_arrow_line(canvas, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
                'class="arrow"', 'class="tip arrow"')
-            call put_end(c%o, 'g')
+            call put_end(canvas%o, 'g')
          end associate
       end do
-      call put_bar(c, c%high(2) + 36.0_wp, scale, trim(c%m%length_unit)//'/'//trim(c%m%time_unit), 'class="arrow"')
+      call put_bar(canvas, canvas%high(2) + 36.0_wp, scale, trim(canvas%m%length_unit)//'/' &
+         //trim(canvas%m%time_unit), 'class="arrow"')
    end subroutine put_velocities
 
    !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
    !> is `wide` across. Reason: links that are collinear at the first instant are read better later.
-   integer function clearest(d, list) result(best)
-      type(drawing_t), intent(in) :: d
+   integer function clearest(drawing, list) result(best)
+      type(drawing_t), intent(in) :: drawing
       integer, intent(in) :: list(:)
       real(wp) :: across(size(list))
       logical :: most(size(list))
       integer :: i, known(size(list))
 
-      known = [(count(d%frame(list(i))%known), i=1, size(list))]
+      known = [(count(drawing%frame(list(i))%known), i=1, size(list))]
       most = known == maxval(known)
-      across = [(minval(sides_of(d, d%frame(list(i)))), i=1, size(list))]
+      across = [(minval(sides_of(drawing, drawing%frame(list(i)))), i=1, size(list))]
       best = list(findloc(most .and. across >= wide*maxval(across, mask=most), .true., dim=1))
    end function clearest
 
-   !> The sides (2) of the box that the known moving links cover at the position `s`.
-   pure function sides_of(d, s) result(sides)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
+   !> The sides (2) of the box that the known moving links cover at the position `snapshot`.
+   pure function sides_of(drawing, snapshot) result(sides)
+      type(drawing_t), intent(in) :: drawing
+      type(snapshot_t), intent(in) :: snapshot
       real(wp) :: sides(2), low(2), high(2)
       integer :: i
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      do i = 1, size(d%m%links)
-         if (d%m%links(i)%ground .or. .not. s%known(i)) cycle
-         associate (p => moved(d%outlines(i)%corner, s%place(:, i)))
+      do i = 1, size(drawing%m%links)
+         if (drawing%m%links(i)%ground .or. .not. snapshot%known(i)) cycle
+         associate (p => moved(drawing%outlines(i)%corner, snapshot%place(:, i)))
             low = min(low, minval(p, dim=2))
             high = max(high, maxval(p, dim=2))
          end associate
@@ -307,38 +308,39 @@ contains
 
    !> Chooses those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are
    !> like it or like one another.
-   function faint_frames(d, own, best) result(list)
-      type(drawing_t), intent(in) :: d
+   function faint_frames(drawing, own, best) result(list)
+      type(drawing_t), intent(in) :: drawing
       integer, intent(in) :: own(:), best
       integer, allocatable :: list(:)
       integer :: i, j, k, n
 
       allocate (list(0))
-      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. (d%m%links%ground .or. d%m%links%hidden)))))
+      n = max(min_faint, min(max_faint, faint_links/max(1, &
+         count(.not. (drawing%m%links%ground .or. drawing%m%links%hidden)))))
       do i = 0, n
          k = own(1 + i*(size(own) - 1)/n)
-         if (distance(d, k, best) < alike) cycle
-         if (any([(distance(d, k, list(j)) < alike, j=1, size(list))])) cycle
+         if (distance(drawing, k, best) < alike) cycle
+         if (any([(distance(drawing, k, list(j)) < alike, j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
 
    !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
    !> link.
-   real(wp) function distance(d, i, j)
-      type(drawing_t), intent(in) :: d
+   real(wp) function distance(drawing, i, j)
+      type(drawing_t), intent(in) :: drawing
       integer, intent(in) :: i, j
       real(wp) :: extent
       integer :: k
 
       distance = 1.0_wp
-      if (any(d%frame(i)%known .neqv. d%frame(j)%known)) return
+      if (any(drawing%frame(i)%known .neqv. drawing%frame(j)%known)) return
       distance = 0.0_wp
-      extent = maxval(sides_of(d, d%frame(i)))
-      do k = 1, size(d%m%links)
-         if (d%m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
-         associate (p => moved(d%outlines(k)%corner, d%frame(i)%place(:, k)), &
-            q => moved(d%outlines(k)%corner, d%frame(j)%place(:, k)))
+      extent = maxval(sides_of(drawing, drawing%frame(i)))
+      do k = 1, size(drawing%m%links)
+         if (drawing%m%links(k)%ground .or. .not. drawing%frame(i)%known(k)) cycle
+         associate (p => moved(drawing%outlines(k)%corner, drawing%frame(i)%place(:, k)), &
+            q => moved(drawing%outlines(k)%corner, drawing%frame(j)%place(:, k)))
             if (size(p) > 0) distance = max(distance, maxval(abs(p - q)))
          end associate
       end do

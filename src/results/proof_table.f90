@@ -23,63 +23,65 @@ module proof_table
 contains
 
    !> Writes what is proved after the last instant of a set.
-   subroutine put_proofs(o, l, p, m)
+   subroutine put_proofs(o, l, proofs, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(proofs_t), intent(in) :: p
-      class(set_t), intent(in) :: m
+      type(proofs_t), intent(in) :: proofs
+      class(set_t), intent(in) :: set
       character(:), allocatable :: start, gap
       integer :: i
 
       call put(o, '')
-      call put(o, ' '//phrase(say_proof, m%polish))
-      call put(o, column(phrase(say_instant, m%polish))//column('T')//column(phrase(say_parts, m%polish)) &
-         //column(phrase(say_tube, m%polish))//column(phrase(say_position, m%polish)) &
-         //column(phrase(say_velocity, m%polish))//'  '//column(phrase(say_acceleration, m%polish)))
-      do i = 1, p%count
-         associate (line => p%lines(i))
-            start = column(whole(line%step))//column(time_text(l, instant(m, line%step)))
+      call put(o, ' '//phrase(say_proof, set%polish))
+      call put(o, column(phrase(say_instant, set%polish))//column('T')//column(phrase(say_parts, set%polish)) &
+         //column(phrase(say_tube, set%polish))//column(phrase(say_position, set%polish)) &
+         //column(phrase(say_velocity, set%polish))//'  '//column(phrase(say_acceleration, set%polish)))
+      do i = 1, proofs%count
+         associate (line => proofs%lines(i))
+            start = column(whole(line%step))//column(time_text(l, instant(set, line%step)))
             if (line%is_proved) then
                call put(o, start//column(whole(line%parts))//column(rounded_up(line%tube)) &
                   //column(rounded_up(line%bounds(0)))//column(rounded_up(line%bounds(1))) &
                   //'  '//column(rounded_up(line%bounds(2))))
             else
-               call put(o, start//'   '//phrase(say_not_proved, m%polish))
+               call put(o, start//'   '//phrase(say_not_proved, set%polish))
             end if
          end associate
       end do
-      do i = 1, size(p%reasons)
-         associate (r => p%reasons(i))
-            call put_folded(o, ' *** ', phrase(say_instant, m%polish)//' '//whole(r%step)//', T = ' &
-               //time_text(l, instant(m, r%step))//': '//phrase(say_not_proved, m%polish)//': '//words_of(r, m))
+      do i = 1, size(proofs%reasons)
+         associate (r => proofs%reasons(i))
+            call put_folded(o, ' *** ', phrase(say_instant, set%polish)//' '//whole(r%step)//', T = ' &
+               //time_text(l, instant(set, r%step))//': '//phrase(say_not_proved, set%polish)//': '//words_of(r, set))
          end associate
       end do
-      if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
-         //': '//whole(p%instants - p%proved))
+      if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** '//phrase(say_not_proved, &
+         set%polish) &
+         //': '//whole(proofs%instants - proofs%proved))
       gap = ''
-      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_closure_error_of, m%polish)//' '//rounded_up(p%gap)
-      call put(o, ' '//phrase(say_proved, m%polish)//' '//whole(p%proved)//' / '//whole(p%instants) &
-         //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
-         //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)
+      if (proofs%gap > 0.0_wp) gap = ',  '//phrase(say_closure_error_of, set%polish)//' '//rounded_up(proofs%gap)
+      call put(o, ' '//phrase(say_proved, set%polish)//' '//whole(proofs%proved)//' / '//whole(proofs%instants) &
+         //',  '//phrase(say_parts, set%polish)//' '//whole(sum(proofs%lines(:proofs%count)%parts)) &
+         //',  '//phrase(say_tube, set%polish)//' '//rounded_up(maxval([0.0_wp, proofs%lines(:proofs%count)%tube])) &
+            //gap)
    end subroutine put_proofs
 
    !> Tells why an instant is not proved.
-   function words_of(r, m) result(words)
-      type(reason_t), intent(in) :: r
-      class(set_t), intent(in) :: m          !< the set
+   function words_of(reason, set) result(words)
+      type(reason_t), intent(in) :: reason
+      class(set_t), intent(in) :: set          !< the set
       character(:), allocatable :: words
 
-      if (r%mark /= mark_none) then
-         words = words_of_mark(r%mark, r%singularity, m%polish)
-      else if (r%is_crossed) then
-         words = phrase(say_change_inside, m%polish)
+      if (reason%mark /= mark_none) then
+         words = words_of_mark(reason%mark, reason%singularity, set%polish)
+      else if (reason%is_crossed) then
+         words = phrase(say_change_inside, set%polish)
       else
-         words = phrase(say_near_singular, m%polish)
-         if (r%too_many > 0) words = phrase(say_too_wide, m%polish)//' '//whole(r%too_many)
-         if (.not. allocated(r%links)) return
-         associate (part => m%parts(r%part))
-            if (size(r%links) > 0) words = phrase(say_links, m%polish)//' ' &
-               //listed(part%links(shown_links(part, r%links))%name, m%polish)//': '//words
+         words = phrase(say_near_singular, set%polish)
+         if (reason%too_many > 0) words = phrase(say_too_wide, set%polish)//' '//whole(reason%too_many)
+         if (.not. allocated(reason%links)) return
+         associate (part => set%parts(reason%part))
+            if (size(reason%links) > 0) words = phrase(say_links, set%polish)//' ' &
+               //listed(part%links(shown_links(part, reason%links))%name, set%polish)//': '//words
          end associate
       end if
    end function words_of
@@ -92,18 +94,18 @@ contains
       column = right(text, number_width)
    end function column
 
-   !> `x` with one digit, rounded up; 0 is exact.
-   pure function rounded_up(x) result(text)
-      real(wp), intent(in) :: x              !< at least 0
+   !> `value` with one digit, rounded up; 0 is exact.
+   pure function rounded_up(value) result(text)
+      real(wp), intent(in) :: value              !< at least 0
       character(:), allocatable :: text
       character(8) :: field
       real(wp) :: large
       integer :: first, power, digit
 
       text = '0'
-      if (.not. x > 0.0_wp) return
+      if (.not. value > 0.0_wp) return
       ! Numbers next to the end of the range are none.
-      large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
+      large = min(max(value, tiny(value)/epsilon(value)**2), huge(value)*epsilon(value)**2)
       ! Of the power of two: its own or one less.
       first = floor((exponent(large) - 1)*log10(2.0_wp))
       do power = first, first + 1

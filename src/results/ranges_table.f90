@@ -17,18 +17,18 @@ module ranges_table
 contains
 
    !> Writes the ranges of drives after the last instant of a set.
-   subroutine put_ranges(o, s, list)
+   subroutine put_ranges(o, set, list)
       type(output_t), intent(inout) :: o     !< the listing
-      class(set_t), intent(in) :: s          !< the set
+      class(set_t), intent(in) :: set          !< the set
       type(range_t), intent(in) :: list(:)   !< in the order of the drives
       character(:), allocatable :: words
       integer :: i, side
 
       call put(o, '')
-      call put(o, ' '//phrase(say_range, s%polish))
-      if (size(list) == 0) call put(o, '   '//phrase(say_none, s%polish))
+      call put(o, ' '//phrase(say_range, set%polish))
+      if (size(list) == 0) call put(o, '   '//phrase(say_none, set%polish))
       do i = 1, size(list)
-         associate (r => list(i), m => s%parts(list(i)%part))
+         associate (r => list(i), m => set%parts(list(i)%part))
             words = trim(drive_name(m, m%drives(r%drive)))
             if (r%is_of_branch) words = words//'   '//phrase(say_range_of_branch, m%polish)
             call put(o, ' '//words)

@@ -46,48 +46,50 @@ module shapes
 
 contains
 
-   !> Returns the shapes of the drawing `d` at so many pixels a unit of length (`scale`), in the order in which they are
+   !> Returns the shapes of the `drawing` at so many pixels a unit of length (`scale`), in the order in which they are
    !> drawn; joints on that of their links which is drawn later.
-   function shapes_of(d, scale) result(list)
-      type(drawing_t), intent(in) :: d
+   function shapes_of(drawing, scale) result(list)
+      type(drawing_t), intent(in) :: drawing
       real(wp), intent(in) :: scale
       type(element_t), allocatable :: list(:)
       character(:), allocatable :: stroke
       real(wp) :: place(2, 3), u(2), v(2)
-      logical :: is_dot(size(d%m%points))
+      logical :: is_dot(size(drawing%m%points))
       integer :: ends(2), used, i, k
 
       used = 0
-      allocate (list(4*size(d%m%pairs) + 2*size(d%m%links) + size(d%m%points)))
-      do i = 1, size(d%curves)
-         call add_path(d%curves(i))
+      allocate (list(4*size(drawing%m%pairs) + 2*size(drawing%m%links) + size(drawing%m%points)))
+      do i = 1, size(drawing%curves)
+         call add_path(drawing%curves(i))
       end do
       ! A support under each joint of the ground.
-      do i = 1, size(d%m%pairs)
-         if (has_guide(d%m%pairs(i)%kind)) cycle
-         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-         k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
+      do i = 1, size(drawing%m%pairs)
+         if (has_guide(drawing%m%pairs(i)%kind)) cycle
+         ends = [drawing%m%pairs(i)%point_i, drawing%m%pairs(i)%point_j]
+         k = findloc(drawing%m%links(drawing%m%points(ends)%link)%ground, .true., dim=1)
          if (k == 0) cycle
-         place = spread(point_place(d%m, d%now, ends(k)), 2, 3)
+         place = spread(point_place(drawing%m, drawing%now, ends(k)), 2, 3)
          call add(0, 'polygon', 'class="support"', place, support, box)
          call add(0, 'polyline', 'class="hatch"', place(:, :2), base - spread([0.0_wp, below], 2, 2), box, below)
          call add(0, 'polyline', 'class="support"', place(:, :2), base)
       end do
-      do i = 1, size(d%guides)
-         if (d%guides(i)%high >= d%guides(i)%low .and. .not. d%guides(i)%is_cylinder) call add_guide(d%guides(i))
+      do i = 1, size(drawing%guides)
+         associate (guide => drawing%guides(i))
+            if (guide%high >= guide%low .and. .not. guide%is_cylinder) call add_guide(guide)
+         end associate
       end do
-      do i = 1, size(d%poles)
+      do i = 1, size(drawing%poles)
          do k = 1, 2
-            if (d%has_centrodes) call add_centrode(i, k)
+            if (drawing%has_centrodes) call add_centrode(i, k)
          end do
       end do
       list(:used)%is_below = .true.
 
       ! Links that move, bars and polygons; blocks; joints; points that no pair joins.
-      do i = 1, size(d%m%links)
-         if (d%m%links(i)%ground) cycle
+      do i = 1, size(drawing%m%links)
+         if (drawing%m%links(i)%ground) cycle
          stroke = 'style="stroke:'//color_of(i)
-         associate (p => d%outlines(i)%corner)
+         associate (p => drawing%outlines(i)%corner)
             if (size(p, 2) == 2) then
                call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, is_faint=.true.)
                call add(i, 'polyline', 'class="core"', p)
@@ -97,32 +99,34 @@ contains
             end if
          end associate
       end do
-      do i = 1, size(d%guides)
-         associate (g => d%guides(i))
+      do i = 1, size(drawing%guides)
+         associate (g => drawing%guides(i))
             if (g%is_cylinder .and. g%high >= g%low) call add_cylinder(g)
-            if (d%m%links(g%block)%hidden .or. g%is_cylinder) cycle
+            if (drawing%m%links(g%block)%hidden .or. g%is_cylinder) cycle
             u = half_block(1)*direction(g%block_angle)
             v = half_block(2)*quarter_turn(direction(g%block_angle))
             call add(g%block, 'polygon', 'class="block" style="fill:' &
-               //merge(ground_block, color_of(g%block), d%m%links(g%block)%ground)//'"', &
-               spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
+               //merge(ground_block, color_of(g%block), drawing%m%links(g%block)%ground)//'"', &
+               spread(drawing%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
                is_faint=.true.)
          end associate
       end do
-      do i = 1, size(d%m%pairs)
-         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-         associate (links => d%m%links(d%m%points(ends)%link))
-            k = ends(maxloc(merge(0, merge(1, 1 + d%m%points(ends)%link, links%ground), links%hidden), dim=1))
+      do i = 1, size(drawing%m%pairs)
+         ends = [drawing%m%pairs(i)%point_i, drawing%m%pairs(i)%point_j]
+         associate (links => drawing%m%links(drawing%m%points(ends)%link))
+            k = ends(maxloc(merge(0, merge(1, 1 + drawing%m%points(ends)%link, links%ground), links%hidden), dim=1))
          end associate
-         if (.not. has_guide(d%m%pairs(i)%kind)) call add(d%m%points(k)%link, 'circle', &
-            'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)), spread(d%m%points(k)%offset, 2, 1), &
+         if (.not. has_guide(drawing%m%pairs(i)%kind)) call add(drawing%m%points(k)%link, 'circle', &
+            'class="joint" '//attribute('data-pair', trim(drawing%m%pairs(i)%name)), &
+               spread(drawing%m%points(k)%offset, 2, 1), &
             weight=box, radius=joint_radius)
       end do
-      is_dot = .not. d%m%links(d%m%points%link)%ground
-      is_dot([d%m%pairs%point_i, d%m%pairs%point_j]) = .false.
+      is_dot = .not. drawing%m%links(drawing%m%points%link)%ground
+      is_dot([drawing%m%pairs%point_i, drawing%m%pairs%point_j]) = .false.
       do i = 1, size(is_dot)
-         if (is_dot(i)) call add(d%m%points(i)%link, 'circle', &
-            'class="point" '//attribute('data-point', trim(d%m%points(i)%name)), spread(d%m%points(i)%offset, 2, 1), &
+         if (is_dot(i)) call add(drawing%m%points(i)%link, 'circle', &
+            'class="point" '//attribute('data-point', trim(drawing%m%points(i)%name)), &
+               spread(drawing%m%points(i)%offset, 2, 1), &
             weight=box, radius=point_radius)
       end do
       list = list(:used)
@@ -157,7 +161,7 @@ contains
 
          if (.not. any(goes_on)) return
          associate (on => spread(goes_on .or. eoshift(goes_on, -1), 1, 2))
-            if (all(maxval(p, 2, on) - minval(p, 2, on) < one_place*characteristic_length(d%m))) return
+            if (all(maxval(p, 2, on) - minval(p, 2, on) < one_place*characteristic_length(drawing%m))) return
          end associate
          first = 1
          do last = 1, size(goes_on)
@@ -170,64 +174,66 @@ contains
       !> Adds the path of point number `i` through the frames, in pieces where its place is not known.
       subroutine add_path(i)
          integer, intent(in) :: i
-         real(wp) :: p(2, d%films)
-         logical :: known(d%films)
+         real(wp) :: p(2, drawing%films)
+         logical :: known(drawing%films)
          integer :: k
 
-         do k = 1, d%films
-            known(k) = d%frame(k)%known(d%m%points(i)%link)
-            p(:, k) = point_place(d%m, d%frame(k), i)
+         do k = 1, drawing%films
+            known(k) = drawing%frame(k)%known(drawing%m%points(i)%link)
+            p(:, k) = point_place(drawing%m, drawing%frame(k), i)
          end do
-         call add_pieces(0, 'polyline', 'class="curve" '//attribute('data-path', trim(d%m%points(i)%name)) &
-            //' style="stroke:'//color_of(d%m%points(i)%link)//'"', p, known .and. eoshift(known, 1))
+         call add_pieces(0, 'polyline', 'class="curve" '//attribute('data-path', trim(drawing%m%points(i)%name)) &
+            //' style="stroke:'//color_of(drawing%m%points(i)%link)//'"', p, known .and. eoshift(known, 1))
       end subroutine add_path
 
-      !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
+      !> Adds the `guide`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
       !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
-      subroutine add_guide(g)
-         type(guide_t), intent(in) :: g
+      subroutine add_guide(guide)
+         type(guide_t), intent(in) :: guide
          real(wp), allocatable :: p(:, :), pixels(:, :)
          real(wp) :: e(2), beside(2), further
 
-         e = direction(g%angle)
-         further = merge(beyond_pin, beyond, d%m%links(g%block)%hidden)
-         if (d%m%links(g%carrier)%ground) then
-            p = reshape([g%foot + g%low*e, g%foot + g%high*e], [2, 2])
+         e = direction(guide%angle)
+         further = merge(beyond_pin, beyond, drawing%m%links(guide%block)%hidden)
+         if (drawing%m%links(guide%carrier)%ground) then
+            p = reshape([guide%foot + guide%low*e, guide%foot + guide%high*e], [2, 2])
             pixels = reshape([-further*e, further*e], [2, 2])
             ! A vertical one has it on the right, whatever rounding makes of its cosine.
-            beside = -sign(below, cos(d%now%place(3, g%carrier) + g%angle) + one_place)*quarter_turn(e)
-            call add(g%carrier, 'polyline', 'class="hatch"', p, pixels + spread(beside, 2, 2), line_weight)
-            call add(g%carrier, 'polyline', 'class="guide"', p, pixels, line_weight)
+            beside = -sign(below, cos(drawing%now%place(3, guide%carrier) + guide%angle) + one_place)*quarter_turn(e)
+            call add(guide%carrier, 'polyline', 'class="hatch"', p, pixels + spread(beside, 2, 2), line_weight)
+            call add(guide%carrier, 'polyline', 'class="guide"', p, pixels, line_weight)
          else
-            beside = d%m%points(g%pivot)%offset - g%foot
-            p = reshape([g%foot + min(g%low, 0.0_wp)*e, g%foot + max(g%high, 0.0_wp)*e], [2, 2])
-            pixels = reshape([min(scale*max(g%low, 0.0_wp) - further, 0.0_wp)*e, &
-               max(scale*min(g%high, 0.0_wp) + further, 0.0_wp)*e], [2, 2])
+            beside = drawing%m%points(guide%pivot)%offset - guide%foot
+            p = reshape([guide%foot + min(guide%low, 0.0_wp)*e, guide%foot + max(guide%high, 0.0_wp)*e], [2, 2])
+            pixels = reshape([min(scale*max(guide%low, 0.0_wp) - further, 0.0_wp)*e, &
+               max(scale*min(guide%high, 0.0_wp) + further, 0.0_wp)*e], [2, 2])
             if (scale*norm2(beside) > 1.0_wp) then
-               p = reshape([p(:, 1), g%foot, g%foot + beside, g%foot, p(:, 2)], [2, 5])
+               p = reshape([p(:, 1), guide%foot, guide%foot + beside, guide%foot, p(:, 2)], [2, 5])
                pixels = reshape([pixels(:, 1), 0.0_wp*[beside, beside, beside], pixels(:, 2)], [2, 5])
             end if
-            call add(g%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(g%carrier)//'"', p, pixels, &
+            call add(guide%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(guide%carrier)//'"', p, pixels, &
                line_weight, is_faint=.true.)
-            call add(g%carrier, 'polyline', 'class="slot"', p, pixels)
+            call add(guide%carrier, 'polyline', 'class="slot"', p, pixels)
          end if
       end subroutine add_guide
 
-      !> Adds the cylinder of the guide `g`: a rod from Q, and over it a barrel from P.
-      subroutine add_cylinder(g)
-         type(guide_t), intent(in) :: g
+      !> Adds the cylinder of the `guide`: a rod from Q, and over it a barrel from P.
+      subroutine add_cylinder(guide)
+         type(guide_t), intent(in) :: guide
          real(wp) :: e(2), aside(2), least
 
-         least = max(g%low, 0.0_wp)
-         e = direction(g%block_angle)
-         associate (q => d%m%points(g%point)%offset)
-            call add(g%block, 'polyline', 'class="piston" style="stroke:'//link_color(d%m, g%block)//'"', &
+         least = max(guide%low, 0.0_wp)
+         e = direction(guide%block_angle)
+         associate (q => drawing%m%points(guide%point)%offset)
+            call add(guide%block, 'polyline', 'class="piston" style="stroke:'//link_color(drawing%m, guide%block) &
+               //'"', &
                reshape([q, q - of_piston*least*e], [2, 2]), weight=line_weight, is_faint=.true.)
          end associate
-         e = direction(g%angle)
+         e = direction(guide%angle)
          aside = half_barrel*quarter_turn(e)
-         associate (p => d%m%points(g%pivot)%offset)
-            call add(g%carrier, 'polygon', 'class="barrel" style="stroke:'//link_color(d%m, g%carrier)//'"', &
+         associate (p => drawing%m%points(guide%pivot)%offset)
+            call add(guide%carrier, 'polygon', 'class="barrel" style="stroke:'//link_color(drawing%m, guide%carrier) &
+               //'"', &
                reshape([p, p, p + of_barrel*least*e, p + of_barrel*least*e], [2, 4]), &
                reshape([aside, -aside, -aside, aside], [2, 4]), weight=line_weight, is_faint=.true.)
          end associate
@@ -239,26 +245,26 @@ contains
       subroutine add_centrode(i, side)
          integer, intent(in) :: i, side
          character(:), allocatable :: attributes
-         real(wp) :: p(2, d%films)
-         real(wp) :: turn(d%films)                        ! the rate of the second link from the first
-         logical :: goes_on(d%films)                      ! the next place is on the same piece
+         real(wp) :: p(2, drawing%films)
+         real(wp) :: turn(drawing%films)                        ! the rate of the second link from the first
+         logical :: goes_on(drawing%films)                      ! the next place is on the same piece
          integer :: links(2), k
 
-         associate (pole => d%m%requests(d%poles(i)))
+         associate (pole => drawing%m%requests(drawing%poles(i)))
             links = [pole%second, pole%subject]
          end associate
-         do k = 1, d%films
-            associate (now => d%frame(k), place => d%frame(k)%place(:, links(side)))
+         do k = 1, drawing%films
+            associate (now => drawing%frame(k), place => drawing%frame(k)%place(:, links(side)))
                p(:, k) = rotated(now%centre(:, i) - place(:2), direction(-place(3)))
                turn(k) = now%rate(links(2)) - now%rate(links(1))
                goes_on(k) = now%has_centre(i)
             end associate
          end do
-         goes_on = goes_on .and. all(abs(p) < far*characteristic_length(d%m), dim=1)
+         goes_on = goes_on .and. all(abs(p) < far*characteristic_length(drawing%m), dim=1)
          goes_on = goes_on .and. eoshift(goes_on, 1) .and. ((turn > 0.0_wp) .eqv. (eoshift(turn, 1) > 0.0_wp))
-         attributes = 'class="centrode" '//attribute('data-centrode', pole_name(d%m, d%poles(i)))//' '// &
-            attribute('data-link', trim(d%m%links(links(side))%name))//' style="stroke:' &
-            //link_color(d%m, links(side))//'"'
+         attributes = 'class="centrode" '//attribute('data-centrode', pole_name(drawing%m, drawing%poles(i)))//' '// &
+            attribute('data-link', trim(drawing%m%links(links(side))%name))//' style="stroke:' &
+            //link_color(drawing%m, links(side))//'"'
          call add_pieces(links(side), 'centrode', attributes, p, goes_on)
       end subroutine add_centrode
    end function shapes_of

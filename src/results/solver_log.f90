@@ -24,18 +24,20 @@ contains
    end subroutine log_head
 
    !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
-   !> the coordinates), sign of the determinant; the branch `b`, and what was verified of it.
-   subroutine log_instant(o, step, t, c, b)
+   !> the coordinates), sign of the determinant; the `branch`, and what was verified of it.
+   subroutine log_instant(o, step, t, convergence, branch)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step
       real(wp), intent(in) :: t
-      type(convergence_t), intent(in) :: c
-      type(branch_t), intent(in) :: b
+      type(convergence_t), intent(in) :: convergence
+      type(branch_t), intent(in) :: branch
       character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
       character(116) :: line
 
-      write (line, '(i8, es25.16e3, 1x, a9, i6, 2es11.3, i13, a9, i10, es13.3)') step, t, adjustr(ending(c)), &
-         c%iterations, c%residual, c%step, c%determinant, adjustr(branch_words(b%kind)), b%substeps, b%kantorovich_ratio
+      write (line, '(i8, es25.16e3, 1x, a9, i6, 2es11.3, i13, a9, i10, es13.3)') step, t, &
+         adjustr(ending(convergence)), &
+         convergence%iterations, convergence%residual, convergence%step, convergence%determinant, &
+            adjustr(branch_words(branch%kind)), branch%substeps, branch%kantorovich_ratio
       call put(o, line)
    end subroutine log_instant
 end module solver_log

@@ -159,26 +159,26 @@ contains
          //pixels(high(1) - low(1))//' '//pixels(high(2) - low(2))//'" overflow="hidden">')
    end subroutine put_window
 
-   !> `x` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
-   pure function pixels(x) result(text)
-      real(wp), intent(in) :: x
+   !> `value` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
+   pure function pixels(value) result(text)
+      real(wp), intent(in) :: value
       character(:), allocatable :: text
 
-      text = without_zeros(fixed(x + tie, 2, 0))
+      text = without_zeros(fixed(value + tie, 2, 0))
    end function pixels
 
-   !> `x` with six digits, without zeros at their end. A negative number keeps the zero before its point.
-   pure function fitted(x) result(text)
-      real(wp), intent(in) :: x
+   !> `value` with six digits, without zeros at their end. A negative number keeps the zero before its point.
+   pure function fitted(value) result(text)
+      real(wp), intent(in) :: value
       character(:), allocatable :: text
       integer :: e
 
       e = 0
-      if (abs(x) > 0.0_wp) e = floor(log10(abs(x)))
-      if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
-         text = without_zeros(fixed(x, 5, e))//'E'//whole(e)
+      if (abs(value) > 0.0_wp) e = floor(log10(abs(value)))
+      if (abs(value) > 0.0_wp .and. (e < -4 .or. e > 5)) then
+         text = without_zeros(fixed(value, 5, e))//'E'//whole(e)
       else
-         text = without_zeros(fixed(x, min(5 - e, max_decimals - merge(1, 0, x < 0.0_wp)), 0))
+         text = without_zeros(fixed(value, min(5 - e, max_decimals - merge(1, 0, value < 0.0_wp)), 0))
       end if
    end function fitted
 

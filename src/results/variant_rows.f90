@@ -51,22 +51,22 @@ module variant_rows
 
 contains
 
-   !> The columns of the summary of the set `set`; `l`: its layout; `v`: its variants.
-   function new_summary(set, l, v) result(s)
+   !> The columns of the summary of the `set`; `l`: its layout; `variation`: its variants.
+   function new_summary(set, l, variation) result(s)
       class(set_t), intent(in) :: set
       type(layout_t), intent(in) :: l
-      type(variation_t), intent(in) :: v
+      type(variation_t), intent(in) :: variation
       type(summary_t) :: s
       character(:), allocatable :: drives(:), name
       integer :: i
 
-      s%numbers = size(v%numbers)
+      s%numbers = size(variation%numbers)
       drives = drive_columns(set)
 
       allocate (s%columns(0))
       call add_column(summary_column_t('variant', .true., phrase(say_variant, set%polish)))
-      do i = 1, size(v%numbers)
-         call add_number(v%numbers(:i))
+      do i = 1, size(variation%numbers)
+         call add_number(variation%numbers(:i))
       end do
 
       call add_column(summary_column_t('solved', .true., phrase(say_instants, set%polish), &
@@ -97,11 +97,11 @@ contains
 
    contains
 
-      !> Adds the column `c`.
-      subroutine add_column(c)
-         type(summary_column_t), intent(in) :: c
+      !> Adds the `column`.
+      subroutine add_column(column)
+         type(summary_column_t), intent(in) :: column
 
-         s%columns = [s%columns, c]
+         s%columns = [s%columns, column]
       end subroutine add_column
 
       !> Adds the column of the last of the `numbers`. If earlier ones have its name, a number counts them.
@@ -123,17 +123,17 @@ contains
          call add_column(c)
       end subroutine add_number
 
-      !> Adds the column of the values of drive number `d` (0: none, the column is empty), whose name begins with
+      !> Adds the column of the values of drive `number` (0: none, the column is empty), whose name begins with
       !> `start`; `above`, `below`: the lines over it, blank where it is in the file alone.
-      subroutine add_drive(d, start, above, below)
-         integer, intent(in) :: d
+      subroutine add_drive(number, start, above, below)
+         integer, intent(in) :: number
          character(*), intent(in) :: start, above, below
          type(summary_column_t) :: c
 
          c%name = start//'.drive'
-         if (d > 0) then
-            c%name = start//'.'//drives(d)
-            associate (place => set%drives(d))
+         if (number > 0) then
+            c%name = start//'.'//drives(number)
+            associate (place => set%drives(number))
                c%format%is_angle = .not. is_length(set%parts(place%part)%drives(place%number))
             end associate
             c%printed = above /= ''
@@ -141,7 +141,7 @@ contains
             c%below = below
             c%unit = merge(angle_unit(set), set%length_unit, c%format%is_angle)
             if (c%format%is_angle) c%format%unit = l%format(of_angle, 0)%unit
-            if (d <= size(l%drives)) c%format = l%drives(d)%format
+            if (number <= size(l%drives)) c%format = l%drives(number)%format
          end if
          call add_column(c)
       end subroutine add_drive
@@ -193,56 +193,56 @@ contains
       end subroutine add_extremes
    end function new_summary
 
-   !> The row of variant `n` of `v`, with its values alone.
-   function new_row(s, v, n) result(r)
-      type(summary_t), intent(in) :: s
-      type(variation_t), intent(in) :: v
+   !> The row of variant `n` of `variation`, with its values alone.
+   function new_row(summary, variation, n) result(r)
+      type(summary_t), intent(in) :: summary
+      type(variation_t), intent(in) :: variation
       integer, intent(in) :: n
       type(variant_row_t) :: r
-      real(wp) :: values(s%numbers)
+      real(wp) :: values(summary%numbers)
       integer :: i
 
       r = variant_row_t(number=n, rejected='')
-      allocate (r%cells(size(s%columns)))
+      allocate (r%cells(size(summary%columns)))
       r%cells(1) = cell_t(cell_count, real(n, wp))
-      values = values_of_variant(v, n)
+      values = values_of_variant(variation, n)
       do i = 1, size(values)
          r%cells(i + 1) = cell_t(cell_number, values(i))
       end do
    end function new_row
 
-   !> Fills the cells of `r`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
-   subroutine fill_row(s, set, asked, r)
-      type(summary_t), intent(in) :: s
+   !> Fills the cells of `row`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
+   subroutine fill_row(summary, set, asked, row)
+      type(summary_t), intent(in) :: summary
       class(set_t), intent(in) :: set
       type(answers_t), intent(in) :: asked
-      type(variant_row_t), intent(inout) :: r
+      type(variant_row_t), intent(inout) :: row
       type(strokes_t) :: strokes
       integer :: n, i, k, which, order
 
-      n = s%numbers + 1
-      call next(cell_t(cell_count, real(r%solved, wp)))
-      call next(cell_t(cell_count, real(r%flagged, wp)))
-      if (r%mark /= mark_none) then
-         call next(cell_t(cell_number, r%t))
-         call next(drive_cell(set, min(1, size(set%drives)), r%t))
-         call next(cell_t(cell_word, word=marks(r%mark)))
+      n = summary%numbers + 1
+      call next(cell_t(cell_count, real(row%solved, wp)))
+      call next(cell_t(cell_count, real(row%flagged, wp)))
+      if (row%mark /= mark_none) then
+         call next(cell_t(cell_number, row%t))
+         call next(drive_cell(set, min(1, size(set%drives)), row%t))
+         call next(cell_t(cell_word, word=marks(row%mark)))
       else
          n = n + 3
-         if (r%rejected /= '') r%cells(n) = cell_t(cell_word, word=r%rejected(:4))
+         if (row%rejected /= '') row%cells(n) = cell_t(cell_word, word=row%rejected(:4))
       end if
-      if (r%limit%kind /= 0) then
-         r%cells(n + 1) = cell_t(cell_number, r%limit%t)
-         if (r%limit%drive > 0) then
-            associate (own => set%parts(r%limit%part))
-               r%cells(n + 2) = cell_t(cell_word, word=drive_name(own, own%drives(r%limit%drive)))
+      if (row%limit%kind /= 0) then
+         row%cells(n + 1) = cell_t(cell_number, row%limit%t)
+         if (row%limit%drive > 0) then
+            associate (own => set%parts(row%limit%part))
+               row%cells(n + 2) = cell_t(cell_word, word=drive_name(own, own%drives(row%limit%drive)))
             end associate
-            r%cells(n + 3) = cell_t(cell_number, r%limit%value)
-            if (r%limit%is_angle .and. set%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
+            row%cells(n + 3) = cell_t(cell_number, row%limit%value)
+            if (row%limit%is_angle .and. set%degrees) row%cells(n + 3)%value = in_degrees(row%limit%value)
          end if
       end if
       n = n + 3
-      if (r%rejected /= '') return
+      if (row%rejected /= '') return
 
       if (set%ranges) then
          ! Three for each drive: the limits, and the turns after which the motion closes.
@@ -250,28 +250,28 @@ contains
             associate (one => asked%ranges(i), d => n + 3*(findloc(set%drives%part == asked%ranges(i)%part &
                        .and. set%drives%number == asked%ranges(i)%drive, .true., dim=1) - 1))
                do which = low, high
-                  if (one%has_limit(which)) r%cells(d + which) = cell_t(cell_number, one%limit(which)%value)
+                  if (one%has_limit(which)) row%cells(d + which) = cell_t(cell_number, one%limit(which)%value)
                end do
-               r%cells(d + 3) = cell_t(cell_count, real(merge(one%turns, 0, one%is_all), wp))
+               row%cells(d + 3) = cell_t(cell_count, real(merge(one%turns, 0, one%is_all), wp))
             end associate
          end do
          n = n + 3*size(set%drives)
       end if
       if (set%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
          real(asked%assemblies, wp)))
-      if (set%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
+      if (set%proves) call next(cell_t(cell_count, real(row%unproved, wp)))
 
-      do i = 1, size(s%extremes%columns)
-         associate (c => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
+      do i = 1, size(summary%extremes%columns)
+         associate (c => summary%extremes%columns(i), part => set%rows(summary%extremes%columns(i)%request)%part)
             call find_number(asked%extremes%tracks(part)%coordinates, c, k, order)
             associate (one => asked%extremes%tracks(part)%coordinates(k))
                do which = least, greatest
                   associate (e => one%found(which, order))
                      if (e%exists .and. one%sought(order)) then
-                        r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
-                        if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
-                        r%cells(n + 2) = cell_t(cell_number, e%t)
-                        r%cells(n + 3) = drive_cell(set, first_drive(set, c%request), e%t)
+                        row%cells(n + 1) = cell_t(cell_number, e%value, e%error)
+                        if (.not. e%has_bound) row%cells(n + 1) = cell_t(cell_unbounded, outward(which))
+                        row%cells(n + 2) = cell_t(cell_number, e%t)
+                        row%cells(n + 3) = drive_cell(set, first_drive(set, c%request), e%t)
                      end if
                   end associate
                   n = n + 3
@@ -279,10 +279,10 @@ contains
                if (order > 0) cycle
                strokes = strokes_of(asked%extremes, one)
                ! It may be small: then the rounding of the difference counts.
-               if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
+               if (strokes%length%exists) row%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
                   strokes%length%error + rounding*maxval(abs(one%found(:, 0)%value)))
             end associate
-            if (strokes%ratio > 0.0_wp) r%cells(n + 2) = cell_t(cell_number, strokes%ratio, strokes%error)
+            if (strokes%ratio > 0.0_wp) row%cells(n + 2) = cell_t(cell_number, strokes%ratio, strokes%error)
             n = n + 2
          end associate
       end do
@@ -294,7 +294,7 @@ contains
          type(cell_t), intent(in) :: cell
 
          n = n + 1
-         r%cells(n) = cell
+         row%cells(n) = cell
       end subroutine next
    end subroutine fill_row
 
@@ -314,15 +314,15 @@ contains
       end do
    end subroutine find_number
 
-   !> The value of drive number `d` (0: none) at the time `t`.
-   type(cell_t) function drive_cell(set, d, t) result(cell)
+   !> The value of drive `number` (0: none) at the time `t`.
+   type(cell_t) function drive_cell(set, number, t) result(cell)
       class(set_t), intent(in) :: set
-      integer, intent(in) :: d
+      integer, intent(in) :: number
       real(wp), intent(in) :: t
       real(wp) :: f(3)
 
-      if (d == 0) return
-      associate (drive => set%parts(set%drives(d)%part)%drives(set%drives(d)%number))
+      if (number == 0) return
+      associate (drive => set%parts(set%drives(number)%part)%drives(set%drives(number)%number))
          f = drive_motion(drive, t)
          cell = cell_t(cell_number, f(1))
       end associate

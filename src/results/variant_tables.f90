@@ -24,51 +24,51 @@ module variant_tables
 contains
 
    !> The names of the columns.
-   subroutine summary_head(o, s)
+   subroutine summary_head(o, summary)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: s
+      type(summary_t), intent(in) :: summary
       integer :: i
 
       call add(o, 'set')
-      do i = 1, size(s%columns)
+      do i = 1, size(summary%columns)
          call add(o, ',')
-         call add_name(o, trim(s%columns(i)%name))
+         call add_name(o, trim(summary%columns(i)%name))
       end do
       call put(o, '')
    end subroutine summary_head
 
-   !> The row `r` of the set `m` with all digits; what there is not is empty.
-   subroutine summary_row(o, s, m, r)
+   !> The `row` of the set `settings` with all digits; what there is not is empty.
+   subroutine summary_row(o, summary, settings, row)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: s
-      class(settings_t), intent(in) :: m
-      type(variant_row_t), intent(in) :: r
+      type(summary_t), intent(in) :: summary
+      class(settings_t), intent(in) :: settings
+      type(variant_row_t), intent(in) :: row
       integer :: i
 
-      call add(o, whole(m%set_number))
-      do i = 1, size(s%columns)
+      call add(o, whole(settings%set_number))
+      do i = 1, size(summary%columns)
          call add(o, ',')
-         call add_cell(o, r%cells(i), m%degrees .and. s%columns(i)%format%is_angle)
+         call add_cell(o, row%cells(i), settings%degrees .and. summary%columns(i)%format%is_angle)
       end do
       call put(o, '')
    end subroutine summary_row
 
-   !> The lines over the tables of one variant, that of the row `r`: its number and its values.
-   subroutine put_variant(o, l, s, m, r)
+   !> The lines over the tables of one variant, that of the `row`: its number and its values.
+   subroutine put_variant(o, l, summary, settings, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(summary_t), intent(in) :: s
-      class(settings_t), intent(in) :: m
-      type(variant_row_t), intent(in) :: r
+      type(summary_t), intent(in) :: summary
+      class(settings_t), intent(in) :: settings
+      type(variant_row_t), intent(in) :: row
       character(:), allocatable :: line, item
       integer :: i
 
       call put(o, '')
-      line = ' '//phrase(say_variant, m%polish)//' '//whole(r%number)
-      do i = 2, s%numbers + 1
-         associate (c => s%columns(i))
+      line = ' '//phrase(say_variant, settings%polish)//' '//whole(row%number)
+      do i = 2, summary%numbers + 1
+         associate (c => summary%columns(i))
             item = '   '//trim(c%above)//' '//trim(c%below)//' = ' &
-               //trim(cell_text(c%format, c%by_size, r%cells(i), l%words)//' '//unit_of(c%format%power, trim(c%unit)))
+               //trim(cell_text(c%format, c%by_size, row%cells(i), l%words)//' '//unit_of(c%format%power, trim(c%unit)))
          end associate
          if (len(line) + len(item) > line_length) then
             call put(o, line)
@@ -80,22 +80,22 @@ contains
    end subroutine put_variant
 
    !> The heads of the table: for each of its lines of columns the names, powers of ten and units.
-   subroutine put_variant_heads(o, s)
+   subroutine put_variant_heads(o, summary)
       type(output_t), intent(inout) :: o
-      type(summary_t), intent(in) :: s
+      type(summary_t), intent(in) :: summary
       integer, allocatable :: starts(:)
       integer :: n, k, i
       character(:), allocatable :: line
       ! Two heads, the power of ten, the unit.
-      character(len(s%columns%above)) :: heads(4)
+      character(len(summary%columns%above)) :: heads(4)
 
       call put(o, '')
-      starts = line_starts(s)
+      starts = line_starts(summary)
       do n = 1, size(starts) - 1
          do k = 1, size(heads)
             line = ''
             do i = 1, starts(n + 1) - 1
-               associate (c => s%columns(i))
+               associate (c => summary%columns(i))
                   if (.not. c%printed .or. (i > 1 .and. i < starts(n))) cycle
                   heads = [character(len(heads)) :: c%above, c%below, '', c%unit]
                   if (c%format%power /= 0) heads(3) = power_text(c%format%power)
@@ -107,69 +107,70 @@ contains
       end do
    end subroutine put_variant_heads
 
-   !> The lines of the row `r`, and below them why there is not all of it.
-   subroutine put_variant_row(o, l, s, set, r)
+   !> The lines of the `row`, and below them why there is not all of it.
+   subroutine put_variant_row(o, l, summary, set, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(summary_t), intent(in) :: s
+      type(summary_t), intent(in) :: summary
       class(set_t), intent(in) :: set
-      type(variant_row_t), intent(in) :: r
+      type(variant_row_t), intent(in) :: row
       integer, allocatable :: starts(:)
       integer :: n, i
       character(:), allocatable :: line
 
-      starts = line_starts(s)
+      starts = line_starts(summary)
       do n = 1, size(starts) - 1
-         line = right(whole(r%number), number_length)
+         line = right(whole(row%number), number_length)
          do i = starts(n), starts(n + 1) - 1
-            associate (c => s%columns(i))
-               if (c%printed) line = line//right(cell_text(c%format, c%by_size, r%cells(i), l%words), width(c))
+            associate (c => summary%columns(i))
+               if (c%printed) line = line//right(cell_text(c%format, c%by_size, row%cells(i), l%words), width(c))
             end associate
          end do
          call put(o, line)
       end do
-      if (r%rejected /= '') call put_folded(o, ' *** ', r%rejected)
-      if (r%limit%kind /= 0) then
-         call put_diagnostics(o, set%parts(r%limit%part), [r%limit])
-      else if (r%mark /= mark_none) then
-         call put(o, ' *** '//words_of_mark(r%mark, r%singularity, set%polish))
+      if (row%rejected /= '') call put_folded(o, ' *** ', row%rejected)
+      if (row%limit%kind /= 0) then
+         call put_diagnostics(o, set%parts(row%limit%part), [row%limit])
+      else if (row%mark /= mark_none) then
+         call put(o, ' *** '//words_of_mark(row%mark, row%singularity, set%polish))
       end if
    end subroutine put_variant_row
 
    !> The last line of a set of variants.
-   subroutine put_variants_end(o, m)
+   subroutine put_variants_end(o, settings)
       type(output_t), intent(inout) :: o
-      class(settings_t), intent(in) :: m
+      class(settings_t), intent(in) :: settings
 
       call put(o, '')
-      call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)//':  '//phrase(say_variants, m%polish)//' ' &
-         //whole(m%variants))
+      call put(o, ' '//phrase(say_end, settings%polish)//' '//whole(settings%set_number)//':  '//phrase(say_variants, &
+         settings%polish)//' ' &
+         //whole(settings%variants))
       call put(o, '')
    end subroutine put_variants_end
 
    !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
-   pure function line_starts(s) result(starts)
-      type(summary_t), intent(in) :: s
+   pure function line_starts(summary) result(starts)
+      type(summary_t), intent(in) :: summary
       integer, allocatable :: starts(:)
       integer :: used, i
 
       allocate (starts(0))
       used = line_length
-      do i = 2, size(s%columns)
-         if (.not. s%columns(i)%printed) cycle
-         used = used + width(s%columns(i))
+      do i = 2, size(summary%columns)
+         if (.not. summary%columns(i)%printed) cycle
+         used = used + width(summary%columns(i))
          if (used <= line_length) cycle
          starts = [starts, i]
-         used = number_length + width(s%columns(i))
+         used = number_length + width(summary%columns(i))
       end do
-      starts = [starts, size(s%columns) + 1]
+      starts = [starts, size(summary%columns) + 1]
    end function line_starts
 
    !> Characters of a column in the listing.
-   pure integer function width(c)
-      type(summary_column_t), intent(in) :: c
+   pure integer function width(column)
+      type(summary_column_t), intent(in) :: column
 
-      width = max(least_width, len_trim(c%above) + 2, len_trim(c%below) + 2, len_trim(c%unit) + 2)
-      if (c%by_size) width = max(width, least_width + exponent_length)
+      width = max(least_width, len_trim(column%above) + 2, len_trim(column%below) + 2, len_trim(column%unit) + 2)
+      if (column%by_size) width = max(width, least_width + exponent_length)
    end function width
 end module variant_tables

@@ -105,12 +105,12 @@ contains
          n = n + count(in)
       end subroutine note
 
-      !> The component of point `p` along the fixed direction `e`.
-      subroutine note_component(p, e)
-         integer, intent(in) :: p
-         real(wp), intent(in) :: e(2)
+      !> The component of point `pair` along the fixed `direction`.
+      subroutine note_component(pair, direction)
+         integer, intent(in) :: pair
+         real(wp), intent(in) :: direction(2)
 
-         call note(m%points(p)%link, [abs(e) > rounding, any(abs(m%points(p)%offset) > 0.0_wp)])
+         call note(m%points(pair)%link, [abs(direction) > rounding, any(abs(m%points(pair)%offset) > 0.0_wp)])
       end subroutine note_component
 
       !> The projection of prismatic pair `i` across its guide or along it.
@@ -139,21 +139,21 @@ contains
       end subroutine close_equation
    end function new_closure
 
-   !> The groups of `m`, in whose closure `c` each unknown can have an equation. The links of the part with too many
+   !> The groups of `m`, in whose `closure` each unknown can have an equation. The links of the part with too many
    !> equations are one group.
-   function groups_of(m, c) result(groups)
+   function groups_of(m, closure) result(groups)
       type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: c
+      type(closure_t), intent(in) :: closure
       type(group_t), allocatable :: groups(:)
-      logical :: over(c%incidence%equations)
+      logical :: over(closure%incidence%equations)
       type(incidence_t) :: waits
       type(sorted_t) :: by_group
       integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:)
       integer :: i, e
 
-      call match(c%incidence, unknown_of, equation_of)
-      over = overdetermined(c%incidence, unknown_of, equation_of)
-      waits = waiting(m, c, equation_of, over)
+      call match(closure%incidence, unknown_of, equation_of)
+      over = overdetermined(closure%incidence, unknown_of, equation_of)
+      waits = waiting(m, closure, equation_of, over)
       call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
       of_link = member
       do i = 1, size(first) - 1
@@ -166,8 +166,8 @@ contains
          groups(i)%links = members(by_group, i)
       end do
       do e = 2*size(m%pairs) + 1, size(unknown_of)
-         if (c%incidence%first(e) == c%incidence%first(e + 1)) cycle
-         i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
+         if (closure%incidence%first(e) == closure%incidence%first(e + 1)) cycle
+         i = closure%link_of(merge(closure%incidence%unknown(closure%incidence%first(e)), unknown_of(e), over(e)))
          groups(order(of_link(i)))%driven = .true.
       end do
 
@@ -203,9 +203,9 @@ contains
 
    !> For which links each link waits; a ground link for none. The links of the part `over` wait for one another in a
    !> ring.
-   function waiting(m, c, equation_of, over) result(w)
+   function waiting(m, closure, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: c
+      type(closure_t), intent(in) :: closure
       integer, intent(in) :: equation_of(:)
       logical, intent(in) :: over(:)
       type(incidence_t) :: w
@@ -213,10 +213,10 @@ contains
       integer :: u, i, k, link, before, n
 
       tied = .false.
-      tied(pack(c%link_of, over(equation_of))) = .true.
+      tied(pack(closure%link_of, over(equation_of))) = .true.
       w%equations = size(m%links)
       w%unknowns = size(m%links)
-      allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(c%incidence%unknown)))
+      allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(closure%incidence%unknown)))
       n = 0
       u = 0
       before = findloc(tied, .true., dim=1, back=.true.)
@@ -226,8 +226,8 @@ contains
          if (.not. m%links(link)%ground) then
             do i = 1, 3
                u = u + 1
-               do k = c%incidence%first(equation_of(u)), c%incidence%first(equation_of(u) + 1) - 1
-                  call wait_for(c%link_of(c%incidence%unknown(k)))
+               do k = closure%incidence%first(equation_of(u)), closure%incidence%first(equation_of(u) + 1) - 1
+                  call wait_for(closure%link_of(closure%incidence%unknown(k)))
                end do
             end do
          end if

@@ -128,25 +128,25 @@ contains
 
    contains
 
-      !> Unit of loop `g`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
-      !> that turns with an orientation of the block turns the whole loop. Slides that nothing else balances may be long
-      !> where what is known is short, as the way to a point beside the origin.
-      subroutine measure(g, loop)
-         type(block_loop_t), intent(in) :: g
+      !> Unit of loop `cards`: its largest own body vector. A slide is as long as what is known lets it be, and a
+      !> projection that turns with an orientation of the block turns the whole loop. Slides that nothing else balances
+      !> may be long where what is known is short, as the way to a point beside the origin.
+      subroutine measure(cards, loop)
+         type(block_loop_t), intent(in) :: cards
          type(loop_numbers_t), intent(inout) :: loop
          real(wp) :: own, known
          logical :: slides
          integer :: k
 
-         if (g%kind == loop_angles) return
-         known = max(largest([loop%ground]), largest(x%d(g%first_vector:g%first_own - 1)))
-         own = largest(x%d(g%first_own:g%last_vector))
-         do k = g%first_slide, g%last_slide
+         if (cards%kind == loop_angles) return
+         known = max(largest([loop%ground]), largest(x%d(cards%first_vector:cards%first_own - 1)))
+         own = largest(x%d(cards%first_own:cards%last_vector))
+         do k = cards%first_slide, cards%last_slide
             if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
          end do
-         slides = any(b%slides(g%first_slide:g%last_slide)%column > 0)
+         slides = any(b%slides(cards%first_slide:cards%last_slide)%column > 0)
          if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = much_smaller
-         if (own <= 0.0_wp .or. slides .or. (g%kind == loop_projection .and. g%orientation_column > 0)) &
+         if (own <= 0.0_wp .or. slides .or. (cards%kind == loop_projection .and. cards%orientation_column > 0)) &
             own = max(own, known)
          if (own > 0.0_wp) loop%unit = power_of_two(own)
          loop%coarse = known
@@ -159,29 +159,29 @@ contains
          largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
       end function largest
 
-      !> Divides the rows of loop `g`, of the block whose rows begin at `first_row`, by its unit.
-      subroutine divide(first_row, g, own)
+      !> Divides the rows of `loop`, of the block whose rows begin at `first_row`, by its unit.
+      subroutine divide(first_row, loop, own)
          integer, intent(in) :: first_row
-         type(block_loop_t), intent(in) :: g
+         type(block_loop_t), intent(in) :: loop
          type(loop_numbers_t), intent(inout) :: own
          integer :: k, side
 
          ! A slide by itself.
-         if (g%kind == loop_angles) own%unit = x%unit(g%orientation)
+         if (loop%kind == loop_angles) own%unit = x%unit(loop%orientation)
          do side = 1, 2
-            k = merge(g%row_x, g%row_y, side == 1)
+            k = merge(loop%row_x, loop%row_y, side == 1)
             if (k == 0) cycle
             associate (row => x%rows(first_row + k - 1))
                row%unit = own%unit
                row%constant = row%constant/own%unit
             end associate
          end do
-         if (g%kind == loop_angles) return
+         if (loop%kind == loop_angles) return
          own%ground = vector_t(own%ground%x/own%unit, own%ground%y/own%unit)
-         do k = g%first_vector, g%last_vector
+         do k = loop%first_vector, loop%last_vector
             x%d(k) = vector_t(x%d(k)%x/own%unit, x%d(k)%y/own%unit)
          end do
-         do k = g%first_slide, g%last_slide
+         do k = loop%first_slide, loop%last_slide
             associate (ratio => x%unit(b%slides(k)%unknown)/own%unit)
                x%e(k) = vector_t(x%e(k)%x*ratio, x%e(k)%y*ratio)
             end associate

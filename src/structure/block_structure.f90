@@ -26,42 +26,42 @@ module block_structure
 
 contains
 
-   !> Makes the structure `s` of the independent mechanism `m`, in place. Time and memory are proportional to its links,
+   !> Makes the `structure` of the independent mechanism `m`, in place. Time and memory are proportional to its links,
    !> pairs and drives.
-   subroutine make_structure(m, s)
+   subroutine make_structure(m, structure)
       type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(out) :: s
+      type(structure_t), intent(out) :: structure
       type(spanning_tree_t) :: t
       type(equations_t) :: e
 
-      allocate (s%blocks, s%geometry)
-      associate (x => s%geometry)
+      allocate (structure%blocks, structure%geometry)
+      associate (x => structure%geometry)
          x%span = solver_length(m)
          x%closing = m%closing
          t = new_tree(m)
          e = new_equations(m, t)
          x%equations = new_equation_numbers(m, t, power_of_two(x%span), e)
-         s%blocks = new_blocks(t, e)
-         if (.not. s%blocks%solvable) return
-         call fill_numbers(s%blocks, x)
-         call find_units(s%blocks, x)
+         structure%blocks = new_blocks(t, e)
+         if (.not. structure%blocks%solvable) return
+         call fill_numbers(structure%blocks, x)
+         call find_units(structure%blocks, x)
       end associate
    end subroutine make_structure
 
-   !> The blocks of the equations `e` on the tree `t`, without numbers.
-   function new_blocks(t, e) result(b)
-      type(spanning_tree_t), intent(in) :: t
-      type(equations_t), intent(in) :: e
+   !> The blocks of the `equations` on the `tree`, without numbers.
+   function new_blocks(tree, equations) result(b)
+      type(spanning_tree_t), intent(in) :: tree
+      type(equations_t), intent(in) :: equations
       type(blocks_t) :: b
       type(incidence_t) :: g
       integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), rows(:)
-      logical :: over(e%count)
+      logical :: over(equations%count)
       integer :: i, k
 
-      b%tree = t
-      b%orientations = t%orientations
-      b%unknowns = t%orientations + t%slides + 2*t%roots
-      g = incidence(e, b%orientations, b%unknowns)
+      b%tree = tree
+      b%orientations = tree%orientations
+      b%unknowns = tree%orientations + tree%slides + 2*tree%roots
+      g = incidence(equations, b%orientations, b%unknowns)
       call match(g, unknown_of, equation_of)
       b%free = pack([(i, i=1, b%unknowns)], equation_of == 0)
       b%solvable = size(b%free) == 0
@@ -94,7 +94,7 @@ contains
       allocate (b%rows(size(member)))
       do i = 1, size(b%list)
          do k = b%list(i)%first_row, b%list(i)%last_row
-            associate (equation => e%list(member(k)), row => b%rows(k))
+            associate (equation => equations%list(member(k)), row => b%rows(k))
                row%drive = equation%drive
                row%pair = equation%pair
                row%angular = equation%kind == equation_angle
@@ -110,25 +110,26 @@ contains
          end do
       end do
 
-      call fill_block_loops(e, member, b)
+      call fill_block_loops(equations, member, b)
       call move_alloc(member, b%equation)
-      b%equations = e
+      b%equations = equations
       call find_places(b)
    end function new_blocks
 
-   !> The loops of all blocks that iterate. `member`: the equations of `e` by
+   !> The loops of all blocks that iterate. `member`: the equations of `equations` by
    !> block.
-   subroutine fill_block_loops(e, member, b)
-      type(equations_t), intent(in) :: e
+   subroutine fill_block_loops(equations, member, b)
+      type(equations_t), intent(in) :: equations
       integer, intent(in) :: member(:)
       type(blocks_t), intent(inout) :: b
       integer :: column(0:b%unknowns)                 ! of the block being filled; 0: not its own
-      integer :: latest(0:e%vector_loops%count)       ! the block loop made of each vector loop last
+      integer :: latest(0:equations%vector_loops%count)       ! the block loop made of each vector loop last
       integer :: loops, body_vectors, slides          ! how many of each have been filled
       integer :: i, k
 
       ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
-      allocate (b%loops(e%count), b%body_vectors(2*e%vector_loops%vectors), b%slides(2*e%vector_loops%slides))
+      allocate (b%loops(equations%count), b%body_vectors(2*equations%vector_loops%vectors), &
+         b%slides(2*equations%vector_loops%slides))
       column = 0
       latest = 0
       loops = 0
@@ -142,7 +143,7 @@ contains
                   column(b%unknown(k)) = k - block%first + 1
                end do
                do k = block%first_row, block%last_row
-                  call add_row(e%list(member(k)), k - block%first_row + 1, block%first_loop)
+                  call add_row(equations%list(member(k)), k - block%first_row + 1, block%first_loop)
                end do
                column(b%unknown(block%first:block%last)) = 0
             end if
@@ -190,14 +191,14 @@ contains
          integer :: k, side
 
          loops = loops + 1
-         associate (block_loop => b%loops(loops), p => e%vector_loops)
+         associate (block_loop => b%loops(loops), p => equations%vector_loops)
             block_loop%kind = kind
             block_loop%vector_loop = i
             block_loop%first_vector = body_vectors + 1
             do side = 0, 1
                if (side == 1) block_loop%first_own = body_vectors + 1
                do k = p%first_vector(i), p%first_vector(i + 1) - 1
-                  if (.not. e%has_vector(k) .or. p%vector_orientation(k) == 0) cycle
+                  if (.not. equations%has_vector(k) .or. p%vector_orientation(k) == 0) cycle
                   if (min(column(p%vector_orientation(k)), 1) /= side) cycle
                   body_vectors = body_vectors + 1
                   b%body_vectors(body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &

@@ -55,40 +55,40 @@ module loop_equations
 
 contains
 
-   !> The equations of `m` on its tree `t`.
-   function new_equations(m, t) result(e)
+   !> The equations of `m` on its `tree`.
+   function new_equations(m, tree) result(e)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: tree
       type(equations_t) :: e
       type(search_t) :: s
       type(sorted_t) :: closing
       integer :: depth(size(m%pairs)), most, i, k
 
-      allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
+      allocate (e%list(2*size(m%pairs) + size(m%drives) + size(tree%surplus)))
       most = size(m%pairs) + size(m%drives) + 1
       associate (p => e%vector_loops)
          allocate (p%first_vector(0:most), p%first_slide(0:most), p%first_term(0:most), source=1)
          allocate (p%vector_orientation(most), p%slide_orientation(most), p%slide_number(most), p%slide_pair(most), &
             p%terms(2, 4*most), p%term_vector(4*most))
-         allocate (p%vector_of(0:t%orientations), source=0)
+         allocate (p%vector_of(0:tree%orientations), source=0)
       end associate
       allocate (s%open(size(m%pairs)), source=.false.)
-      s%open(pack(t%parent_joint, t%parent_joint > 0)) = .true.
+      s%open(pack(tree%parent_joint, tree%parent_joint > 0)) = .true.
       allocate (s%via(0:2*size(m%links) + 1), s%seen(0:2*size(m%links) + 1), source=0)
       allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
 
       ! The pairs that are not in the tree, those near the ground first: each closes a loop.
       do k = 1, size(m%pairs)
          associate (links => pair_links(m, m%pairs(k)))
-            depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
+            depth(k) = merge(0, 1 + sum(tree%depth(links)), any(tree%parent_joint(links) == k))
          end associate
       end do
-      closing = sorted(depth, 1 + 2*maxval(t%depth))
+      closing = sorted(depth, 1 + 2*maxval(tree%depth))
       do i = 1, size(closing%member)
          k = closing%member(i)
          associate (p => m%pairs(k), n => e%vector_loops%count)
-            call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
-            call add_vector_loop(m, t, p%point_i, p%point_j, s, e%vector_loops)
+            call find_path(m, tree, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
+            call add_vector_loop(m, tree, p%point_i, p%point_j, s, e%vector_loops)
             if (.not. has_guide(p%kind)) then
                call add(equation_t(equation_x, vector_loop=n, pair=k))
                call add(equation_t(equation_y, vector_loop=n, pair=k))
@@ -96,12 +96,12 @@ contains
                s%open(k) = .true.
             else
                call add(equation_t(equation_projection, vector_loop=n, pair=k, &
-                  orientation=t%orientation(m%points(p%point_i)%link)))
+                  orientation=tree%orientation(m%points(p%point_i)%link)))
             end if
          end associate
       end do
-      do i = 1, size(t%surplus)
-         call add(equation_t(equation_angle, pair=t%surplus(i)))
+      do i = 1, size(tree%surplus)
+         call add(equation_t(equation_angle, pair=tree%surplus(i)))
       end do
       do i = 1, size(m%drives)
          call add_drive(i)
@@ -117,30 +117,30 @@ contains
          associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
             select case (m%drives(k)%kind)
             case (drive_angle)
-               call add(equation_t(equation_angle, drive=k, orientation=t%orientation(i)))
+               call add(equation_t(equation_angle, drive=k, orientation=tree%orientation(i)))
             case (drive_relangle)
-               call add(equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i)))
+               call add(equation_t(equation_angle, drive=k, orientation=tree%orientation(j), less=tree%orientation(i)))
             case (drive_x, drive_y)
                ! Down the tree to a ground link or a root.
                s%length = 0
                link = m%points(i)%link
-               do while (t%parent(link) > 0)
+               do while (tree%parent(link) > 0)
                   s%length = s%length + 1
-                  s%pairs(s%length) = t%parent_joint(link)
-                  link = t%parent(link)
+                  s%pairs(s%length) = tree%parent_joint(link)
+                  link = tree%parent(link)
                end do
-               call add_vector_loop(m, t, i, 0, s, e%vector_loops)
+               call add_vector_loop(m, tree, i, 0, s, e%vector_loops)
                call add(equation_t(merge(equation_x, equation_y, m%drives(k)%kind == drive_x), vector_loop=n, drive=k))
             case (drive_slide)
-               if (t%slide(i) > 0) then
-                  call add(equation_t(equation_slide, drive=k, orientation=t%slide(i)))
+               if (tree%slide(i) > 0) then
+                  call add(equation_t(equation_slide, drive=k, orientation=tree%slide(i)))
                   return
                end if
                associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
-                  call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
-                  call add_vector_loop(m, t, p, q, s, e%vector_loops)
+                  call find_path(m, tree, m%points(p)%link, m%points(q)%link, s)
+                  call add_vector_loop(m, tree, p, q, s, e%vector_loops)
                   call add(equation_t(equation_projection, vector_loop=n, drive=k, &
-                     orientation=t%orientation(m%points(p)%link)))
+                     orientation=tree%orientation(m%points(p)%link)))
                end associate
             end select
          end associate
@@ -155,60 +155,61 @@ contains
       end subroutine add
    end function new_equations
 
-   !> The numbers of `m` in its equations `e`, which are told what of their vectors vanishes.
-   function new_equation_numbers(m, t, length, e) result(x)
+   !> The numbers of `m` in its `equations`, which are told what of their vectors vanishes.
+   function new_equation_numbers(m, tree, length, equations) result(x)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: tree
       real(wp), intent(in) :: length
-      type(equations_t), intent(inout) :: e
+      type(equations_t), intent(inout) :: equations
       type(equation_numbers_t) :: x
 
-      associate (p => e%vector_loops)
+      associate (p => equations%vector_loops)
          allocate (x%axes%angle_offset(size(m%links)), x%axes%turn(2, size(m%links)))
          allocate (x%sums%body_vector(2, p%vectors), x%sums%largest(p%vectors), x%sums%slide_body_vector(2, p%slides))
-         allocate (x%direction(2, e%count), x%constant(e%count), source=0.0_wp)
-         call put_equation_numbers(m, t, length, e, x)
-         allocate (e%has_vector(p%vectors), e%counts(2, p%slides))
+         allocate (x%direction(2, equations%count), x%constant(equations%count), source=0.0_wp)
+         call put_equation_numbers(m, tree, length, equations, x)
+         allocate (equations%has_vector(p%vectors), equations%counts(2, p%slides))
       end associate
-      call find_unknowns(e, x, e%has_vector, e%counts)
+      call find_unknowns(equations, x, equations%has_vector, equations%counts)
    end function new_equation_numbers
 
-   !> Gives the numbers `x` of the equations `e` those of `m`, whose tree is `t`.
-   subroutine put_equation_numbers(m, t, length, e, x)
+   !> Gives the `numbers` of the `equations` those of `m`, whose tree is `tree`.
+   subroutine put_equation_numbers(m, tree, length, equations, numbers)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: tree
       real(wp), intent(in) :: length
-      type(equations_t), intent(in) :: e
-      type(equation_numbers_t), intent(inout) :: x
+      type(equations_t), intent(in) :: equations
+      type(equation_numbers_t), intent(inout) :: numbers
       integer :: i
 
-      x%length = length
-      call put_axes(m, t, x%axes)
-      call put_sums(m, t, x%axes, length, e%vector_loops, x%sums)
-      do i = 1, e%count
-         associate (q => e%list(i), angle => x%axes%angle_offset, across => e%list(i)%kind == equation_projection)
+      numbers%length = length
+      call put_axes(m, tree, numbers%axes)
+      call put_sums(m, tree, numbers%axes, length, equations%vector_loops, numbers%sums)
+      do i = 1, equations%count
+         associate (q => equations%list(i), angle => numbers%axes%angle_offset, across => equations%list(i)%kind == &
+            equation_projection)
             if (q%pair > 0) then
                associate (pair => m%pairs(q%pair))
                   ! An angle is that by which the pair differs from the angle that other prismatic pairs give its links;
                   ! whole turns are no difference.
-                  if (across) x%direction(:, i) = guide(m, x%axes, q%pair, across=.true.)
-                  if (across) x%constant(i) = pair%offset/length
-                  if (q%kind == equation_angle) x%constant(i) = wrap_angle(pair%beta &
+                  if (across) numbers%direction(:, i) = guide(m, numbers%axes, q%pair, across=.true.)
+                  if (across) numbers%constant(i) = pair%offset/length
+                  if (q%kind == equation_angle) numbers%constant(i) = wrap_angle(pair%beta &
                      + angle(m%points(pair%point_i)%link) - angle(m%points(pair%point_j)%link))
                end associate
             else
                associate (drive => m%drives(q%drive))
                   select case (drive%kind)
                   case (drive_angle)
-                     x%constant(i) = -angle(drive%subject)
+                     numbers%constant(i) = -angle(drive%subject)
                   case (drive_relangle)
-                     x%constant(i) = angle(drive%subject) - angle(drive%second)
+                     numbers%constant(i) = angle(drive%subject) - angle(drive%second)
                   case (drive_x)
-                     x%constant(i) = -x%axes%origin(1)/length
+                     numbers%constant(i) = -numbers%axes%origin(1)/length
                   case (drive_y)
-                     x%constant(i) = -x%axes%origin(2)/length
+                     numbers%constant(i) = -numbers%axes%origin(2)/length
                   case default
-                     if (across) x%direction(:, i) = -guide(m, x%axes, drive%subject, across=.false.)
+                     if (across) numbers%direction(:, i) = -guide(m, numbers%axes, drive%subject, across=.false.)
                   end select
                end associate
             end if
@@ -216,58 +217,58 @@ contains
       end do
    end subroutine put_equation_numbers
 
-   !> Which body vectors and slides of `e` are in its equations with the numbers `x`: `has_vector` and `counts` of
+   !> Which body vectors and slides of `equations` are in its equations with the `numbers`: `has_vector` and `counts` of
    !> `equations_t`. A slide is not if it is at right angles to what is asked for, in whatever position.
-   pure subroutine find_unknowns(e, x, has_vector, counts)
-      type(equations_t), intent(in) :: e
-      type(equation_numbers_t), intent(in) :: x
+   pure subroutine find_unknowns(equations, numbers, has_vector, counts)
+      type(equations_t), intent(in) :: equations
+      type(equation_numbers_t), intent(in) :: numbers
       logical, intent(out) :: has_vector(:), counts(:, :)
       real(wp) :: asked(2)
       integer :: i, k
 
       has_vector = .true.
       counts = .false.
-      do i = 1, e%count
-         associate (q => e%list(i), p => e%vector_loops)
+      do i = 1, equations%count
+         associate (q => equations%list(i), p => equations%vector_loops)
             do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
                ! What is fixed makes no unknown; but what turns with a projection.
                if (p%vector_orientation(k) > 0 .or. (q%kind == equation_projection .and. q%orientation > 0)) &
-                  has_vector(k) = .not. vanishes(x%sums, k)
+                  has_vector(k) = .not. vanishes(numbers%sums, k)
             end do
-            asked = x%direction(:, i)
+            asked = numbers%direction(:, i)
             if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
             if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
             do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
                counts(side_of(q), k) = p%slide_orientation(k) /= q%orientation &
-                  .or. abs(dot_product(asked, x%sums%slide_body_vector(:, k))) > 8.0_wp*epsilon(1.0_wp)
+                  .or. abs(dot_product(asked, numbers%sums%slide_body_vector(:, k))) > 8.0_wp*epsilon(1.0_wp)
             end do
          end associate
       end do
    end subroutine find_unknowns
 
    !> 2 of the y of a loop, otherwise 1.
-   pure integer function side_of(q)
-      type(equation_t), intent(in) :: q
+   pure integer function side_of(equation)
+      type(equation_t), intent(in) :: equation
 
-      side_of = merge(2, 1, q%kind == equation_y)
+      side_of = merge(2, 1, equation%kind == equation_y)
    end function side_of
 
    !> Which unknown is in which equation: 1 to `orientations` angles, then slides.
-   function incidence(e, orientations, unknowns) result(g)
-      type(equations_t), intent(in) :: e
+   function incidence(equations, orientations, unknowns) result(g)
+      type(equations_t), intent(in) :: equations
       integer, intent(in) :: orientations, unknowns
       type(incidence_t) :: g
       integer :: seen(0:unknowns), constant, n, i, k
       logical :: turns
 
-      g%equations = e%count
+      g%equations = equations%count
       g%unknowns = unknowns
-      allocate (g%first(e%count + 1), g%unknown(4*e%count + 64))
+      allocate (g%first(equations%count + 1), g%unknown(4*equations%count + 64))
       g%first(1) = 1
       seen = 0
       n = 0
-      do i = 1, e%count
-         associate (q => e%list(i), p => e%vector_loops)
+      do i = 1, equations%count
+         associate (q => equations%list(i), p => equations%vector_loops)
             select case (q%kind)
             case (equation_angle)
                ! Two links that turn together: their angles cancel.
@@ -280,16 +281,17 @@ contains
             case default
                associate (v => p%first_vector(q%vector_loop), w => p%first_vector(q%vector_loop + 1) - 1, &
                   s => p%first_slide(q%vector_loop), t => p%first_slide(q%vector_loop + 1) - 1)
-                  turns = any(e%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
+                  turns = any(equations%has_vector(v:w) .and. p%vector_orientation(v:w) /= q%orientation) &
                      .or. any(p%slide_orientation(s:t) /= q%orientation)
                   ! What turns with the direction of the projection has a constant part in it.
                   constant = merge(q%orientation, 0, q%kind == equation_projection .and. .not. turns)
                   do k = v, w
-                     if (e%has_vector(k) .and. p%vector_orientation(k) /= constant) call note(p%vector_orientation(k))
+                     if (equations%has_vector(k) .and. p%vector_orientation(k) /= &
+                        constant) call note(p%vector_orientation(k))
                   end do
                   do k = s, t
                      if (p%slide_orientation(k) /= constant) call note(p%slide_orientation(k))
-                     if (e%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
+                     if (equations%counts(side_of(q), k)) call note(orientations + p%slide_number(k))
                   end do
                   if (q%kind == equation_projection .and. turns) call note(q%orientation)
                end associate
@@ -300,16 +302,16 @@ contains
 
    contains
 
-      !> Notes unknown `u`, once; the ground's orientation is none.
-      subroutine note(u)
-         integer, intent(in) :: u
+      !> Notes `unknown`, once; the ground's orientation is none.
+      subroutine note(unknown)
+         integer, intent(in) :: unknown
 
-         if (u == 0) return
-         if (seen(u) == i) return
-         seen(u) = i
+         if (unknown == 0) return
+         if (seen(unknown) == i) return
+         seen(unknown) = i
          n = n + 1
          if (n > size(g%unknown)) g%unknown = [g%unknown, g%unknown]
-         g%unknown(n) = u
+         g%unknown(n) = unknown
       end subroutine note
    end function incidence
 end module loop_equations

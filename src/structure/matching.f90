@@ -23,36 +23,37 @@ module matching
 contains
 
    !> `unknown_of` (equations): the unknown matched with each equation, 0 for none; `equation_of` (unknowns) likewise.
-   subroutine match(g, unknown_of, equation_of)
-      type(incidence_t), intent(in) :: g
+   subroutine match(incidence, unknown_of, equation_of)
+      type(incidence_t), intent(in) :: incidence
       integer, allocatable, intent(out) :: unknown_of(:), equation_of(:)
       ! Of each equation: where the look ahead for a free unknown stands, never set back, and the last search that came
       ! to it. Of the search at hand: its path of equations, and the place of the next unknown of each.
-      integer :: look(g%equations), seen(g%equations), path(g%equations), next(g%equations)
+      integer :: look(incidence%equations), seen(incidence%equations), path(incidence%equations), &
+         next(incidence%equations)
       integer :: i, e
 
-      allocate (unknown_of(g%equations), equation_of(g%unknowns), source=0)
-      do e = 1, g%equations
-         do i = g%first(e), g%first(e + 1) - 1
-            if (equation_of(g%unknown(i)) /= 0) cycle
-            call join(e, g%unknown(i))
+      allocate (unknown_of(incidence%equations), equation_of(incidence%unknowns), source=0)
+      do e = 1, incidence%equations
+         do i = incidence%first(e), incidence%first(e + 1) - 1
+            if (equation_of(incidence%unknown(i)) /= 0) cycle
+            call join(e, incidence%unknown(i))
             exit
          end do
       end do
-      look = g%first(:g%equations)
+      look = incidence%first(:incidence%equations)
       seen = 0
-      do e = 1, g%equations
+      do e = 1, incidence%equations
          if (unknown_of(e) == 0) call augment(e)
       end do
 
    contains
 
-      !> Matches equation `e` with unknown `u`.
-      subroutine join(e, u)
-         integer, intent(in) :: e, u
+      !> Matches `equation` with `unknown`.
+      subroutine join(equation, unknown)
+         integer, intent(in) :: equation, unknown
 
-         unknown_of(e) = u
-         equation_of(u) = e
+         unknown_of(equation) = unknown
+         equation_of(unknown) = equation
       end subroutine join
 
       !> Looks for a path from equation `start` to a free unknown. Every equation of it takes the unknown of the one
@@ -68,15 +69,15 @@ contains
                ! On to an equation that this search has not seen.
                depth = depth + 1
                path(depth) = e
-               next(depth) = g%first(e)
+               next(depth) = incidence%first(e)
                seen(e) = start
-               do while (look(e) < g%first(e + 1))
-                  u = g%unknown(look(e))
+               do while (look(e) < incidence%first(e + 1))
+                  u = incidence%unknown(look(e))
                   look(e) = look(e) + 1
                   if (equation_of(u) == 0) then
                      call join(e, u)
                      do depth = depth - 1, 1, -1
-                        call join(path(depth), g%unknown(next(depth) - 1))
+                        call join(path(depth), incidence%unknown(next(depth) - 1))
                      end do
                      return
                   end if
@@ -87,8 +88,8 @@ contains
             end if
 
             e = 0
-            do while (next(depth) < g%first(path(depth) + 1) .and. e == 0)
-               e = equation_of(g%unknown(next(depth)))
+            do while (next(depth) < incidence%first(path(depth) + 1) .and. e == 0)
+               e = equation_of(incidence%unknown(next(depth)))
                next(depth) = next(depth) + 1
                if (seen(e) == start) e = 0
             end do
@@ -99,14 +100,15 @@ contains
    !> The blocks of a perfect matching: equations `member`(first(b)), ..., member(first(b + 1) - 1) are block b,
    !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. No equation: no
    !> block. `skip` (equations): those that belong to no block.
-   subroutine find_blocks(g, equation_of, first, member, skip)
-      type(incidence_t), intent(in) :: g
+   subroutine find_blocks(incidence, equation_of, first, member, skip)
+      type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: equation_of(:)
       integer, allocatable, intent(out) :: first(:), member(:)
       logical, intent(in), optional :: skip(:)
       integer, parameter :: done = huge(1)
-      integer :: number(g%equations), low(g%equations), path(g%equations), next(g%equations)
-      integer :: stack(g%equations), counter, depth, top, blocks, members, root, e, other
+      integer :: number(incidence%equations), low(incidence%equations), path(incidence%equations), &
+         next(incidence%equations)
+      integer :: stack(incidence%equations), counter, depth, top, blocks, members, root, e, other
 
       number = 0
       if (present(skip)) number = merge(done, 0, skip)
@@ -114,9 +116,9 @@ contains
       top = 0
       blocks = 0
       members = 0
-      allocate (first(g%equations + 1), member(g%equations))
+      allocate (first(incidence%equations + 1), member(incidence%equations))
       first(1) = 1
-      do root = 1, g%equations
+      do root = 1, incidence%equations
          if (number(root) > 0) cycle
          depth = 0
          call enter(root)
@@ -124,8 +126,8 @@ contains
             e = path(depth)
 
             ! The next equation that `e` waits for and that belongs to no block yet.
-            if (next(e) < g%first(e + 1)) then
-               other = equation_of(g%unknown(next(e)))
+            if (next(e) < incidence%first(e + 1)) then
+               other = equation_of(incidence%unknown(next(e)))
                next(e) = next(e) + 1
                if (number(other) == 0) then
                   call enter(other)
@@ -156,38 +158,38 @@ contains
 
    contains
 
-      !> The search comes to equation `e`.
-      subroutine enter(e)
-         integer, intent(in) :: e
+      !> The search comes to `equation`.
+      subroutine enter(equation)
+         integer, intent(in) :: equation
 
          depth = depth + 1
-         path(depth) = e
+         path(depth) = equation
          counter = counter + 1
-         number(e) = counter
-         low(e) = counter
-         next(e) = g%first(e)
+         number(equation) = counter
+         low(equation) = counter
+         next(equation) = incidence%first(equation)
          top = top + 1
-         stack(top) = e
+         stack(top) = equation
       end subroutine enter
    end subroutine find_blocks
 
    !> (equations) The part with too many equations, of a largest matching: those without an unknown, and all that
    !> stand for unknowns of theirs, again and again. It needs no other unknowns.
-   function overdetermined(g, unknown_of, equation_of) result(over)
-      type(incidence_t), intent(in) :: g
+   function overdetermined(incidence, unknown_of, equation_of) result(over)
+      type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: unknown_of(:), equation_of(:)
-      logical :: over(g%equations)
-      integer :: queue(g%equations), last, next, i, e
+      logical :: over(incidence%equations)
+      integer :: queue(incidence%equations), last, next, i, e
 
       over = unknown_of == 0
       if (.not. any(over)) return
       queue = 0
       last = count(over)
-      queue(:last) = pack([(i, i=1, g%equations)], over)
+      queue(:last) = pack([(i, i=1, incidence%equations)], over)
       next = 1
       do while (next <= last)
-         do i = g%first(queue(next)), g%first(queue(next) + 1) - 1
-            e = equation_of(g%unknown(i))
+         do i = incidence%first(queue(next)), incidence%first(queue(next) + 1) - 1
+            e = equation_of(incidence%unknown(i))
             if (over(e)) cycle
             over(e) = .true.
             last = last + 1
@@ -199,17 +201,18 @@ contains
 
    !> (unknowns) The part with too few equations, of a largest matching: the free unknowns, and all that could be free
    !> in their place. Turned round, too few equations are too many.
-   function underdetermined(g, unknown_of, equation_of) result(loose)
-      type(incidence_t), intent(in) :: g
+   function underdetermined(incidence, unknown_of, equation_of) result(loose)
+      type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: unknown_of(:), equation_of(:)
-      logical :: loose(g%unknowns)
-      integer :: owner(g%first(g%equations + 1) - 1), e
+      logical :: loose(incidence%unknowns)
+      integer :: owner(incidence%first(incidence%equations + 1) - 1), e
       type(sorted_t) :: s
 
-      do e = 1, g%equations
-         owner(g%first(e):g%first(e + 1) - 1) = e
+      do e = 1, incidence%equations
+         owner(incidence%first(e):incidence%first(e + 1) - 1) = e
       end do
-      s = sorted(g%unknown(:size(owner)), g%unknowns)
-      loose = overdetermined(incidence_t(g%unknowns, g%equations, s%first, owner(s%member)), equation_of, unknown_of)
+      s = sorted(incidence%unknown(:size(owner)), incidence%unknowns)
+      loose = overdetermined(incidence_t(incidence%unknowns, incidence%equations, s%first, owner(s%member)), &
+         equation_of, unknown_of)
    end function underdetermined
 end module matching

@@ -172,22 +172,22 @@ contains
       end subroutine attach
    end function new_tree
 
-   !> Gives the axes `a` the numbers of `m`, whose tree is `t`.
-   pure subroutine put_axes(m, t, a)
+   !> Gives the `axes` the numbers of `m`, whose tree is `tree`.
+   pure subroutine put_axes(m, tree, axes)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
-      type(axes_t), intent(inout) :: a
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(inout) :: axes
       integer :: i, k, link
 
-      a%origin = plane_origin(m)
-      do i = 1, size(t%by_angle)
-         link = t%by_angle(i)
-         k = t%angle_pair(link)
-         a%angle_offset(link) = 0.0_wp
-         if (m%links(link)%ground) a%angle_offset(link) = m%links(link)%position(3)
-         if (k > 0) a%angle_offset(link) = a%angle_offset(other_link(m, k, link)) &
+      axes%origin = plane_origin(m)
+      do i = 1, size(tree%by_angle)
+         link = tree%by_angle(i)
+         k = tree%angle_pair(link)
+         axes%angle_offset(link) = 0.0_wp
+         if (m%links(link)%ground) axes%angle_offset(link) = m%links(link)%position(3)
+         if (k > 0) axes%angle_offset(link) = axes%angle_offset(other_link(m, k, link)) &
             + merge(-m%pairs(k)%beta, m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
-         a%turn(:, link) = direction(a%angle_offset(link))
+         axes%turn(:, link) = direction(axes%angle_offset(link))
       end do
    end subroutine put_axes
 
@@ -200,46 +200,46 @@ contains
    end function other_link
 
    !> Where `link` is, seen from its parent, in the deck's unit of length.
-   pure function place_on_tree(m, t, a, link) result(p)
+   pure function place_on_tree(m, tree, axes, link) result(p)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(in) :: axes
       integer, intent(in) :: link
       type(link_offset_t) :: p
       real(wp) :: sign_of
 
-      associate (pair => m%pairs(t%parent_joint(link)), parent => t%parent(link))
+      associate (pair => m%pairs(tree%parent_joint(link)), parent => tree%parent(link))
          sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
-         p%reach = point_offset(m, a, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
-         p%body_vector = point_offset(m, a, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
-         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - a%origin)
+         p%reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+         p%body_vector = point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
+         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - axes%origin)
          if (.not. has_guide(pair%kind)) return
-         p%slide = t%slide(t%parent_joint(link))
-         p%slide_body_vector = sign_of*guide(m, a, t%parent_joint(link), across=.false.)
-         p%reach = p%reach - sign_of*guide(m, a, t%parent_joint(link), across=.true.)*pair%offset
+         p%slide = tree%slide(tree%parent_joint(link))
+         p%slide_body_vector = sign_of*guide(m, axes, tree%parent_joint(link), across=.false.)
+         p%reach = p%reach - sign_of*guide(m, axes, tree%parent_joint(link), across=.true.)*pair%offset
       end associate
    end function place_on_tree
 
    !> Direction (2) of the guide of pair `k`, or of its normal, in the axes of its orientation.
-   pure function guide(m, a, k, across) result(e)
+   pure function guide(m, axes, k, across) result(e)
       type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: a
+      type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       logical, intent(in) :: across
       real(wp) :: e(2), angle
 
-      angle = a%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
+      angle = axes%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
       e = direction(angle)
       if (across) e = quarter_turn(e)
    end function guide
 
    !> Point number `i` from the origin of its link, in the axes of the link's orientation.
-   pure function point_offset(m, a, i) result(v)
+   pure function point_offset(m, axes, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(axes_t), intent(in) :: a
+      type(axes_t), intent(in) :: axes
       integer, intent(in) :: i
       real(wp) :: v(2)
 
-      v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))
+      v = rotated(m%points(i)%offset, axes%turn(:, m%points(i)%link))
    end function point_offset
 end module spanning_tree

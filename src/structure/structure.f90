@@ -97,20 +97,21 @@ contains
       if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. (m%links%ground .or. m%links%hidden))
    end function find_structure
 
-   !> Finds the groups of `m`, whose findings `f` are, without the blocks of slots; none where it is not solvable. Only
-   !> the listing has them, and the sets of a long job are checked one after another, but listed by several processes.
-   subroutine find_groups(m, f)
+   !> Finds the groups of `m`, whose findings `report` are, without the blocks of slots; none where it is not solvable.
+   !> Only the listing has them, and the sets of a long job are checked one after another, but listed by several
+   !> processes.
+   subroutine find_groups(m, report)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(inout) :: f
+      type(structure_report_t), intent(inout) :: report
       integer :: i
 
-      if (.not. allocated(f%groups)) allocate (f%groups(0))
-      if (.not. f%solvable) return
-      f%groups = groups_of(m, new_closure(m))
-      do i = 1, size(f%groups)
-         f%groups(i)%links = pack(f%groups(i)%links, .not. m%links(f%groups(i)%links)%hidden)
+      if (.not. allocated(report%groups)) allocate (report%groups(0))
+      if (.not. report%solvable) return
+      report%groups = groups_of(m, new_closure(m))
+      do i = 1, size(report%groups)
+         report%groups(i)%links = pack(report%groups(i)%links, .not. m%links(report%groups(i)%links)%hidden)
       end do
-      f%groups = pack(f%groups, [(size(f%groups(i)%links) > 0, i=1, size(f%groups))])
+      report%groups = pack(report%groups, [(size(report%groups(i)%links) > 0, i=1, size(report%groups))])
    end subroutine find_groups
 
    !> Every link of every set can be found: `findings` (sets).
@@ -137,30 +138,31 @@ contains
    end subroutine check_structure
 
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
-   function faults_text(m, f, set) result(text)
+   function faults_text(m, report, set) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: report
       integer, intent(in) :: set
       character(:), allocatable :: text
 
       text = ''
-      if (f%free == 0) then
-         if (f%redundant > 0 .and. m%method /= method_newton) &
-            call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
+      if (report%free == 0) then
+         if (report%redundant > 0 .and. m%method /= method_newton) &
+            call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, report))
          return
       end if
-      if (f%ground == 0) then
+      if (report%ground == 0) then
          call add_line('E105  SET '//whole(set)//': NO LINK IS GROUND: GIVE IT A GROUND CARD')
          text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
       end if
-      call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(f%loose)%name)//': '//whole(f%free)//' ' &
+      call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(report%loose)%name)//': ' &
+         //whole(report%free)//' ' &
          //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
-         'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', f%free == 1)))
-      if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
-      text = text//joined_links(m, f)
-      call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
-         //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
-         //' DEGREES OF FREEDOM, DRIVES ARE '//whole(f%drives))
+         'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', report%free == 1)))
+      if (report%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, report))
+      text = text//joined_links(m, report)
+      call add_line('E103  SET '//whole(set)//': W = '//whole(report%coordinates)//' COORDINATES LESS R = ' &
+         //whole(report%equations)//' EQUATIONS LEAVE S = '//whole(report%degrees_of_freedom) &
+         //' DEGREES OF FREEDOM, DRIVES ARE '//whole(report%drives))
 
    contains
 
@@ -184,9 +186,9 @@ contains
 
    !> Names, in lines that each begin with new_line('a'), the two links of each pair of the links that still can move,
    !> and of the pairs that are too many: a JOINT card may have a wrong link. '' without JOINT cards.
-   function joined_links(m, f) result(text)
+   function joined_links(m, report) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: report
       character(:), allocatable :: text
       integer, parameter :: pairs_a_line = 4, most = 40
       integer :: i, n, ends(2)
@@ -197,7 +199,8 @@ contains
       do i = 1, size(m%pairs)
          if (is_hidden(m, m%pairs(i))) cycle
          ends = joined_by(m, m%pairs(i))
-         if (.not. (any(f%many_pairs == i) .or. any(f%loose == ends(1)) .or. any(f%loose == ends(2)))) cycle
+         if (.not. (any(report%many_pairs == i) .or. any(report%loose == ends(1)) .or. any(report%loose == &
+            ends(2)))) cycle
          n = n + 1
          if (n > most) cycle
          if (mod(n, pairs_a_line) == 1) then
@@ -211,18 +214,18 @@ contains
    end function joined_links
 
    !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
-   function surplus(m, f) result(text)
+   function surplus(m, report) result(text)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: f
+      type(structure_report_t), intent(in) :: report
       character(:), allocatable :: text
       integer, allocatable :: pairs(:)
       integer :: i
 
-      pairs = once(f%many_pairs)
-      text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG '
+      pairs = once(report%many_pairs)
+      text = 'TOO MANY EQUATIONS BY '//whole(report%redundant)//' AMONG '
       if (size(pairs) > 0) text = text//counted('PAIR', m%pairs(pairs)%name)
-      if (size(pairs) > 0 .and. size(f%many_drives) > 0) text = text//' AND '
-      if (size(f%many_drives) > 0) text = text//counted('DRIVE', &
-         [(drive_name(m, m%drives(f%many_drives(i))), i=1, size(f%many_drives))])
+      if (size(pairs) > 0 .and. size(report%many_drives) > 0) text = text//' AND '
+      if (size(report%many_drives) > 0) text = text//counted('DRIVE', &
+         [(drive_name(m, m%drives(report%many_drives(i))), i=1, size(report%many_drives))])
    end function surplus
 end module structure

@@ -56,41 +56,42 @@ module vector_loops
 
 contains
 
-   !> Adds to `loops` the one from point `q` to point `p` by the path that `s` found last from p's link to q's; `q` = 0
-   !> is the origin of all places, and the path then leads to the ground or to a root. Points are added from the origins
-   !> of their links, never the difference of two: the largest that was added tells which sums are rounding alone.
-   subroutine add_vector_loop(m, t, p, q, s, loops)
+   !> Adds to `loops` the one from point `point_j` to point `point_i` by the path that `search` found last from p's link
+   !> to q's; `point_j` = 0 is the origin of all places, and the path then leads to the ground or to a root. Points are
+   !> added from the origins of their links, never the difference of two: the largest that was added tells which sums
+   !> are rounding alone.
+   subroutine add_vector_loop(m, tree, point_i, point_j, search, loops)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
-      integer, intent(in) :: p, q
-      type(search_t), intent(in) :: s
+      type(spanning_tree_t), intent(in) :: tree
+      integer, intent(in) :: point_i, point_j
+      type(search_t), intent(in) :: search
       type(vector_loops_t), intent(inout) :: loops
       integer :: link, i, exit_point, entry_point, sign_of
 
-      link = m%points(p)%link
-      call add_term([p, 0], t%orientation(link))
-      do i = 1, s%length
-         associate (k => m%pairs(s%pairs(i)))
+      link = m%points(point_i)%link
+      call add_term([point_i, 0], tree%orientation(link))
+      do i = 1, search%length
+         associate (k => m%pairs(search%pairs(i)))
             ! From a place of `link` through the pair to the link at its other end. Ground links are one: the pair may
             ! be another one's than that of the ground link reached.
             sign_of = merge(1, -1, node(m, m%points(k%point_i)%link) == node(m, link))
             exit_point = merge(k%point_i, k%point_j, sign_of > 0)
             entry_point = merge(k%point_j, k%point_i, sign_of > 0)
-            call add_term([-exit_point, 0], t%orientation(m%points(exit_point)%link))
+            call add_term([-exit_point, 0], tree%orientation(m%points(exit_point)%link))
             if (has_guide(k%kind)) then
                ! P - Q = h n - s e, all in the orientation that the two links share.
-               call add_slide(t%orientation(link), t%slide(s%pairs(i)), -sign_of*s%pairs(i))
-               call add_term([0, sign_of*s%pairs(i)], t%orientation(link))
+               call add_slide(tree%orientation(link), tree%slide(search%pairs(i)), -sign_of*search%pairs(i))
+               call add_term([0, sign_of*search%pairs(i)], tree%orientation(link))
             end if
             link = m%points(entry_point)%link
-            call add_term([entry_point, 0], t%orientation(link))
+            call add_term([entry_point, 0], tree%orientation(link))
          end associate
       end do
-      if (q > 0) then
-         call add_term([-q, 0], t%orientation(m%points(q)%link))
-      else if (t%root(link) > 0) then
-         call add_slide(0, t%slides + 2*t%root(link) - 1, 0)
-         call add_slide(0, t%slides + 2*t%root(link), 0)
+      if (point_j > 0) then
+         call add_term([-point_j, 0], tree%orientation(m%points(point_j)%link))
+      else if (tree%root(link) > 0) then
+         call add_slide(0, tree%slides + 2*tree%root(link) - 1, 0)
+         call add_slide(0, tree%slides + 2*tree%root(link), 0)
       end if
 
       loops%vector_of(loops%vector_orientation(loops%first_vector(loops%count + 1):loops%vectors)) = 0
@@ -137,77 +138,78 @@ contains
       end subroutine add_slide
    end subroutine add_vector_loop
 
-   !> Gives `x`, the sums of the loops `p`, the numbers of `m`, whose links stand in the axes `a` on the tree `t`;
+   !> Gives `sums`, the sums of the `loops`, the numbers of `m`, whose links stand in the `axes` on the `tree`;
    !> lengths in units of `length`.
-   pure subroutine put_sums(m, t, a, length, p, x)
+   pure subroutine put_sums(m, tree, axes, length, loops, sums)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(in) :: axes
       real(wp), intent(in) :: length
-      type(vector_loops_t), intent(in) :: p
-      type(loop_sums_t), intent(inout) :: x
+      type(vector_loops_t), intent(in) :: loops
+      type(loop_sums_t), intent(inout) :: sums
       real(wp) :: places(2), place(2), more(2), sign_of
       integer :: i, k
 
-      x%body_vector = 0.0_wp
-      x%largest = 0.0_wp
-      do i = 1, p%count
+      sums%body_vector = 0.0_wp
+      sums%largest = 0.0_wp
+      do i = 1, loops%count
          ! The places of ground links are summed apart from their points. Between points of one link they cancel,
          ! wherever that stands, and leave no rounding of their size.
          places = 0.0_wp
-         do k = p%first_term(i), p%first_term(i + 1) - 1
-            associate (v => p%term_vector(k), point => abs(p%terms(1, k)), pair => abs(p%terms(2, k)))
-               sign_of = real(sign(1, sum(p%terms(:, k))), wp)
+         do k = loops%first_term(i), loops%first_term(i + 1) - 1
+            associate (v => loops%term_vector(k), point => abs(loops%terms(1, k)), pair => abs(loops%terms(2, k)))
+               sign_of = real(sign(1, sum(loops%terms(:, k))), wp)
                place = 0.0_wp
                if (point == 0) then
-                  more = sign_of*m%pairs(pair)%offset*guide(m, a, pair, across=.true.)
+                  more = sign_of*m%pairs(pair)%offset*guide(m, axes, pair, across=.true.)
                else
-                  more = sign_of*point_offset(m, a, point)
+                  more = sign_of*point_offset(m, axes, point)
                   associate (link => m%links(m%points(point)%link))
-                     if (link%ground) place = link%position(:2) - a%origin
+                     if (link%ground) place = link%position(:2) - axes%origin
                   end associate
                   places = places + sign_of*place
                end if
-               x%body_vector(:, v) = x%body_vector(:, v) + more
-               x%largest(v) = max(x%largest(v), maxval(abs(more)), maxval(abs(place)))
+               sums%body_vector(:, v) = sums%body_vector(:, v) + more
+               sums%largest(v) = max(sums%largest(v), maxval(abs(more)), maxval(abs(place)))
             end associate
          end do
-         do k = p%first_vector(i), p%first_vector(i + 1) - 1
-            if (p%vector_orientation(k) == 0) x%body_vector(:, k) = x%body_vector(:, k) + places
+         do k = loops%first_vector(i), loops%first_vector(i + 1) - 1
+            if (loops%vector_orientation(k) == 0) sums%body_vector(:, k) = sums%body_vector(:, k) + places
          end do
       end do
-      x%body_vector = x%body_vector/length
-      x%largest = x%largest/length
-      do k = 1, p%slides
-         if (p%slide_pair(k) == 0) then
-            x%slide_body_vector(:, k) = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], &
-               mod(p%slide_number(k) - t%slides, 2) == 1)
+      sums%body_vector = sums%body_vector/length
+      sums%largest = sums%largest/length
+      do k = 1, loops%slides
+         if (loops%slide_pair(k) == 0) then
+            sums%slide_body_vector(:, k) = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], &
+               mod(loops%slide_number(k) - tree%slides, 2) == 1)
          else
-            x%slide_body_vector(:, k) = sign(1, p%slide_pair(k))*guide(m, a, abs(p%slide_pair(k)), across=.false.)
+            sums%slide_body_vector(:, k) = sign(1, loops%slide_pair(k))*guide(m, axes, abs(loops%slide_pair(k)), &
+               across=.false.)
          end if
       end do
    end subroutine put_sums
 
    !> Tells whether what is left of body vectors that cancel is rounding, which would put an angle into equations
    !> that do not hold it.
-   pure logical function vanishes(x, k)
-      type(loop_sums_t), intent(in) :: x
+   pure logical function vanishes(sums, k)
+      type(loop_sums_t), intent(in) :: sums
       integer, intent(in) :: k
 
-      vanishes = all(abs(x%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*x%largest(k))
+      vanishes = all(abs(sums%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*sums%largest(k))
    end function vanishes
 
-   !> `s%pairs`: the pairs on a short path from link `i` to link `j`, which are joined. Breadth first from both ends in
-   !> turn; the ground ends a path and is never searched level by level, since all links may be joined to it.
-   subroutine find_path(m, t, i, j, s)
+   !> `search%pairs`: the pairs on a short path from link `i` to link `j`, which are joined. Breadth first from both
+   !> ends in turn; the ground ends a path and is never searched level by level, since all links may be joined to it.
+   subroutine find_path(m, tree, i, j, search)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: tree
       integer, intent(in) :: i, j
-      type(search_t), intent(inout) :: s
+      type(search_t), intent(inout) :: search
       integer :: first(2), last(2), side, meeting
 
-      s%number = s%number + 1
-      s%length = 0
+      search%number = search%number + 1
+      search%length = 0
       if (node(m, i) == node(m, j)) return
       first = 0
       last = -1
@@ -221,7 +223,7 @@ contains
       end do
 
       call collect(1, node(m, i))
-      s%pairs(:s%length) = s%pairs(s%length:1:-1)
+      search%pairs(:search%length) = search%pairs(search%length:1:-1)
       call collect(2, node(m, j))
 
    contains
@@ -233,10 +235,10 @@ contains
 
          level_end = last(side)
          do n = first(side), level_end
-            link = s%queue(n, side)
-            do k = t%near%first(link), t%near%first(link + 1) - 1
-               p = t%near%member(k)
-               if (s%open(p)) call reach(side, node(m, other_link(m, p, link)), p)
+            link = search%queue(n, side)
+            do k = tree%near%first(link), tree%near%first(link + 1) - 1
+               p = tree%near%member(k)
+               if (search%open(p)) call reach(side, node(m, other_link(m, p, link)), p)
                if (meeting >= 0) return
             end do
          end do
@@ -247,13 +249,13 @@ contains
       subroutine reach(side, n, pair)
          integer, intent(in) :: side, n, pair
 
-         if (s%seen(2*n + side - 1) == s%number) return
-         s%seen(2*n + side - 1) = s%number
-         s%via(2*n + side - 1) = pair
-         if (s%seen(2*n + 2 - side) == s%number) meeting = n
+         if (search%seen(2*n + side - 1) == search%number) return
+         search%seen(2*n + side - 1) = search%number
+         search%via(2*n + side - 1) = pair
+         if (search%seen(2*n + 2 - side) == search%number) meeting = n
          if (n == 0) return
          last(side) = last(side) + 1
-         s%queue(last(side), side) = n
+         search%queue(last(side), side) = n
       end subroutine reach
 
       !> Appends the pairs from the meeting node back to the node `goal`, where the search from `side` began.
@@ -263,10 +265,10 @@ contains
 
          n = meeting
          do while (n /= goal)
-            s%length = s%length + 1
-            s%pairs(s%length) = s%via(2*n + side - 1)
+            search%length = search%length + 1
+            search%pairs(search%length) = search%via(2*n + side - 1)
             ! The node at the other end.
-            associate (pair => m%pairs(s%pairs(s%length)))
+            associate (pair => m%pairs(search%pairs(search%length)))
                n = node(m, m%points(pair%point_i)%link) + node(m, m%points(pair%point_j)%link) - n
             end associate
          end do

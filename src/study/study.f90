@@ -199,28 +199,28 @@ contains
          end do
       end subroutine study_set
 
-      !> Prints the row of trial `t`. `unit`: microseconds of the default, 0 if that does not find every position.
-      subroutine put_trial(t, unit)
-         type(trial_t), intent(in) :: t
+      !> Prints the row of `trial`. `unit`: microseconds of the default, 0 if that does not find every position.
+      subroutine put_trial(trial, unit)
+         type(trial_t), intent(in) :: trial
          real(dp), intent(in) :: unit
          character(120) :: line
          integer :: d
 
-         line = ' '//method_words(t%method)
+         line = ' '//method_words(trial%method)
          line(10:) = 'OWN'
-         if (t%predictor /= own_predictor) line(10:) = 'ORDER '//whole(t%predictor)
+         if (trial%predictor /= own_predictor) line(10:) = 'ORDER '//whole(trial%predictor)
          line(21:) = 'ROUNDING'
-         if (t%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') t%tolerance
-         if (t%missed > 0) then
-            line(32:) = 'NOT SOLVED AT '//whole(t%missed)//' INSTANTS OR MORE'
+         if (trial%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') trial%tolerance
+         if (trial%missed > 0) then
+            line(32:) = 'NOT SOLVED AT '//whole(trial%missed)//' INSTANTS OR MORE'
          else
-            write (line(30:), '(3f10.3)') median(t%time), minval(t%time), maxval(t%time)
-            if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(t%time)/unit
-            write (line(68:), '(f7.2)') t%iterations
+            write (line(30:), '(3f10.3)') median(trial%time), minval(trial%time), maxval(trial%time)
+            if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(trial%time)/unit
+            write (line(68:), '(f7.2)') trial%iterations
          end if
-         do d = 0, merge(2, -1, t%missed == 0)
-            if (t%error(d) < 1.0e-3_dp*nothing_known) then
-               write (line(75 + 11*d:), '(es11.1)') t%error(d)
+         do d = 0, merge(2, -1, trial%missed == 0)
+            if (trial%error(d) < 1.0e-3_dp*nothing_known) then
+               write (line(75 + 11*d:), '(es11.1)') trial%error(d)
             else
                line(75 + 11*d:) = '    UNKNOWN'
             end if
@@ -229,12 +229,12 @@ contains
       end subroutine put_trial
    end subroutine run_study
 
-   !> Solves `m` at instants 0 to `last`. Fills missed instants, iterations, seconds and errors of `t`; errors only if
-   !> something is compared with the `truth`.
-   subroutine solve(m, last, t, truth)
+   !> Solves `m` at instants 0 to `last`. Fills missed instants, iterations, seconds and errors of `trial`; errors only
+   !> if something is compared with the `truth`.
+   subroutine solve(m, last, trial, truth)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: last
-      type(trial_t), intent(inout) :: t
+      type(trial_t), intent(inout) :: trial
       type(truth_t), intent(in) :: truth
       type(set_analysis_t) :: a
       real(dp) :: begun, largest(2, 0:2), difference(2, 0:2)
@@ -245,20 +245,20 @@ contains
          largest = reshape([(real([length, 1.0_wp]*characteristic_rate(m, length)**k, dp), k=0, 2)], [2, 3])
       end associate
       difference = 0.0_dp
-      t%seconds = 0.0_dp
+      trial%seconds = 0.0_dp
       call make_set_analysis(m, a)
       do k = 0, last
          begun = seconds()
          call advance_set(a, instant(m, k))
-         t%seconds = t%seconds + (seconds() - begun)
+         trial%seconds = trial%seconds + (seconds() - begun)
          if (k == 0) at_first = maxval(a%list%iterations)
-         if (is_flagged(a%now)) t%missed = t%missed + 1
+         if (is_flagged(a%now)) trial%missed = trial%missed + 1
          if (k < truth%compared) call compare()
-         if (t%missed > 0 .and. t%seconds > long) exit
+         if (trial%missed > 0 .and. trial%seconds > long) exit
       end do
-      t%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
+      trial%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
-         t%error(k) = maxval(difference(:, k)/largest(:, k))
+         trial%error(k) = maxval(difference(:, k)/largest(:, k))
       end do
 
    contains
@@ -360,13 +360,13 @@ contains
       seconds = real(ticks, dp)/real(per_second, dp)
    end function seconds
 
-   !> Returns the median of the sample `x`, which has one value at least.
-   pure real(dp) function median(x)
-      real(dp), intent(in) :: x(:)
-      integer :: twice(size(x)), i               ! twice the number of values that are no larger
+   !> Returns the median of the sample `values`, which has one value at least.
+   pure real(dp) function median(values)
+      real(dp), intent(in) :: values(:)
+      integer :: twice(size(values)), i               ! twice the number of values that are no larger
 
-      twice = [(2*count(x <= x(i)), i=1, size(x))]
-      median = 0.5_dp*(minval(x, mask=twice >= size(x)) + minval(x, mask=twice > size(x)))
+      twice = [(2*count(values <= values(i)), i=1, size(values))]
+      median = 0.5_dp*(minval(values, mask=twice >= size(values)) + minval(values, mask=twice > size(values)))
    end function median
 
    !> Lets kinmat-quad solve set K of N, `set` K/N, of the deck in the file `path`: its table is open at `unit`. That is

@@ -5,7 +5,7 @@
 
 sources=$(find src -name '*.f90' -o -name '*.F90' | LC_ALL=C sort)
 # The folders in their order: the first cells of the table of src/README.md.
-order=$(sed -n 's/^| `\([a-z]*\)\/*` .*/\1/p' src/README.md | tr '\n' ' ')
+order=$(sed -n 's/^| `\([a-z]*\)\/` .*/\1/p' src/README.md | tr '\n' ' ')
 equal 'folders of src/README.md' "$(ls -d src/*/ | sed 's/^src\/\(.*\)\/$/\1/' | LC_ALL=C sort | tr '\n' ' ')src " \
    "$(echo "$order" | tr ' ' '\n' | grep -v '^src$' | grep . | LC_ALL=C sort | tr '\n' ' ')src "
 equal 'the order of the folders' '' "$(awk -v order="$order src" -f tests/system/folders.awk $sources)"
@@ -71,6 +71,13 @@ equal 'dummies without their meaning' '' "$(awk -f tests/system/dummies.awk $exp
 printf '      integer, intent(in) :: a !< One.\n      real(wp), intent(in) :: b\n      type(x_t), intent(in) :: c\n' > "$BUILD/order/dummies.f90"
 equal 'a dummy without its meaning is found' "$BUILD/order/dummies.f90:2:       real(wp), intent(in) :: b" \
    "$(awk -f tests/system/dummies.awk "$BUILD/order/dummies.f90")"
+# Dummies of one letter: the table of src/README.md. Interfaces of LAPACK keep the letters of its documentation.
+lettered=$(find src -name '*.f90' -o -name '*.F90' -o -name '*.inc' | LC_ALL=C sort |
+   grep -vE '/(blocks|continuation|perturbed|proof|rows|answers|lanes)/|initial_assembly|dense_method|lapack_routines')
+equal 'dummies of one letter that mean something else' '' "$(awk -f tests/system/letters.awk src/README.md $lettered)"
+printf '      integer, intent(in) :: i, m, &\n         long\n      type(motion_t), intent(in) :: q(:, :), x\n' > "$BUILD/order/letters.f90"
+equal 'a letter that means something else is found' "$BUILD/order/letters.f90:1: m is no letter for integer
+$BUILD/order/letters.f90:3: x is no letter for motion_t" "$(awk -f tests/system/letters.awk src/README.md "$BUILD/order/letters.f90")"
 equal 'tabs' '' "$(grep -ln "$(printf '\t')" $sources)"
 # pFUnit writes procedures and variables of these names around every suite.
 equal 'names that hide those of pFUnit' '' "$(awk '
