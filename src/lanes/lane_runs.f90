@@ -38,6 +38,7 @@ module lane_runs
       type(answers_t) :: asked
       type(set_analysis_t) :: s
       integer :: at = -1                    !< the last instant solved
+      integer :: last = -1                  !< the last that there is
       integer :: patience = first_patience
       logical :: in_simd_lane = .false.         !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
@@ -51,6 +52,7 @@ contains
 
       call new_answers(r%s, .false., r%asked)
       r%at = -1
+      r%last = instant_count(r%m) - 1
       r%patience = first_patience
       r%is_over = .false.
       r%in_simd_lane = .false.
@@ -141,7 +143,7 @@ contains
          counts = counts .and. j%correction(i) <= fine_prediction .and. r%at + 1 < r%m%steps
          if (counts) call watch_lane(r, l, i, t, counts)
       else if (r%at + 1 == r%m%steps) then
-         counts = counts .and. r%at + 1 == instant_count(r%m) - 1
+         counts = counts .and. r%at + 1 == r%last
       end if
       if (counts) then
          call count_instants(r, 1)
@@ -162,7 +164,7 @@ contains
 
       r%at = r%at + n
       r%counts%solved = r%counts%solved + n
-      r%is_over = r%at == instant_count(r%m) - 1
+      r%is_over = r%at == r%last
       r%in_simd_lane = .not. r%is_over
    end subroutine count_instants
 
@@ -216,14 +218,14 @@ contains
       type(finished_row_t) :: no_rows(0)
       integer :: k
 
-      do k = r%at + 1, min(last, instant_count(r%m) - 1)
+      do k = r%at + 1, min(last, r%last)
          call advance_set(r%s, instant(r%m, k))
          call note_flag(r%counts, r%s)
          call take_instant(r%asked, r%s, no_rows, k, .true.)
          r%at = k
          if (signal_received() > 0) return
       end do
-      r%is_over = r%at == instant_count(r%m) - 1
+      r%is_over = r%at == r%last
    end subroutine by_engine
 
    !> Gives the EXTREMES of `r` the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in range,

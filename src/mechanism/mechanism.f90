@@ -472,7 +472,7 @@ contains
    elemental logical function is_centre(kind)
       integer, intent(in) :: kind            !< request_link, ...
 
-      is_centre = any(kind == [request_pole, request_curve])
+      is_centre = kind == request_pole .or. kind == request_curve
    end function is_centre
 
    !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.

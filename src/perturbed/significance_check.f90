@@ -29,6 +29,7 @@ module significance_check
    type :: sizes_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp
       real(wp) :: law(0:1) = 0.0_wp            !< size of the drives' laws at t = 0, and how it grows with |t|; no units
+      logical :: has_centres = .false.         !< poles or curves are asked for
    end type sizes_t
 
    !> With smaller pivots everything is in doubt.
@@ -50,6 +51,7 @@ contains
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
+      s%has_centres = any(is_centre(m%requests%kind))
       do i = 1, size(m%drives)
          sizes = growing_sizes(m%drives(i), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
          do k = 1, 3
@@ -70,7 +72,7 @@ contains
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
       real(wp) :: law, angle, size_of, usual, of_angles, inverse
-      real(wp), dimension(2) :: position, velocity, acceleration
+      real(wp) :: largest(2, 0:2)
       integer :: k
 
       law = s%law(0) + s%law(1)*abs(q%t)
@@ -79,14 +81,13 @@ contains
       if (q%known < 2 .or. q%rests) return
       growth = huge(growth)
       in_doubt = .true.
-      call find_largest(size(q%position, 2), q%position, position)
-      call find_largest(size(q%position, 2), q%velocity, velocity)
-      call find_largest(size(q%position, 2), q%acceleration, acceleration)
-      angle = max(position(2), law)
+      call find_largest(size(q%position, 2), q%position, q%velocity, q%acceleration, largest)
+      angle = max(largest(2, 0), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(1.0_wp, position(1)/s%length, maxval(abs(q%origin))/s%length, &
-         max(velocity(1)/s%length, velocity(2))/s%rate, max(acceleration(1)/s%length, acceleration(2))/s%rate**2, &
-         growth_in_centres(m, q), growth_in_measures(m, q, s%rate))
+      size_of = max(1.0_wp, largest(1, 0)/s%length, maxval(abs(q%origin))/s%length, &
+         max(largest(1, 1)/s%length, largest(2, 1))/s%rate, max(largest(1, 2)/s%length, largest(2, 2))/s%rate**2, &
+         growth_in_measures(m, q, s%rate))
+      if (s%has_centres) size_of = max(size_of, growth_in_centres(m, q))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
       ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
@@ -112,17 +113,19 @@ contains
       growth = growth*max(1.0_wp, angle/usual)
    end subroutine find_amplification
 
-   !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
-   pure subroutine find_largest(n, x, largest)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: x(3, n)
-      real(wp), intent(out) :: largest(2)
+   !> Finds the largest of the lengths and of the angles in positions, velocities and accelerations; on plain arrays,
+   !> which cost no descriptors.
+   pure subroutine find_largest(n, x, v, a, largest)
+      integer, intent(in) :: n               !< links
+      real(wp), intent(in), dimension(3, n) :: x, v, a   !< positions, velocities, accelerations
+      real(wp), intent(out) :: largest(2, 0:2)   !< length and angle, and their derivatives
       integer :: i
 
       largest = 0.0_wp
       do i = 1, n
-         largest(1) = max(largest(1), abs(x(1, i)), abs(x(2, i)))
-         largest(2) = max(largest(2), abs(x(3, i)))
+         largest(:, 0) = max(largest(:, 0), [max(abs(x(1, i)), abs(x(2, i))), abs(x(3, i))])
+         largest(:, 1) = max(largest(:, 1), [max(abs(v(1, i)), abs(v(2, i))), abs(v(3, i))])
+         largest(:, 2) = max(largest(:, 2), [max(abs(a(1, i)), abs(a(2, i))), abs(a(3, i))])
       end do
    end subroutine find_largest
 
