@@ -23,10 +23,10 @@ module animation
    !> part by more than 1 % of their lengths.
    real(wp), parameter :: max_turn = 0.3_wp
    !> What is seen of a link where it has no position; it stays where it was.
-   real(wp), parameter :: pale = 0.2_wp
+   real(wp), parameter :: pale_opacity = 0.2_wp
    !> What of a group is animated.
-   character(*), parameter :: turn = 'animateTransform attributeName="transform" type="rotate"', &
-      shift = 'animateTransform attributeName="transform" type="translate"'
+   character(*), parameter :: turn_element = 'animateTransform attributeName="transform" type="rotate"', &
+      shift_element = 'animateTransform attributeName="transform" type="translate"'
 
 contains
 
@@ -34,7 +34,7 @@ contains
    subroutine put_animation(page, drawing)
       type(page_t), intent(inout), target :: page
       type(drawing_t), intent(in), target :: drawing
-      type(canvas_t) :: c
+      type(canvas_t) :: canvas
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
       integer, allocatable :: frame(:)       ! (keys) at equal steps of time
@@ -42,30 +42,30 @@ contains
       integer :: i
 
       if (drawing%films == 0) return
-      call make_canvas(page, drawing, drawing%frame(1), [(i, i=1, drawing%films)], c)
+      call make_canvas(page, drawing, drawing%frame(1), [(i, i=1, drawing%films)], canvas)
       call find_course()
-      c%s = drawing%now
-      list = shapes_of(drawing, c%scale)
+      canvas%snapshot = drawing%now
+      list = shapes_of(drawing, canvas%scale)
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
-      where (.not. is_fixed) is_fixed = c%m%links(max(1, list%link))%ground
+      where (.not. is_fixed) is_fixed = canvas%mechanism%links(max(1, list%link))%ground
       ! A centrode may run through the pictures of other sets.
-      call put_window(c%o, c%low, c%high)
+      call put_window(canvas%output, canvas%low, canvas%high)
       do i = 1, size(list)
-         if (is_fixed(i) .and. list(i)%is_below) call put_shape(c, list(i))
+         if (is_fixed(i) .and. list(i)%is_below) call put_shape(canvas, list(i))
       end do
-      call put_group(c%o, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
+      call put_group(canvas%output, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
          //full(drawing%frame(drawing%films)%t)//'"', '')
       call put_moving_links()
       call put_centres()
-      call put_end(c%o, 'g')
-      call put_end(c%o, 'svg')
+      call put_end(canvas%output, 'g')
+      call put_end(canvas%output, 'svg')
       do i = 1, size(list)
-         if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(c, list(i))
+         if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(canvas, list(i))
       end do
 
       call put_names()
       call put_clock()
-      call put_foot(c)
+      call put_foot(canvas)
 
    contains
 
@@ -73,7 +73,8 @@ contains
       subroutine find_course()
          integer :: k, stride
 
-         stride = max(1, 1 + (drawing%films - 2)/max(1, min(max_intervals, max_positions/size(c%m%links) - 1)))
+         stride = max(1, 1 + (drawing%films - 2)/max(1, &
+            min(max_intervals, max_positions/size(canvas%mechanism%links) - 1)))
          frame = [(min(k, drawing%films), k=1, drawing%films + stride - 1, stride)]
          smooth = .true.
          do k = 2, size(frame)
@@ -93,41 +94,41 @@ contains
          character(:), allocatable :: name
          integer :: link, k, last
 
-         axes = c
-         axes%s%place = 0.0_wp
-         axes%s%known = .true.
-         do link = 1, size(c%m%links)
-            if (c%m%links(link)%ground .or. c%m%links(link)%hidden .or. size(drawing%outlines(link)%corner, 2) == &
-               0) cycle
+         axes = canvas
+         axes%snapshot%place = 0.0_wp
+         axes%snapshot%known = .true.
+         do link = 1, size(canvas%mechanism%links)
+            if (canvas%mechanism%links(link)%ground .or. canvas%mechanism%links(link)%hidden .or. &
+               size(drawing%outlines(link)%corner, 2) == 0) cycle
             known = [(drawing%frame(frame(k))%known(link), k=1, size(known))]
             if (.not. any(known)) cycle
             ! It turns about a corner of its own: its origin may be far away.
             associate (corner => drawing%outlines(link)%corner(:, 1))
-               axes%shift = -c%scale*corner*[1.0_wp, -1.0_wp]
+               axes%shift = -canvas%scale*corner*[1.0_wp, -1.0_wp]
                last = frame(findloc(known, .true., dim=1))
                turned = 0.0_wp
                do k = 1, size(known)
                   if (known(k)) last = frame(k)
                   position = drawing%frame(last)%place(:, link)
-                  place(:, k) = to_pixels(c, point_of(position, corner))
+                  place(:, k) = to_pixels(canvas, point_of(position, corner))
                   turned = turned + wrap_angle(position(3) - turned)
                   angle(1, k) = -in_degrees(turned)
                end do
             end associate
             ! Two groups: one moves, one turns.
-            name = trim(c%m%links(link)%name)
-            call put_group(c%o, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
+            name = trim(canvas%mechanism%links(link)%name)
+            call put_group(canvas%output, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
                //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', name)
-            call put_moving(shift, place, smooth)
+            call put_moving(shift_element, place, smooth)
             if (.not. all(known)) call put_moving('animate attributeName="opacity"', &
-               reshape(merge(1.0_wp, pale, known), [1, size(known)]), .false.)
-            call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-            call put_moving(turn, angle, smooth)
+               reshape(merge(1.0_wp, pale_opacity, known), [1, size(known)]), .false.)
+            call put_group(canvas%output, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+            call put_moving(turn_element, angle, smooth)
             do k = 1, size(list)
                if (list(k)%link == link) call put_shape(axes, list(k))
             end do
-            call put_end(c%o, 'g')
-            call put_end(c%o, 'g')
+            call put_end(canvas%output, 'g')
+            call put_end(canvas%output, 'g')
          end do
       end subroutine put_moving_links
 
@@ -141,16 +142,16 @@ contains
             has = [(drawing%frame(frame(k))%has_centre(i), k=1, size(frame))]
             if (.not. any(has)) cycle
             do k = 1, size(frame)
-               place(:, k) = to_pixels(c, drawing%frame(frame(k))%centre(:, i))
+               place(:, k) = to_pixels(canvas, drawing%frame(frame(k))%centre(:, i))
             end do
-            call put_group(c%o, 'class="pole" transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1)) &
-               //')"', pole_name(c%m, drawing%poles(i)))
-            call put_moving(shift, place, .false.)
+            call put_group(canvas%output, 'class="pole" transform="translate(' &
+               //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', pole_name(canvas%mechanism, drawing%poles(i)))
+            call put_moving(shift_element, place, .false.)
             if (.not. all(has)) call put_moving('animate attributeName="opacity"', &
                reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
-            call put_circle(c%o, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
-               //link_color(c%m, c%m%requests(drawing%poles(i))%subject)//'"')
-            call put_end(c%o, 'g')
+            call put_circle(canvas%output, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
+               //link_color(canvas%mechanism, canvas%mechanism%requests(drawing%poles(i))%subject)//'"')
+            call put_end(canvas%output, 'g')
          end do
       end subroutine put_centres
 
@@ -161,25 +162,25 @@ contains
          real(wp) :: by(2, size(frame)), offset(2)
          integer :: i, k, last
 
-         c%s = drawing%frame(1)
+         canvas%snapshot = drawing%frame(1)
          do i = 1, size(list)
-            call note_shape(c, list(i))
+            call note_shape(canvas, list(i))
          end do
-         call labels_of(c, labels)
+         call labels_of(canvas, labels)
          do i = 1, size(labels)
             associate (link => labels(i)%link)
-               call put_group(c%o, 'class="label"', '')
-               if (.not. c%m%links(link)%ground) then
-                  offset = offset_of(labels(i)%of, c%s%place(:, link))
+               call put_group(canvas%output, 'class="label"', '')
+               if (.not. canvas%mechanism%links(link)%ground) then
+                  offset = offset_of(labels(i)%of, canvas%snapshot%place(:, link))
                   last = 1
                   do k = 1, size(frame)
                      if (drawing%frame(frame(k))%known(link)) last = frame(k)
-                     by(:, k) = to_pixels(c, point_of(drawing%frame(last)%place(:, link), offset)) - labels(i)%of
+                     by(:, k) = to_pixels(canvas, point_of(drawing%frame(last)%place(:, link), offset)) - labels(i)%of
                   end do
-                  call put_moving(shift, by, smooth)
+                  call put_moving(shift_element, by, smooth)
                end if
-               call put_label(c, labels(i))
-               call put_end(c%o, 'g')
+               call put_label(canvas, labels(i))
+               call put_end(canvas%output, 'g')
             end associate
          end do
       end subroutine put_names
@@ -189,7 +190,7 @@ contains
          real(wp), intent(in) :: p(2), position(3)
          real(wp) :: offset(2)
 
-         offset = (p - c%shift)/c%scale*[1.0_wp, -1.0_wp]
+         offset = (p - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
          offset = rotated(offset - position(:2), direction(-position(3)))
       end function offset_of
 
@@ -199,22 +200,23 @@ contains
          character(:), allocatable :: words
          integer :: k, y
 
-         y = nint(c%high(2)) + 33
-         call put_window(c%o, real([14, y - line_height], wp), real([width - 14, y], wp))
-         call put_group(c%o, 'class="clock"', '')
+         y = nint(canvas%high(2)) + 33
+         call put_window(canvas%output, real([14, y - line_height], wp), real([width - 14, y], wp))
+         call put_group(canvas%output, 'class="clock"', '')
          up(1, :) = 0.0_wp
          up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
-         call put_moving(shift, up, .false.)
+         call put_moving(shift_element, up, .false.)
          do k = 1, size(frame)
             associate (s => drawing%frame(frame(k)))
-               words = caption(c, s%t)
-               if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
-               call put_words(c%o, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
+               words = caption(canvas, s%t)
+               if (s%mark /= mark_none) &
+                  words = words//': '//words_of_mark(s%mark, s%singularity, canvas%mechanism%polish)
+               call put_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
                   trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
             end associate
          end do
-         call put_end(c%o, 'g')
-         call put_end(c%o, 'svg')
+         call put_end(canvas%output, 'g')
+         call put_end(canvas%output, 'svg')
       end subroutine put_clock
 
       !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
@@ -224,7 +226,8 @@ contains
          logical, intent(in) :: smooth
 
          if (size(values, 2) < 2) return
-         call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
+         call put_columns(canvas%output, element//' calcMode="' &
+            //trim(merge('linear  ', 'discrete', smooth))//'" dur="'&
             //duration//'" repeatCount="indefinite" values="', values, ' ', ';')
       end subroutine put_moving
    end subroutine put_animation

@@ -25,30 +25,32 @@ module circuits_picture
 
    !> A circuit in a chart.
    type :: chart_curve_t
-      real(wp), allocatable :: p(:, :)          !< (2, points) in the units in which numbers are printed
+      real(wp), allocatable :: places(:, :)     !< (2, points) in the units in which numbers are printed
    end type chart_curve_t
 
    !> A number varies if it does so by more than this, in rad or in lengths of the curve.
-   real(wp), parameter :: varies = 1.0e-6_wp
+   real(wp), parameter :: least_variation = 1.0e-6_wp
    !> Height of the title of a drive with its legend, and width of a name in the legend, in pixels.
-   integer, parameter :: head = 56
-   real(wp), parameter :: room = 70.0_wp
-   !> Room on the left of the diagram, on its right, above and below it, and its height, in pixels.
-   real(wp), parameter :: left = 84.0_wp, right = 24.0_wp, above = 26.0_wp, below = 42.0_wp, height = 300.0_wp
-   integer, parameter :: chart_height = nint(above + height + below)
-   real(wp), parameter :: dot = 3.5_wp, ring = 6.0_wp, tick = 5.0_wp
+   integer, parameter :: legend_height = 56
+   real(wp), parameter :: legend_width = 70.0_wp
+   !> Pixels on the left of a diagram, on its right, above it and below it.
+   real(wp), parameter :: left_room = 84.0_wp, right_room = 24.0_wp, top_room = 26.0_wp, bottom_room = 42.0_wp
+   !> Pixels of the height of a diagram.
+   real(wp), parameter :: diagram_height = 300.0_wp
+   integer, parameter :: chart_height = nint(top_room + diagram_height + bottom_room)
+   real(wp), parameter :: dot_radius = 3.5_wp, ring_radius = 6.0_wp, tick_length = 5.0_wp
    !> An axis goes on by this part of its values, or of the largest of them where all are the same.
-   real(wp), parameter :: margin = 0.04_wp, least_margin = 4096.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: axis_margin = 0.04_wp, least_axis_margin = 4096.0_wp*epsilon(1.0_wp)
    !> Steps between ticks, in any power of ten, and of a turn in degrees; at most so many.
    real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp], turn_step = 45.0_wp
    integer, parameter :: most_ticks = 9
    !> The column of the angle of a link.
-   integer, parameter :: phi = 3
+   integer, parameter :: angle_column = 3
    !> The middle of the angles of a curve lies within half a turn of this (rad): a whole turn goes from 0 up.
    real(wp), parameter :: middle_angle = 10.0_wp*degree
    !> Two curves that are nowhere farther apart than this (pixels) are equal, seen at so many points; they are drawn in
    !> dashes of this length, in turn.
-   real(wp), parameter :: same_line = 1.0_wp, dash = 9.0_wp
+   real(wp), parameter :: same_line_distance = 1.0_wp, dash_length = 9.0_wp
    integer, parameter :: seen_points = 60
 
 contains
@@ -68,21 +70,22 @@ contains
          associate (top => real(page%height, wp))
             call put_words(page%body, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', &
                trim(whole(m%set_number)//'.  '//m%title))
-            do k = 1, min(size(found(i)%list), int((real(width, wp) - 20.0_wp)/room))
-               call put_words(page%body, [14.0_wp + room*real(k - 1, wp), top + 44.0_wp], 'start', &
+            do k = 1, min(size(found(i)%list), int((real(width, wp) - 20.0_wp)/legend_width))
+               call put_words(page%body, [14.0_wp + legend_width*real(k - 1, wp), top + 44.0_wp], 'start', &
                   'style="fill:'//color_of(k)//'"', phrase(say_circuit, m%polish)//' '//whole(k))
             end do
          end associate
-         page%height = page%height + head
+         page%height = page%height + legend_height
          associate (own => set%now%parts(found(i)%part))
             do k = 1, merge(size(own%requests), 0, size(found(i)%list) > 0)
                associate (r => own%requests(k))
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
                   ! Of a link that turns its angle alone.
-                  if (r%kind == request_link) call put_chart(page, set, own, found(i), r, phi, does_vary)
+                  if (r%kind == request_link) call put_chart(page, set, own, found(i), r, angle_column, does_vary)
                   if (does_vary) cycle
-                  do column = 1, min(forms(form_of(own, r))%coordinates, merge(phi - 1, phi, r%kind == request_link))
+                  do column = 1, min(forms(form_of(own, r))%coordinates, &
+                     merge(angle_column - 1, angle_column, r%kind == request_link))
                      call put_chart(page, set, own, found(i), r, column, does_vary)
                   end do
                end associate
@@ -104,8 +107,9 @@ contains
       character(3), parameter :: columns(3) = ['X  ', 'Y  ', 'PHI']
       character(*), parameter :: thin = 'style="stroke:#222;stroke-width:1"'
       ! From a side to the end of a tick, and to its number.
-      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
-      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
+      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick_length, -tick_length, 0.0_wp], [2, 2])
+      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick_length + 13.0_wp, &
+         -tick_length - 4.0_wp, 4.0_wp], [2, 2])
       character(6), parameter :: anchors(2) = ['middle', 'end   ']
       type(chart_curve_t) :: curves(size(found%list))
       character(:), allocatable :: name, drive_words, style
@@ -130,24 +134,24 @@ contains
       high = -huge(high)
       do i = 1, size(curves)
          associate (points => found%list(i)%points, curve => curves(i))
-            allocate (curve%p(2, size(points)))
+            allocate (curve%places(2, size(points)))
             do k = 1, size(points)
                q%position = deck_position(found%curve, points(k)%q)
                call find_row(m, q, request, row)
                at = [drive_value(found%curve, points(k)%value(0) + found%list(i)%shift), row%value(column, 0)]
-               curve%p(:, k) = at/unit
+               curve%places(:, k) = at/unit
             end do
             if (angular(2)) then
-               associate (middle => 0.5_wp*(minval(curve%p(2, :)) + maxval(curve%p(2, :)))*unit(2))
-                  curve%p(2, :) = curve%p(2, :) &
+               associate (middle => 0.5_wp*(minval(curve%places(2, :)) + maxval(curve%places(2, :)))*unit(2))
+                  curve%places(2, :) = curve%places(2, :) &
                      + (wrap_angle(middle - middle_angle) - (middle - middle_angle))/unit(2)
                end associate
             end if
-            low = min(low, minval(curve%p, dim=2))
-            high = max(high, maxval(curve%p, dim=2))
+            low = min(low, minval(curve%places, dim=2))
+            high = max(high, maxval(curve%places, dim=2))
          end associate
       end do
-      does_vary = unit(2)*(high(2) - low(2)) > varies*merge(1.0_wp, found%curve%closure%length, angular(2))
+      does_vary = unit(2)*(high(2) - low(2)) > least_variation*merge(1.0_wp, found%curve%closure%length, angular(2))
       associate (drive => m%drives(found%drive))
          if (.not. does_vary .or. (column == 3 .and. request%kind == request_link .and. drive%kind == drive_angle &
             .and. drive%subject == request%subject)) return
@@ -161,15 +165,15 @@ contains
          name = trim(merge('FI ', columns(column), column == 3 .and. m%polish))//' '//name
       start = [drive_value(found%curve, found%curve%first)/unit(1), 0.0_wp] - 0.5_wp*turn
       do k = 1, 2
-         beyond = max(margin*(high(k) - low(k)), least_margin*max(abs(low(k)), abs(high(k)), 1.0_wp))
+         beyond = max(axis_margin*(high(k) - low(k)), least_axis_margin*max(abs(low(k)), abs(high(k)), 1.0_wp))
          if (high(k) - low(k) < turn(k)*(1.0_wp - 1.0e-6_wp)) turn(k) = 0.0_wp
          low(k) = merge(start(k), low(k) - beyond, turn(k) > 0.0_wp)
          high(k) = merge(start(k) + turn(k), high(k) + beyond, turn(k) > 0.0_wp)
       end do
 
       ! Ticks and numbers, below and on the left.
-      corner = [left, real(page%height, wp) + above]
-      extent = [real(width, wp) - left - right, height]
+      corner = [left_room, real(page%height, wp) + top_room]
+      extent = [real(width, wp) - left_room - right_room, diagram_height]
       page%height = page%height + chart_height
       call put_group(page%body, 'class="circuits" '//attribute('data-drive', drive_words), name)
       do k = 1, 2
@@ -197,9 +201,10 @@ contains
          color = color_of(i)
          style = 'class="curve" style="stroke:'//color//'"'
          equal = count(first == first(i))
-         if (equal > 1) style = style//' stroke-dasharray="'//fitted(dash)//' '//fitted(dash*(equal - 1)) &
-            //'" stroke-dashoffset="'//fitted(-dash*count(first(:i - 1) == first(i)))//'"'
-         associate (circuit => found%list(i), p => curves(i)%p)
+         if (equal > 1) style = style//' stroke-dasharray="' &
+            //fitted(dash_length)//' '//fitted(dash_length*(equal - 1)) &
+            //'" stroke-dashoffset="'//fitted(-dash_length*count(first(:i - 1) == first(i)))//'"'
+         associate (circuit => found%list(i), p => curves(i)%places)
             call put_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
                phrase(say_circuit, m%polish)//' '//whole(i))
             from = turns_of(minval(p, dim=2))
@@ -212,9 +217,9 @@ contains
             end do
             if (circuit%ends(1) == end_closed) n = n - 1
             do k = 1, n
-               if (circuit%points(k)%is_dead) call put_circle(page%body, in_window(p(:, k)), dot, &
+               if (circuit%points(k)%is_dead) call put_circle(page%body, in_window(p(:, k)), dot_radius, &
                   'class="dead" style="stroke:none;fill:'//color//'"')
-               if (circuit%points(k)%is_change) call put_circle(page%body, in_window(p(:, k)), ring, &
+               if (circuit%points(k)%is_change) call put_circle(page%body, in_window(p(:, k)), ring_radius, &
                   'class="change" style="fill:none;stroke:'//color//'"')
             end do
          end associate
@@ -232,8 +237,8 @@ contains
          integer, intent(in) :: i
 
          do first_equal = 1, i - 1
-            if (lies_on(pixels_of(curves(i)%p), pixels_of(curves(first_equal)%p)) .and. &
-               lies_on(pixels_of(curves(first_equal)%p), pixels_of(curves(i)%p))) exit
+            if (lies_on(pixels_of(curves(i)%places), pixels_of(curves(first_equal)%places)) .and. &
+               lies_on(pixels_of(curves(first_equal)%places), pixels_of(curves(i)%places))) exit
          end do
       end function first_equal
 
@@ -259,7 +264,7 @@ contains
                      end do
                   end do
                end do
-               if (least > same_line) return
+               if (least > same_line_distance) return
             end do
          end associate
          lies_on = .true.

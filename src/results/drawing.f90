@@ -18,16 +18,19 @@ module drawing
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
    public :: point_place, point_velocity, outline_t, outlines_of, hull, moved
 
-   !> Between the instants of a deck others are computed, so that the whole has at most this many intervals, or so many
-   !> for each turn of a drive. Reason: at ten degrees a step a path would have corners, and an animation leaps.
+   !> Between the instants of a deck others are computed, so that the motion has at most this many intervals. Reason: at
+   !> ten degrees a step a path would have corners, and an animation would leap.
    integer, parameter, public :: max_intervals = 360
+   !> If these are more, the motion has so many intervals for each turn of a drive.
    real(wp), parameter :: intervals_a_turn = 90.0_wp
-   !> All sets of a page have this many intervals, or those of the deck. Reason: the text of a page is held until its
-   !> last set is drawn.
+   !> All sets of a page have together this many intervals, or those of the deck. Reason: the text of a page is held
+   !> until its last set is drawn.
    integer, parameter :: max_in_all = 18000
-   !> There are at most this many frames, which hold at most this many positions of links, but two at least. Reason: a
-   !> picture of 800 pixels shows no more, and memory does not grow with the run.
-   integer, parameter :: max_frames = 3601, max_held = 200000
+   !> There are at most this many frames. Reason: a picture of 800 pixels shows no more.
+   integer, parameter :: max_frames = 3601
+   !> The frames hold at most this many positions of links, but there are two frames at least. Reason: memory does not
+   !> grow with the run.
+   integer, parameter :: max_held = 200000
    !> An animation shows at most this many positions of links. Reason: it takes about 25 bytes for each.
    integer, parameter, public :: max_positions = 45000
    !> Paths that a picture shows, at most.
@@ -35,8 +38,9 @@ module drawing
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
-   !> Points of a link closer than this part of the link's extent are one.
-   real(wp), parameter :: same_place = 1.0e-6_wp
+   !> Points of a link closer than this part of the link's extent are one. Corners whose angle has a smaller sine are in
+   !> line.
+   real(wp), parameter :: same_corner = 1.0e-6_wp
 
    !> The shape of a link for the eye: the convex hull of its points, in its own axes.
    type :: outline_t
@@ -45,7 +49,7 @@ module drawing
 
    !> The position of all links at one instant, and why it is flagged.
    type :: snapshot_t
-      real(wp) :: t = 0.0_wp
+      real(wp) :: t = 0.0_wp                 !< the time, in the deck's unit
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
       real(wp), allocatable :: rate(:)       !< (links) of phi; 0 where it is not known
       real(wp), allocatable :: velocity(:, :)   !< (2, links) for arrows; 0 where it is not known
@@ -53,26 +57,26 @@ module drawing
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
       integer :: mark = mark_none            !< of the first part that is flagged
-      integer :: singularity = singular_unclear   !< what the position is, of mark_singular
+      integer :: singularity = singular_unclear   !< of mark_singular: the kind of the position
    end type snapshot_t
 
    !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
    type :: guide_t
-      integer :: pair = 0
-      integer :: carrier = 0, block = 0      !< the links
+      integer :: pair = 0                    !< its number in the mechanism
+      integer :: carrier = 0, block = 0      !< the links with the line, and with the block
       integer :: point = 0                   !< the point of the block on the line
       integer :: pivot = 0                   !< the point of the carrier from which the slide is counted
       real(wp) :: foot(2) = 0.0_wp           !< of the pivot on the line, in the carrier's axes
       real(wp) :: angle = 0.0_wp             !< the direction of the line there (rad)
-      real(wp) :: block_angle = 0.0_wp       !< the same in the axes of the block (rad)
+      real(wp) :: block_angle = 0.0_wp       !< the direction of the line in the axes of the block (rad)
       integer :: sense = 1                   !< -1: the slide grows against the direction
       logical :: is_cylinder = .false.       !< the slide is the length of a cylinder, whose barrel is the carrier's
       real(wp) :: low = huge(1.0_wp), high = -huge(1.0_wp)   !< range of the block along the line, from the foot
    end type guide_t
 
-   !> What is recorded of the film `m` of a set.
+   !> The record of the film of a set.
    type :: drawing_t
-      type(mechanism_t) :: m
+      type(mechanism_t) :: mechanism         !< the film
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       type(outline_t), allocatable :: outlines(:)   !< (links)
       integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
@@ -82,24 +86,24 @@ module drawing
       type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
       integer :: stride = 1                  !< every so many instants of TIME, and the last, are frames
-      type(snapshot_t), allocatable :: frame(:)
-      integer :: frames = 0, films = 0       !< recorded so far; those of TIME, which come first
+      type(snapshot_t), allocatable :: frame(:)   !< (frames) recorded so far, and room for further ones
+      integer :: frames = 0                  !< how many are recorded so far
+      integer :: films = 0                   !< how many of these are of TIME; they come first
       integer, allocatable :: own(:)         !< the numbers of frames that the picture may show in full
       type(snapshot_t) :: now                !< the last known position of each link
-      integer :: flagged = 0                 !< instants
+      integer :: flagged = 0                 !< how many instants are flagged
       type(snapshot_t) :: flag               !< the first of them
    end type drawing_t
 
 contains
 
-   !> Makes the `film` of `m`: `m` at instants that are dense enough to be drawn, those of TIME and others between them,
-   !> or without TIME others between the first and the last of AT. `every`: each so many instants of the film's TIME are
-   !> the deck's; 0: none. `sets`: how many sets the page has.
+   !> Makes the film of a mechanism: the mechanism at instants that are dense enough to be drawn. These are the instants
+   !> of TIME and others between them, or without TIME others between the first and the last of AT.
    subroutine film_of(m, sets, film, every)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: sets
+      type(mechanism_t), intent(in) :: m     !< as the deck has it
+      integer, intent(in) :: sets            !< how many sets the page has
       type(mechanism_t), intent(out) :: film
-      integer, intent(out) :: every
+      integer, intent(out) :: every          !< each so many instants of the film's TIME are the deck's; 0: none
       integer :: intervals, i
       real(wp) :: turns
 
@@ -125,17 +129,17 @@ contains
       end if
    end subroutine film_of
 
-   !> Returns a drawing of the film `m` without a frame. `every`: as in `film_of`.
+   !> Makes a drawing of a film without a frame.
    function new_drawing(m, every, has_arrows, has_centrodes) result(d)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: every
+      type(mechanism_t), intent(in) :: m     !< the film
+      integer, intent(in) :: every           !< each so many instants of its TIME are the deck's; 0: none
       logical, intent(in) :: has_arrows      !< the velocities of points are drawn
       logical, intent(in) :: has_centrodes   !< the centrodes of poles are drawn
       type(drawing_t) :: d
       real(wp) :: angles(2)
       integer :: ends(2), i, k, most
 
-      d%m = m
+      d%mechanism = m
       d%every = every
       d%has_arrows = has_arrows
       d%has_centrodes = has_centrodes
@@ -150,9 +154,9 @@ contains
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(has_guide(m%pairs%kind))))
       d%guides%pair = pack([(i, i=1, size(m%pairs))], has_guide(m%pairs%kind))
-      ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. Where link j
-      ! is ground, or link i has no extent, the same pair is a guide of link j: P slides along the line through
-      ! Q + h n.
+
+      ! A guide belongs to link i of its pair: Q - P = s e - h n, eq. (9), lies on a line through P - h n. If link j is
+      ! ground, or link i has no extent, the guide belongs to link j: P slides along the line through Q + h n.
       do i = 1, size(d%guides)
          associate (g => d%guides(i), pair => m%pairs(d%guides(i)%pair))
             ends = [pair%point_i, pair%point_j]
@@ -164,6 +168,7 @@ contains
             ! Only a cylinder has its direction from the drawing.
             g%is_cylinder = pair%drawn(1)
             if (g%is_cylinder) k = 1
+
             g%pivot = ends(k)
             g%point = ends(3 - k)
             g%carrier = m%points(g%pivot)%link
@@ -181,45 +186,45 @@ contains
       allocate (d%frame(count([(is_frame(d, i), i=0, instant_count(m) - 1)])))
    end function new_drawing
 
-   !> Whether instant number `k` (0, 1, ...) is a frame: of TIME, or of AT if the deck has no TIME.
+   !> Tells whether an instant is a frame. The instants of AT are frames only if the deck has no TIME.
    pure logical function is_frame(drawing, k)
       type(drawing_t), intent(in) :: drawing
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< the number of the instant, from 0
 
-      is_frame = mod(k, drawing%stride) == 0 .or. k == drawing%m%steps
-      if (k > drawing%m%steps) is_frame = drawing%every == 0
+      is_frame = mod(k, drawing%stride) == 0 .or. k == drawing%mechanism%steps
+      if (k > drawing%mechanism%steps) is_frame = drawing%every == 0
    end function is_frame
 
-   !> The ground links where the deck has them; the others are not known.
+   !> Gives the position at which only the ground links are known: they are where the deck has them.
    pure function snapshot_of_ground(drawing) result(s)
       type(drawing_t), intent(in) :: drawing
       type(snapshot_t) :: s
       integer :: i
 
-      allocate (s%place(3, size(drawing%m%links)), s%rate(size(drawing%m%links)), s%centre(2, size(drawing%poles)), &
-         source=0.0_wp)
+      allocate (s%place(3, size(drawing%mechanism%links)), s%rate(size(drawing%mechanism%links)), &
+         s%centre(2, size(drawing%poles)), source=0.0_wp)
       allocate (s%has_centre(size(drawing%poles)), source=.false.)
-      if (drawing%has_arrows) allocate (s%velocity(2, size(drawing%m%links)), source=0.0_wp)
-      s%known = drawing%m%links%ground
-      do i = 1, size(drawing%m%links)
-         if (s%known(i)) s%place(:, i) = drawing%m%links(i)%position - [drawing%origin, 0.0_wp]
+      if (drawing%has_arrows) allocate (s%velocity(2, size(drawing%mechanism%links)), source=0.0_wp)
+      s%known = drawing%mechanism%links%ground
+      do i = 1, size(drawing%mechanism%links)
+         if (s%known(i)) s%place(:, i) = drawing%mechanism%links(i)%position - [drawing%origin, 0.0_wp]
       end do
    end function snapshot_of_ground
 
-   !> Takes what is drawn of instant number `k` (0, 1, ...) of the motion `motions`.
+   !> Records an instant of a motion: its frame, the ranges of guides, and whether it is flagged.
    subroutine record_instant(drawing, motions, k)
       type(drawing_t), intent(inout) :: drawing
-      type(set_motion_t), intent(in) :: motions
-      integer, intent(in) :: k
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      integer, intent(in) :: k               !< the number of the instant, from 0
       type(snapshot_t) :: now
       logical :: is_own
       real(wp) :: along
       integer :: i
 
-      is_own = k > drawing%m%steps
+      is_own = k > drawing%mechanism%steps
       if (.not. is_own .and. drawing%every > 0) is_own = mod(k, drawing%every) == 0
       ! The instants of a deck without TIME are a motion of their own.
-      if (drawing%every == 0 .and. k == drawing%m%steps + 1) drawing%now = snapshot_of_ground(drawing)
+      if (drawing%every == 0 .and. k == drawing%mechanism%steps + 1) drawing%now = snapshot_of_ground(drawing)
       call find_snapshot()
       drawing%now%t = now%t
       drawing%now%centre = now%centre
@@ -232,8 +237,8 @@ contains
       do i = 1, size(drawing%guides)
          associate (g => drawing%guides(i))
             if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
-            along = dot_product(point_place(drawing%m, now, g%point) - point_place(drawing%m, now, g%pivot), &
-               direction(now%place(3, g%carrier) + g%angle))
+            along = dot_product(point_place(drawing%mechanism, now, g%point) &
+               - point_place(drawing%mechanism, now, g%pivot), direction(now%place(3, g%carrier) + g%angle))
             g%low = min(g%low, along)
             g%high = max(g%high, along)
          end associate
@@ -243,15 +248,16 @@ contains
          if (drawing%flagged == 0) drawing%flag = now
          drawing%flagged = drawing%flagged + 1
       end if
+
       if (.not. is_frame(drawing, k)) return
       drawing%frames = drawing%frames + 1
       drawing%frame(drawing%frames) = now
-      if (k <= drawing%m%steps) drawing%films = drawing%frames
+      if (k <= drawing%mechanism%steps) drawing%films = drawing%frames
       if (is_own) drawing%own = [drawing%own, drawing%frames]
 
    contains
 
-      !> The position of all links `now`, with the marks of an instant that `is_own` of the deck.
+      !> Finds the position of all links, with the marks of an instant of the deck.
       subroutine find_snapshot()
          type(row_t) :: row
          integer :: c, i
@@ -264,8 +270,9 @@ contains
                   now%mark = q%mark
                   now%singularity = q%singularity
                end if
+
                do i = 1, size(links)
-                  if (drawing%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
+                  if (drawing%mechanism%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                   now%place(:, links(i)) = q%position(:, i) + [q%origin - drawing%origin, 0.0_wp]
                   now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
                   if (known_of(q, i) == 0) cycle
@@ -274,6 +281,7 @@ contains
                end do
             end associate
          end do
+
          do i = 1, size(drawing%poles)
             call find_row_in_set(motions, drawing%poles(i), row)
             now%has_centre(i) = all(abs(row%value(:2, :)) < max_place) .and. cell_number &
@@ -283,30 +291,30 @@ contains
       end subroutine find_snapshot
    end subroutine record_instant
 
-   !> Place (2) of point number `i` at the position `snapshot`.
+   !> Gives the place (2) of a point at a position.
    pure function point_place(m, snapshot, i) result(p)
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: snapshot
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the point
       real(wp) :: p(2)
 
       p = point_of(snapshot%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
 
-   !> Velocity (2) of point number `i` at the position `snapshot` of a drawing with arrows; 0 where it is not known.
+   !> Gives the velocity (2) of a point at a position; 0 if it is not known.
    pure function point_velocity(m, snapshot, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: snapshot
-      integer, intent(in) :: i
+      type(snapshot_t), intent(in) :: snapshot   !< of a drawing with arrows
+      integer, intent(in) :: i               !< the number of the point
       real(wp) :: v(2)
 
       associate (link => m%points(i)%link)
-         v = snapshot%velocity(:, link) + snapshot%rate(link)*quarter_turn(point_place(m, snapshot, &
-            i) - snapshot%place(:2, link))
+         v = snapshot%velocity(:, link) &
+            + snapshot%rate(link)*quarter_turn(point_place(m, snapshot, i) - snapshot%place(:2, link))
       end associate
    end function point_velocity
 
-   !> The outlines (links) of all links of `m`, in one pass over its points.
+   !> Finds the outlines (links) of all links of a mechanism, in one pass over its points.
    pure function outlines_of(m) result(list)
       type(mechanism_t), intent(in) :: m
       type(outline_t) :: list(size(m%links))
@@ -323,9 +331,10 @@ contains
       end do
    end function outlines_of
 
-   !> The places `p` (2, :) of the axes of a link at `position` (x, y, phi).
+   !> Moves places from the axes of a link to the plane.
    pure function moved(p, position) result(q)
-      real(wp), intent(in) :: p(:, :), position(3)
+      real(wp), intent(in) :: p(:, :)        !< (2, places) in the axes of the link
+      real(wp), intent(in) :: position(3)    !< of the link: x, y (lengths), phi (rad)
       real(wp) :: q(2, size(p, 2))
       integer :: k
 
@@ -334,9 +343,9 @@ contains
       end do
    end function moved
 
-   !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.
+   !> Finds the corners of the convex hull of points, counterclockwise, by Jarvis's march; corners in line are left out.
    pure function hull(p) result(corners)
-      real(wp), intent(in) :: p(:, :)
+      real(wp), intent(in) :: p(:, :)        !< (2, points) lengths
       real(wp), allocatable :: corners(:, :)
       integer :: order(size(p, 2)), start, last, next, i, n
       real(wp) :: near, side
@@ -345,7 +354,7 @@ contains
          corners = p
          return
       end if
-      near = same_place*maxval(maxval(p, dim=2) - minval(p, dim=2))
+      near = same_corner*maxval(maxval(p, dim=2) - minval(p, dim=2))
       start = minloc(p(2, :), dim=1, mask=p(1, :) <= minval(p(1, :)))
       n = 0
       last = start
@@ -362,7 +371,7 @@ contains
             ! The sine of the angle from the next place to this one.
             associate (u => p(:, next) - p(:, last), v => p(:, i) - p(:, last))
                side = cross(u/norm2(u), v/norm2(v))
-               if (side < -same_place .or. (side <= same_place .and. norm2(v) > norm2(u))) next = i
+               if (side < -same_corner .or. (side <= same_corner .and. norm2(v) > norm2(u))) next = i
             end associate
          end do
          if (next == 0 .or. n == size(p, 2)) exit

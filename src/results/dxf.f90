@@ -19,16 +19,16 @@ module dxf
    !> The path of a point.
    type :: point_path_t
       integer :: request = 0                 !< the row of the point, among the requests of the set
-      real(wp), allocatable :: p(:, :)       !< (2, instants) in the deck's coordinates
+      real(wp), allocatable :: places(:, :)  !< (2, instants) in the deck's coordinates
       logical, allocatable :: known(:)       !< (instants)
       type(motion_t), allocatable :: first(:)   !< (parts) the motions at the first instant; of the first path alone
       logical :: is_closed = .false.         !< the motion of the set closes; of the first path alone
    end type point_path_t
 
    !> Significant digits of a number.
-   integer, parameter :: digits = 12
+   integer, parameter :: significant_digits = 12
    !> The radius of the circle of a joint, in characteristic lengths.
-   real(wp), parameter :: joint_radius = 0.015_wp
+   real(wp), parameter :: circle_radius = 0.015_wp
 
 contains
 
@@ -48,7 +48,7 @@ contains
             cycle
          count = count + 1
          paths(count)%request = i
-         allocate (paths(count)%p(2, instants), paths(count)%known(instants))
+         allocate (paths(count)%places(2, instants), paths(count)%known(instants))
       end do
       paths = paths(:count)
       if (count > 0) allocate (paths(1)%first(motions%count))
@@ -66,7 +66,7 @@ contains
 
       do i = 1, size(paths)
          call find_row_in_set(motions, paths(i)%request, row)
-         paths(i)%p(:, k + 1) = row%value(:2, 0)
+         paths(i)%places(:, k + 1) = row%value(:2, 0)
          paths(i)%known(k + 1) = row%known >= 0
       end do
       if (size(paths) == 0) return
@@ -113,13 +113,13 @@ contains
       do i = 1, size(paths)
          call put_path(o, layer//'PATHS', paths(i), paths(1)%is_closed)
       end do
-      associate (m => drawing%m, s => drawing%frame(1))
+      associate (m => drawing%mechanism, s => drawing%frame(1))
          do i = 1, size(m%pairs)
             if (has_guide(m%pairs(i)%kind) .or. .not. s%known(m%points(m%pairs(i)%point_i)%link)) cycle
             call put_pair(o, 0, 'CIRCLE')
             call put_pair(o, 8, layer//'JOINTS')
             call put_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + drawing%origin)
-            call put_number(o, 40, joint_radius*characteristic_length(m))
+            call put_number(o, 40, circle_radius*characteristic_length(m))
          end do
          ! The sides of links; a bar has one.
          do i = 1, size(m%links)
@@ -165,7 +165,7 @@ contains
             do k = first, last
                call put_pair(o, 0, 'VERTEX')
                call put_pair(o, 8, layer)
-               call put_place(o, 0, path%p(:, k))
+               call put_place(o, 0, path%places(:, k))
             end do
             call put_pair(o, 0, 'SEQEND')
             call put_pair(o, 8, layer)
@@ -203,7 +203,7 @@ contains
       integer, intent(in) :: code
       real(wp), intent(in) :: value
 
-      call put_pair(o, code, rounded(value, digits, 1.0e-3_wp, 1.0e9_wp))
+      call put_pair(o, code, rounded(value, significant_digits, 1.0e-3_wp, 1.0e9_wp))
    end subroutine put_number
 
    !> Writes a pair of DXF: a group code and its value.

@@ -11,13 +11,13 @@ module labels
    public :: labels_of, clear_of_point
 
    !> A picture of more links or points than this has no names: they would cover it.
-   integer, parameter :: max_names = 120
+   integer, parameter :: max_named = 120
    !> Points closer than this, in pixels, have one name.
-   real(wp), parameter :: together = 2.0_wp
+   real(wp), parameter :: same_name_distance = 2.0_wp
    !> How far names stay from what is drawn, in pixels. The name of a link must not seem to be that of another.
    real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
    !> Where along a bar its name may stand, in parts of its length.
-   real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
+   real(wp), parameter :: name_places(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
 
 contains
 
@@ -28,8 +28,8 @@ contains
       integer :: used
 
       used = 0
-      allocate (labels(size(canvas%m%points) + size(canvas%m%links)))
-      if (max(size(canvas%m%links), size(canvas%m%points)) <= max_names) then
+      allocate (labels(size(canvas%mechanism%points) + size(canvas%mechanism%links)))
+      if (max(size(canvas%mechanism%links), size(canvas%mechanism%points)) <= max_named) then
          call name_points(canvas, labels, used)
          call name_links(canvas, labels, used)
       end if
@@ -44,33 +44,35 @@ contains
       type(canvas_t), intent(inout) :: canvas
       type(label_t), intent(inout) :: labels(:)
       integer, intent(inout) :: used         !< so many are found
-      logical, dimension(size(canvas%m%points)) :: open, printed
-      real(wp) :: p(2, size(canvas%m%points))
+      logical, dimension(size(canvas%mechanism%points)) :: open, printed
+      real(wp) :: p(2, size(canvas%mechanism%points))
       integer :: i, best
 
-      open = .not. canvas%m%links(canvas%m%points%link)%ground
-      do i = 1, size(canvas%m%pairs)
-         if (.not. has_guide(canvas%m%pairs(i)%kind)) open([canvas%m%pairs(i)%point_i, canvas%m%pairs(i)%point_j]) = &
-            .true.
+      open = .not. canvas%mechanism%links(canvas%mechanism%points%link)%ground
+      do i = 1, size(canvas%mechanism%pairs)
+         if (.not. has_guide(canvas%mechanism%pairs(i)%kind)) &
+            open([canvas%mechanism%pairs(i)%point_i, canvas%mechanism%pairs(i)%point_j]) = .true.
       end do
-      open = open .and. .not. canvas%m%links(canvas%m%points%link)%hidden
-      open = open .and. canvas%s%known(canvas%m%points%link)
+      open = open .and. .not. canvas%mechanism%links(canvas%mechanism%points%link)%hidden
+      open = open .and. canvas%snapshot%known(canvas%mechanism%points%link)
       printed = .false.
-      printed(pack(canvas%m%requests%subject, canvas%m%requests%kind == request_point &
-         .and. .not. is_listed_alone(canvas%m%requests))) = .true.
-      do i = 1, size(canvas%m%points)
-         if (open(i)) p(:, i) = to_pixels(canvas, point_place(canvas%m, canvas%s, i))
+      printed(pack(canvas%mechanism%requests%subject, canvas%mechanism%requests%kind == request_point &
+         .and. .not. is_listed_alone(canvas%mechanism%requests))) = .true.
+      do i = 1, size(canvas%mechanism%points)
+         if (open(i)) p(:, i) = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, i))
       end do
       do while (any(open))
-         best = minloc(len_trim(canvas%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
-         do i = 1, size(canvas%m%points)
-            if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
+         best = minloc(len_trim(canvas%mechanism%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
+         do i = 1, size(canvas%mechanism%points)
+            if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > same_name_distance)
          end do
-         if (canvas%m%points(best)%name == canvas%m%links(canvas%m%points(best)%link)%name) cycle
+         if (canvas%mechanism%points(best)%name == &
+            canvas%mechanism%links(canvas%mechanism%points(best)%link)%name) cycle
          used = used + 1
          labels(used)%attributes = 'class="name"'
-         labels(used)%link = canvas%m%points(best)%link
-         call place_name(canvas, p(:, best:best), clear_of_point, trim(canvas%m%points(best)%name), labels(used))
+         labels(used)%link = canvas%mechanism%points(best)%link
+         call place_name(canvas, p(:, best:best), clear_of_point, &
+            trim(canvas%mechanism%points(best)%name), labels(used))
       end do
    end subroutine name_points
 
@@ -83,24 +85,25 @@ contains
       real(wp), allocatable :: corners(:, :), p(:, :)
       integer :: i, j, k, n, places
 
-      do i = 1, size(canvas%m%links)
-         if (canvas%m%links(i)%ground .or. canvas%m%links(i)%hidden .or. .not. canvas%s%known(i)) cycle
-         corners = moved(canvas%d%outlines(i)%corner, canvas%s%place(:, i))
+      do i = 1, size(canvas%mechanism%links)
+         if (canvas%mechanism%links(i)%ground .or. canvas%mechanism%links(i)%hidden .or. &
+            .not. canvas%snapshot%known(i)) cycle
+         corners = moved(canvas%drawing%outlines(i)%corner, canvas%snapshot%place(:, i))
          n = size(corners, 2)
          if (n == 0) cycle
-         places = merge(size(along), 1, n > 1)
+         places = merge(size(name_places), 1, n > 1)
          allocate (p(2, places*n))
          do k = 1, n
             associate (side => corners(:, 1 + modulo(k, n)) - corners(:, k))
                do j = 1, places
-                  p(:, places*(k - 1) + j) = to_pixels(canvas, corners(:, k) + along(j)*side)
+                  p(:, places*(k - 1) + j) = to_pixels(canvas, corners(:, k) + name_places(j)*side)
                end do
             end associate
          end do
          used = used + 1
          labels(used)%attributes = 'class="link" style="fill:'//color_of(i)//'"'
          labels(used)%link = i
-         call place_name(canvas, p, clear_of_link, trim(canvas%m%links(i)%name), labels(used))
+         call place_name(canvas, p, clear_of_link, trim(canvas%mechanism%links(i)%name), labels(used))
          deallocate (p)
       end do
    end subroutine name_links

@@ -20,7 +20,7 @@ module picture
    public :: put_picture, clearest, faint_frames
 
    !> The arrow of a drive is a line of so many pieces, the last ones its tip.
-   integer, parameter :: pieces = 10, of_tip = 2
+   integer, parameter :: arrow_pieces = 10, tip_pieces = 2
    !> Its pixels: length of a straight one, its distance aside, half the tip; radius of an arc.
    real(wp), parameter :: arrow_length = 45.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
       tip_half = 4.5_wp, arc_radius = 24.0_wp
@@ -28,17 +28,17 @@ module picture
    real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
    !> The longest arrow of a velocity, and its tip (pixels).
-   real(wp), parameter :: longest_arrow = 55.0_wp, tip_length = 9.0_wp
+   real(wp), parameter :: longest_velocity = 55.0_wp, tip_length = 9.0_wp
    !> The weight of an arrow for names.
    real(wp), parameter :: arrow_weight = 3.0_wp
 
    !> The first frame is drawn in full that is so wide across, in parts of the widest. Reason: the first instant is what
    !> a reader expects, and rounding errors must not choose.
-   real(wp), parameter :: wide = 0.7_wp
+   real(wp), parameter :: clear_width = 0.7_wp
    !> A picture has this many faint positions at most and at least, and about this many faint links.
    integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
    !> Positions that differ by less than this part of the mechanism would cover one another.
-   real(wp), parameter :: alike = 0.03_wp
+   real(wp), parameter :: same_position_part = 0.03_wp
 
 contains
 
@@ -63,17 +63,17 @@ contains
       call make_canvas(page, drawing, s, faint, c)
 
       list = shapes_of(drawing, c%scale)
-      call put_window(c%o, c%low, c%high)
-      call put_group(c%o, 'class="faint"', '')
+      call put_window(c%output, c%low, c%high)
+      call put_group(c%output, 'class="faint"', '')
       do k = 1, size(faint)
          call put_outlines(c, list, drawing%frame(faint(k)))
       end do
-      call put_end(c%o, 'g')
+      call put_end(c%output, 'g')
       do k = 1, size(list)
          call put_shape(c, list(k))
          call note_shape(c, list(k))
       end do
-      call put_end(c%o, 'svg')
+      call put_end(c%output, 'svg')
       call put_drives(c)
       if (drawing%has_arrows) call put_velocities(c)
       do k = 1, size(drawing%poles)
@@ -85,7 +85,7 @@ contains
       end do
 
       ! At the foot: the instant that is drawn in full.
-      if (size(drawing%own) > 0) call put_words(c%o, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
+      if (size(drawing%own) > 0) call put_words(c%output, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
          caption(c, s%t))
       call put_foot(c)
    end subroutine put_picture
@@ -97,28 +97,28 @@ contains
       real(wp) :: f(0:2), sense
       integer :: i, k
 
-      do i = 1, size(canvas%m%drives)
-         associate (drive => canvas%m%drives(i), known => canvas%s%known)
-            f = drive_motion(drive, canvas%s%t)
+      do i = 1, size(canvas%mechanism%drives)
+         associate (drive => canvas%mechanism%drives(i), known => canvas%snapshot%known)
+            f = drive_motion(drive, canvas%snapshot%t)
             sense = sign(1.0_wp, f(2))
             if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
-            call put_group(canvas%o, 'class="drives"', trim(drive_name(canvas%m, drive)))
+            call put_group(canvas%output, 'class="drives"', trim(drive_name(canvas%mechanism, drive)))
             select case (drive%kind)
             case (drive_angle)
                if (known(drive%subject)) call put_arc(0, drive%subject, sense)
             case (drive_relangle)
                if (known(drive%subject) .and. known(drive%second)) call put_arc(drive%subject, drive%second, sense)
             case (drive_x, drive_y)
-               if (known(canvas%m%points(drive%subject)%link)) call put_arrow(drive%subject, &
+               if (known(canvas%mechanism%points(drive%subject)%link)) call put_arrow(drive%subject, &
                   sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x))
             case (drive_slide)
-               k = findloc(canvas%d%guides%pair, drive%subject, dim=1)
-               associate (g => canvas%d%guides(k))
+               k = findloc(canvas%drawing%guides%pair, drive%subject, dim=1)
+               associate (g => canvas%drawing%guides(k))
                   if (known(g%carrier) .and. known(g%block)) call put_arrow(g%point, &
-                     sense*real(g%sense, wp)*direction(canvas%s%place(3, g%carrier) + g%angle))
+                     sense*real(g%sense, wp)*direction(canvas%snapshot%place(3, g%carrier) + g%angle))
                end associate
             end select
-            call put_end(canvas%o, 'g')
+            call put_end(canvas%output, 'g')
          end associate
       end do
 
@@ -129,30 +129,31 @@ contains
       subroutine put_arc(base, link, sense)
          integer, intent(in) :: base, link
          real(wp), intent(in) :: sense
-         real(wp) :: center(2), start, e(2), lines(2, 0:pieces, size(arc_starts))
+         real(wp) :: center(2), start, e(2), lines(2, 0:arrow_pieces, size(arc_starts))
          integer :: i, k, ends(2), point
 
          point = 0
-         do i = 1, size(canvas%m%pairs)
-            ends = [canvas%m%pairs(i)%point_i, canvas%m%pairs(i)%point_j]
-            k = findloc(canvas%m%points(ends)%link, link, dim=1)
-            if (has_guide(canvas%m%pairs(i)%kind) .or. k == 0) cycle
-            associate (other => canvas%m%points(ends(3 - k))%link)
-               if (point == 0 .or. other == base .or. (base == 0 .and. canvas%m%links(other)%ground)) point = ends(k)
+         do i = 1, size(canvas%mechanism%pairs)
+            ends = [canvas%mechanism%pairs(i)%point_i, canvas%mechanism%pairs(i)%point_j]
+            k = findloc(canvas%mechanism%points(ends)%link, link, dim=1)
+            if (has_guide(canvas%mechanism%pairs(i)%kind) .or. k == 0) cycle
+            associate (other => canvas%mechanism%points(ends(3 - k))%link)
+               if (point == 0 .or. other == base .or. &
+                  (base == 0 .and. canvas%mechanism%links(other)%ground)) point = ends(k)
             end associate
          end do
-         center = canvas%s%place(:2, link)
-         if (point > 0) center = point_place(canvas%m, canvas%s, point)
-         start = canvas%s%place(3, link)
-         associate (corners => moved(canvas%d%outlines(link)%corner, canvas%s%place(:, link)))
+         center = canvas%snapshot%place(:2, link)
+         if (point > 0) center = point_place(canvas%mechanism, canvas%snapshot, point)
+         start = canvas%snapshot%place(3, link)
+         associate (corners => moved(canvas%drawing%outlines(link)%corner, canvas%snapshot%place(:, link)))
             if (size(corners, 2) > 1) then
                e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
                if (canvas%scale*norm2(e) > 1.0_wp) start = atan2(e(2), e(1))
             end if
          end associate
          do k = 1, size(arc_starts)
-            do i = 0, pieces
-               e = direction(start + sense*degree*(arc_starts(k) + arc_angle*real(i, wp)/real(pieces, wp)))
+            do i = 0, arrow_pieces
+               e = direction(start + sense*degree*(arc_starts(k) + arc_angle*real(i, wp)/real(arrow_pieces, wp)))
                lines(:, i, k) = to_pixels(canvas, center) + arc_radius*[e(1), -e(2)]
             end do
          end do
@@ -164,15 +165,15 @@ contains
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
          real(wp), parameter :: asides(2) = arrow_aside*[1.0_wp, -1.0_wp]
-         real(wp) :: e(2), start(2), lines(2, 0:pieces, size(asides))
+         real(wp) :: e(2), start(2), lines(2, 0:arrow_pieces, size(asides))
          integer :: i, k
 
          e = sense*[1.0_wp, -1.0_wp]
          do k = 1, size(asides)
-            start = to_pixels(canvas, point_place(canvas%m, canvas%s, point)) - 0.5_wp*arrow_length*e &
+            start = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, point)) - 0.5_wp*arrow_length*e &
                + merge(asides(k), -asides(k), e(1) < 0.0_wp)*quarter_turn(e)
-            do i = 0, pieces
-               lines(:, i, k) = start + arrow_length*real(i, wp)/real(pieces, wp)*e
+            do i = 0, arrow_pieces
+               lines(:, i, k) = start + arrow_length*real(i, wp)/real(arrow_pieces, wp)*e
             end do
          end do
          call put_clearest(lines)
@@ -192,8 +193,9 @@ contains
             least = cover
             best = k
          end do
-         call put_arrow_line(canvas, reshape([lines(:, :pieces - of_tip, best), lines(:, pieces, best)], &
-            [2, 2 + pieces - of_tip]), 'class="drive"', 'class="tip"')
+         call put_arrow_line(canvas, &
+            reshape([lines(:, :arrow_pieces - tip_pieces, best), lines(:, arrow_pieces, best)], &
+            [2, 2 + arrow_pieces - tip_pieces]), 'class="drive"', 'class="tip"')
       end subroutine put_clearest
    end subroutine put_drives
 
@@ -206,8 +208,8 @@ contains
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
          e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
-         call put_line(canvas%o, 'polyline', line(:, :n - 1), of_line)
-         call put_line(canvas%o, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
+         call put_line(canvas%output, 'polyline', line(:, :n - 1), of_line)
+         call put_line(canvas%output, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
       end associate
       call add_lines(canvas, line, arrow_weight)
    end subroutine put_arrow_line
@@ -223,21 +225,23 @@ contains
       character(:), allocatable :: color, name
       real(wp) :: p(2)
 
-      if (.not. canvas%s%has_centre(i)) return
-      p = to_pixels(canvas, canvas%s%centre(:, i))
-      color = 'style="fill:'//link_color(canvas%m, canvas%m%requests(canvas%d%poles(i))%subject)//'"'
-      name = pole_name(canvas%m, canvas%d%poles(i))
+      if (.not. canvas%snapshot%has_centre(i)) return
+      p = to_pixels(canvas, canvas%snapshot%centre(:, i))
+      color = 'style="fill:'//link_color(canvas%mechanism, &
+         canvas%mechanism%requests(canvas%drawing%poles(i))%subject)//'"'
+      name = pole_name(canvas%mechanism, canvas%drawing%poles(i))
       if (any(p < canvas%low) .or. any(p > canvas%high)) then
-         associate (at => canvas%s%centre(:, i) + canvas%d%origin)
-            call put_words(canvas%o, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
-               phrase(say_centre_outside, canvas%m%polish)//': '//fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
+         associate (at => canvas%snapshot%centre(:, i) + canvas%drawing%origin)
+            call put_words(canvas%output, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
+               phrase(say_centre_outside, canvas%mechanism%polish)//': ' &
+               //fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
          end associate
          page%height = page%height + line_height
          return
       end if
-      call put_circle(canvas%o, p, radius, 'class="centre" style="stroke:' &
-         //link_color(canvas%m, canvas%m%requests(canvas%d%poles(i))%subject)//'"')
-      call put_circle(canvas%o, p, 1.0_wp, 'class="point"')
+      call put_circle(canvas%output, p, radius, 'class="centre" style="stroke:' &
+         //link_color(canvas%mechanism, canvas%mechanism%requests(canvas%drawing%poles(i))%subject)//'"')
+      call put_circle(canvas%output, p, 1.0_wp, 'class="point"')
       call add_box(canvas, p - radius, p + radius)
       label%attributes = 'class="link" '//color
       call place_name(canvas, reshape(p, [2, 1]), clear_of_point, name, label)
@@ -247,28 +251,29 @@ contains
    !> Draws the velocities of the points whose paths are drawn, as arrows, and their scale below that of lengths.
    subroutine put_velocities(canvas)
       type(canvas_t), intent(inout) :: canvas
-      real(wp) :: v(2, size(canvas%d%curves)), scale, p(2), tip(2)
+      real(wp) :: v(2, size(canvas%drawing%curves)), scale, p(2), tip(2)
       integer :: k
 
-      do k = 1, size(canvas%d%curves)
-         v(:, k) = point_velocity(canvas%m, canvas%s, canvas%d%curves(k))*[1.0_wp, -1.0_wp]
+      do k = 1, size(canvas%drawing%curves)
+         v(:, k) = point_velocity(canvas%mechanism, canvas%snapshot, canvas%drawing%curves(k))*[1.0_wp, -1.0_wp]
       end do
       if (.not. any(abs(v) > 0.0_wp)) return
-      scale = longest_arrow/maxval(norm2(v, dim=1))
-      do k = 1, size(canvas%d%curves)
+      scale = longest_velocity/maxval(norm2(v, dim=1))
+      do k = 1, size(canvas%drawing%curves)
          if (norm2(v(:, k))*scale < tip_length) cycle
-         associate (point => canvas%d%curves(k))
-            p = to_pixels(canvas, point_place(canvas%m, canvas%s, point))
-            call put_group(canvas%o, 'class="velocity" '//attribute('data-point', trim(canvas%m%points(point)%name)) &
+         associate (point => canvas%drawing%curves(k))
+            p = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, point))
+            call put_group(canvas%output, 'class="velocity" ' &
+               //attribute('data-point', trim(canvas%mechanism%points(point)%name)) &
                //' data-scale="'//full(scale)//'"', '')
             tip = p + scale*v(:, k)
             call put_arrow_line(canvas, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
                'class="arrow"', 'class="tip arrow"')
-            call put_end(canvas%o, 'g')
+            call put_end(canvas%output, 'g')
          end associate
       end do
-      call put_bar(canvas, canvas%high(2) + 36.0_wp, scale, trim(canvas%m%length_unit)//'/' &
-         //trim(canvas%m%time_unit), 'class="arrow"')
+      call put_bar(canvas, canvas%high(2) + 36.0_wp, scale, trim(canvas%mechanism%length_unit)//'/' &
+         //trim(canvas%mechanism%time_unit), 'class="arrow"')
    end subroutine put_velocities
 
    !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
@@ -283,7 +288,7 @@ contains
       known = [(count(drawing%frame(list(i))%known), i=1, size(list))]
       most = known == maxval(known)
       across = [(minval(sides_of(drawing, drawing%frame(list(i)))), i=1, size(list))]
-      best = list(findloc(most .and. across >= wide*maxval(across, mask=most), .true., dim=1))
+      best = list(findloc(most .and. across >= clear_width*maxval(across, mask=most), .true., dim=1))
    end function clearest
 
    !> The sides (2) of the box that the known moving links cover at the position `snapshot`.
@@ -295,8 +300,8 @@ contains
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      do i = 1, size(drawing%m%links)
-         if (drawing%m%links(i)%ground .or. .not. snapshot%known(i)) cycle
+      do i = 1, size(drawing%mechanism%links)
+         if (drawing%mechanism%links(i)%ground .or. .not. snapshot%known(i)) cycle
          associate (p => moved(drawing%outlines(i)%corner, snapshot%place(:, i)))
             low = min(low, minval(p, dim=2))
             high = max(high, maxval(p, dim=2))
@@ -316,11 +321,11 @@ contains
 
       allocate (list(0))
       n = max(min_faint, min(max_faint, faint_links/max(1, &
-         count(.not. (drawing%m%links%ground .or. drawing%m%links%hidden)))))
+         count(.not. (drawing%mechanism%links%ground .or. drawing%mechanism%links%hidden)))))
       do i = 0, n
          k = own(1 + i*(size(own) - 1)/n)
-         if (distance(drawing, k, best) < alike) cycle
-         if (any([(distance(drawing, k, list(j)) < alike, j=1, size(list))])) cycle
+         if (distance(drawing, k, best) < same_position_part) cycle
+         if (any([(distance(drawing, k, list(j)) < same_position_part, j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
@@ -337,8 +342,8 @@ contains
       if (any(drawing%frame(i)%known .neqv. drawing%frame(j)%known)) return
       distance = 0.0_wp
       extent = maxval(sides_of(drawing, drawing%frame(i)))
-      do k = 1, size(drawing%m%links)
-         if (drawing%m%links(k)%ground .or. .not. drawing%frame(i)%known(k)) cycle
+      do k = 1, size(drawing%mechanism%links)
+         if (drawing%mechanism%links(k)%ground .or. .not. drawing%frame(i)%known(k)) cycle
          associate (p => moved(drawing%outlines(k)%corner, drawing%frame(i)%place(:, k)), &
             q => moved(drawing%outlines(k)%corner, drawing%frame(j)%place(:, k)))
             if (size(p) > 0) distance = max(distance, maxval(abs(p - q)))

@@ -65,7 +65,8 @@ equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: r
 explained='src/job.f90 src/kinmat_c.f90 src/rows/*.f90 src/mechanism/columns.f90 src/mechanism/drives.f90 src/mechanism/pair_geometry.f90
    src/mechanism/separations.f90 src/answers/answers.f90 src/answers/counts.f90 src/answers/proofs.f90
    src/answers/set_circuits.f90 src/answers/tolerance_contributions.f90 src/lanes/lane_runs.f90 src/results/answer_tables.f90
-   src/results/csv.f90 src/results/listing_layout.f90 src/results/listing_tables.f90 src/results/proof_table.f90
+   src/results/csv.f90 src/results/canvas.f90 src/results/drawing.f90 src/results/shapes.f90 src/results/labels.f90
+   src/results/listing_layout.f90 src/results/listing_tables.f90 src/results/proof_table.f90
    src/results/ranges_table.f90 src/results/contributions_table.f90 src/results/table.f90'
 equal 'dummies without their meaning' '' "$(awk -f tests/system/dummies.awk $explained)"
 printf '      integer, intent(in) :: a !< One.\n      real(wp), intent(in) :: b\n      type(x_t), intent(in) :: c\n' > "$BUILD/order/dummies.f90"
