@@ -26,7 +26,7 @@ module position_iteration
    public :: solve_position
 
    !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding: it has diverged.
-   real(wp), parameter :: max_turn = largest_change
+   real(wp), parameter :: max_angle_change = largest_change
    !> Near a singular position Newton's method only halves the step: 53 bits take 53 iterations.
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
@@ -36,7 +36,7 @@ module position_iteration
    !> Even where the Jacobian has no inverse a residual at the rounding level leaves no more to correct than this.
    real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> An iteration does not return from a step of this size; it is well below overflow.
-   real(wp), parameter :: max_step = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   real(wp), parameter :: max_correction = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
 
 contains
 
@@ -82,11 +82,11 @@ contains
             exit
          end if
 
-         stays = all(abs(r) <= max_step)
+         stays = all(abs(r) <= max_correction)
          if (stays) then
             call add_to_links(system, -r, configuration%q)
             stays = all(abs(configuration%q(3, :)) <= angle_limit) .and. all(abs(configuration%q(3, :) - start) <= &
-               max_turn)
+               max_angle_change)
          end if
          if (.not. stays) then
             convergence%ended = ended_diverged

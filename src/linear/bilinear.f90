@@ -45,8 +45,8 @@ module bilinear
 
    !> Rounding of coefficients, which may be of another kind.
    real(dp), parameter :: rounding = max(epsilon(1.0_dp), real(epsilon(1.0_wp), dp))
-   !> A discriminant below this part of its terms is zero.
-   real(dp), parameter :: zero_discriminant = 256.0_dp*rounding
+   !> A determinant, a discriminant or a row below this part of its terms is zero.
+   real(dp), parameter :: zero_part = 256.0_dp*rounding
    !> Solutions nearer to infinity than this are there: no slide is a million times as long as its loop.
    real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*rounding)
 
@@ -83,11 +83,11 @@ contains
       end associate
       size_of = maxval(abs(q))
 
-      moves = size_of <= zero_discriminant
+      moves = size_of <= zero_part
       if (moves) ends%paths = 0
       if (moves) return
 
-      e%is_singular = abs(q(1)**2 - 4.0_dp*q(0)*q(2)) <= zero_discriminant*size_of**2
+      e%is_singular = abs(q(1)**2 - 4.0_dp*q(0)*q(2)) <= zero_part*size_of**2
       root = 0.0_dp
       if (.not. e%is_singular) root = sqrt(q(1)**2 - 4.0_dp*q(0)*q(2))
       if (real(conjg(q(1))*root) < 0.0_dp) root = -root
@@ -102,7 +102,7 @@ contains
          r(:, 2) = x(0)*bilinear%c(0, :, 2) + x(1)*bilinear%c(1, :, 2)
          if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
          y = [r(1, 1), -r(0, 1)]
-         if (sum(abs(y)) <= zero_discriminant*sum(abs(x))) then
+         if (sum(abs(y)) <= zero_part*sum(abs(x))) then
             moves = .true.
             ends%failed = ends%failed + 1
          else if (finiteness(bilinear, x, y) > infinity_level) then
