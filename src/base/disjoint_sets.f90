@@ -12,13 +12,15 @@ module disjoint_sets
 
 contains
 
-   !> The numbers 1, 2, ... sorted by `group`, which is 1 to `groups`; those of group 0 are left out.
+   !> Sorts the numbers 1, 2, ... by their group. Numbers of group 0 are left out.
    pure function sorted(group, groups) result(s)
-      integer, intent(in) :: group(:), groups
+      integer, intent(in) :: group(:)        !< (numbers) the group of each: 0 to `groups`
+      integer, intent(in) :: groups          !< how many groups there are
       type(sorted_t) :: s
       integer :: next(0:groups), i
 
       next = 0
+
       do i = 1, size(group)
          next(group(i)) = next(group(i)) + 1
       end do
@@ -28,16 +30,19 @@ contains
       end do
       next(1:) = s%first(:groups)
       do i = 1, size(group)
+
          if (group(i) == 0) cycle
          s%member(next(group(i))) = i
          next(group(i)) = next(group(i)) + 1
       end do
    end function sorted
 
-   !> `number`(k) > 0 is in `group`(k), which is 1 to `groups`, or 0: left out. A number may be in several groups, and
-   !> more than once in one.
+   !> Sorts a list of numbers by group. A number may be in several groups, and more than once in one. The numbers of a
+   !> group increase.
    pure function sorted_numbers(number, group, groups) result(s)
-      integer, intent(in) :: number(:), group(:), groups
+      integer, intent(in) :: number(:)       !< (entries) a number above 0
+      integer, intent(in) :: group(:)        !< (entries) the group that has it: 1 to `groups`; 0: the entry is left out
+      integer, intent(in) :: groups          !< how many groups there are
       type(sorted_t) :: s, by_number
 
       by_number = sorted(number, maxval([0, number]))
@@ -45,29 +50,30 @@ contains
       s%member = number(by_number%member(s%member))
    end function sorted_numbers
 
-   !> The numbers of group `k`.
+   !> Gives the numbers of one group.
    pure function members(lists, k) result(list)
       type(sorted_t), intent(in) :: lists
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the group, counted from 1
       integer, allocatable :: list(:)
 
       list = lists%member(lists%first(k):lists%first(k + 1) - 1)
    end function members
 
-   !> The first of each run of equal numbers in `list`.
+   !> Gives the first of each run of equal numbers.
    pure function once(list) result(short)
-      integer, intent(in) :: list(:)
+      integer, intent(in) :: list(:)         !< (any length) numbers in any order
       integer, allocatable :: short(:)
       integer :: i
 
       short = pack(list, [(i == 1 .or. list(max(i - 1, 1)) /= list(i), i=1, size(list))])
    end function once
 
-   !> (size(counts)) The groups of the numbers that `counts`, after `first`(k) and `second`(k) (any number of pairs) are
-   !> in one, in the order of their least members. A number that does not count is in group 0, and joins nothing.
+   !> Joins numbers 1, 2, ... by pairs, and gives the group of each. Groups are numbered from 1 in the order of their
+   !> least members. A number that does not count is in group 0 and joins nothing.
    pure function joined(counts, first, second) result(group)
-      logical, intent(in) :: counts(:)
-      integer, intent(in) :: first(:), second(:)
+      logical, intent(in) :: counts(:)       !< (numbers) the number has a group
+      integer, intent(in) :: first(:)        !< (pairs) one number of each pair
+      integer, intent(in) :: second(:)       !< (pairs) the number that is in the group of `first`
       integer :: group(size(counts)), parent(size(counts)), i, k, root_a, root_b
 
       parent = [(i, i=1, size(counts))]
@@ -91,11 +97,11 @@ contains
       end do
    end function joined
 
-   !> The `root` of the tree of number `i`. The path to it is halved.
+   !> Finds the root of the tree that has a number, and halves the path to it.
    pure subroutine find_root(parent, i, root)
-      integer, intent(inout) :: parent(:)
-      integer, intent(in) :: i
-      integer, intent(out) :: root
+      integer, intent(inout) :: parent(:)    !< (numbers) the next number on the way to the root; of a root, itself
+      integer, intent(in) :: i               !< the number
+      integer, intent(out) :: root           !< the root of its tree
 
       root = i
       do while (parent(root) /= root)

@@ -18,20 +18,20 @@ module failures
 
 contains
 
-   !> Makes `failure` hold a status and a sentence.
+   !> Makes a failure from a status and a sentence.
    subroutine fail(failure, status, text)
       type(failure_t), allocatable, intent(out) :: failure
-      integer, intent(in) :: status
-      character(*), intent(in) :: text
+      integer, intent(in) :: status   !< exit status: one of the parameters above
+      character(*), intent(in) :: text   !< the sentence, in capitals, without a full stop
 
       allocate (failure)
       failure%status = status
       failure%text = text
    end subroutine fail
 
-   !> `text` in the capitals of all messages: only the letters of ASCII change.
+   !> Gives a text in the capitals of all messages. Only the letters of ASCII change.
    elemental function capitals(text) result(upper)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text   !< any characters
       character(len(text)) :: upper
       integer :: i
 

@@ -18,13 +18,15 @@ module masked_numbers
 
 contains
 
-   !> `value` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
-   !> behind it masked; `masked` becomes true where a digit is.
+   !> Writes a number with a limited number of known digits. It is rounded to its last known digit, and digits after
+   !> that one are masked. A number whose digits are all known is written as `put_fixed` writes it.
    pure subroutine put_known(value, error, decimals, power, text, masked)
-      real(wp), intent(in) :: value, error
-      integer, intent(in) :: decimals, power
-      character(numeral_length), intent(out) :: text
-      logical, intent(inout), optional :: masked
+      real(wp), intent(in) :: value          !< the number, in any unit
+      real(wp), intent(in) :: error          !< its estimated error, in the unit of `value`; 0: all digits are known
+      integer, intent(in) :: decimals        !< decimals at most, 0 or more
+      integer, intent(in) :: power           !< `value` 10**-`power` is written
+      character(numeral_length), intent(out) :: text   !< right-adjusted
+      logical, intent(inout), optional :: masked   !< becomes true if a digit is masked; otherwise it stays
       integer(int64) :: n
       logical :: is_known
       integer :: last
@@ -52,12 +54,13 @@ contains
       if (present(masked)) masked = .true.
    end subroutine put_known
 
-   !> `n` 10**`last`, with the sign of what is `negative`, in at most `decimals` decimals; digits worth less than
-   !> 10**`last` are masked. Blank where there is no room for a masked digit.
+   !> Gives n 10**last as text; digits worth less than 10**last are masked. The text has an exponent if fixed point has
+   !> no room for it, and is blank if there is no room for a masked digit.
    pure function masked_text(n, last, decimals, negative) result(text)
-      integer(int64), intent(in) :: n
-      integer, intent(in) :: last, decimals
-      logical, intent(in) :: negative
+      integer(int64), intent(in) :: n        !< the known digits, as a whole number, 0 or more
+      integer, intent(in) :: last            !< the power of ten of the last known digit
+      integer, intent(in) :: decimals        !< decimals at most, 0 or more
+      logical, intent(in) :: negative        !< the number has a minus sign
       character(numeral_length) :: text
       character(20) :: digits
       character(80) :: line

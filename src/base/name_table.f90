@@ -23,13 +23,12 @@ module name_table
 
 contains
 
-   !> Enters `name` with `number` > 0. If the table has it already, nothing changes and `earlier` is its number;
-   !> otherwise `earlier` is 0.
+   !> Enters a name with its number. If the table has the name already, nothing changes.
    subroutine put_name(table, name, number, earlier)
       type(name_table_t), intent(inout) :: table
-      character(*), intent(in) :: name
-      integer, intent(in) :: number
-      integer, intent(out) :: earlier
+      character(*), intent(in) :: name       !< at most `label_length` characters count
+      integer, intent(in) :: number          !< of the name, above 0
+      integer, intent(out) :: earlier        !< the number that the name has in the table already; 0: the name is new
       type(slot_t), allocatable :: old(:)
       integer :: slot, i
 
@@ -47,19 +46,19 @@ contains
       end do
    end subroutine put_name
 
-   !> The number of `name`, or 0 if the table does not have it.
+   !> Gives the number of a name, or 0 if the table does not have the name.
    pure integer function find_name(table, name) result(number)
       type(name_table_t), intent(in) :: table
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name   !< at most `label_length` characters count
 
       number = 0
       if (allocated(table%slots)) number = table%slots(slot_of(table%slots, name))%number
    end function find_name
 
-   !> The slot of `name`, or the free slot where it belongs. There is always a free slot.
+   !> Finds the slot of a name, or the free slot where the name belongs. There is always a free slot.
    pure integer function slot_of(slots, name) result(k)
       type(slot_t), intent(in) :: slots(:)
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name   !< at most `label_length` characters count
       character(label_length) :: key
       integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64
       integer(int64) :: hash

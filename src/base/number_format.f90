@@ -35,16 +35,17 @@ module number_format
    integer, parameter :: last_exact = 22
    !> 16 times the relative error of p + e.
    real(wp), parameter :: sum_margin = 2.0_wp**(-100)
-   !> Below `plain`, p alone decides in most cases: its fraction is exact, and p has two relative rounding errors of
-   !> 2**-53, those of high and of the product. The margin is half as much again.
-   real(wp), parameter :: plain = 2.0_wp**45, plain_margin = 3.0_wp*2.0_wp**(-53)
+   !> Below this bound p alone decides in most cases: its fraction is exact.
+   real(wp), parameter :: plain = 2.0_wp**45
+   !> Relative error of p, and half as much again: p has two roundings of 2**-53, those of high and of the product.
+   real(wp), parameter :: plain_margin = 3.0_wp*2.0_wp**(-53)
    !> From here on neighbouring reals p differ by 1/2 or more, and e may be larger than 1/2.
    real(wp), parameter :: coarse = 2.0_wp**51
 
    !> Veltkamp's factor for 53 bits, and the halves of `high`.
    real(wp), parameter :: splitter = 2.0_wp**27 + 1.0_wp
-   real(wp), parameter :: head(-reach:reach) = splitter*high - (splitter*high - high)
-   real(wp), parameter :: tail(-reach:reach) = high - head
+   real(wp), parameter :: high_head(-reach:reach) = splitter*high - (splitter*high - high)
+   real(wp), parameter :: high_tail(-reach:reach) = high - high_head
 
    !> Characters of a number in the tables, one blank before it included.
    integer, parameter :: numeral_length = 12
@@ -55,7 +56,7 @@ module number_format
    integer, parameter :: full_length = significant + 4 + exponent_digits
 
    !> Characters of an exponent in a table: its sign and at most four digits.
-   integer, parameter :: exponent_length = 5
+   integer, parameter :: table_exponent_length = 5
 
    !> Zero as `full` writes it.
    character(*), parameter :: full_zero = '0.'//repeat('0', significant - 1)//'E+'//repeat('0', exponent_digits)
@@ -68,22 +69,24 @@ module number_format
 
 contains
 
-   !> `value` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as
-   !> there is room for, and an exponent where even the whole part has no room. A negative number has no zero before the
-   !> point if nine decimals leave no room for the zero: -.012345678.
+   !> Gives value 10**-power, correctly rounded and right-adjusted, with as many decimals as there is room for. The text
+   !> has an exponent if even the whole part has no room. A negative number has no zero before the point if nine
+   !> decimals leave no room for the zero: -.012345678.
    pure function fixed(value, decimals, power) result(text)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: decimals, power
+      real(wp), intent(in) :: value          !< the number, in any unit
+      integer, intent(in) :: decimals        !< decimals at most, 0 or more
+      integer, intent(in) :: power           !< of ten, by which the number is divided
       character(numeral_length) :: text
 
       call put_fixed(value, decimals, power, text)
    end function fixed
 
-   !> `fixed`, written to `text`: faster for the many numbers of a table.
+   !> Writes value 10**-power into a text, with the digits of `fixed`. For the many numbers of a table this is faster.
    pure subroutine put_fixed(value, decimals, power, text)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: decimals, power
-      character(numeral_length), intent(out) :: text
+      real(wp), intent(in) :: value          !< the number, in any unit
+      integer, intent(in) :: decimals        !< decimals at most, 0 or more
+      integer, intent(in) :: power           !< of ten, by which the number is divided
+      character(numeral_length), intent(out) :: text   !< right-adjusted
       integer(int64) :: n
       integer :: d, room, first
       logical :: negative
@@ -102,11 +105,11 @@ contains
       text = with_exponent(value, power)
    end subroutine put_fixed
 
-   !> Writes the sign of the negative number in `text`, which begins at `first` and has `decimals`: in the place of its
-   !> zero where there is no other room.
+   !> Writes the minus sign of a number. The sign takes the place of the zero before the point if nothing else is free.
    pure subroutine put_minus(decimals, first, text)
-      integer, intent(in) :: decimals, first
-      character(numeral_length), intent(inout) :: text
+      integer, intent(in) :: decimals        !< decimals of the number
+      integer, intent(in) :: first           !< the character at which the number begins
+      character(numeral_length), intent(inout) :: text   !< the number without its sign, right-adjusted
       integer :: place
 
       place = first - 1
@@ -114,12 +117,12 @@ contains
       text(place:place) = '-'
    end subroutine put_minus
 
-   !> `value` 10**-power with an exponent and as many digits as there is room for, right-adjusted.
+   !> Gives value 10**-power with an exponent and as many digits as there is room for, right-adjusted.
    pure function with_exponent(value, power) result(text)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: power
+      real(wp), intent(in) :: value          !< the number, in any unit; it may be infinite or NaN
+      integer, intent(in) :: power           !< of ten, by which the number is divided
       character(numeral_length) :: text
-      character(exponent_length) :: shown
+      character(table_exponent_length) :: shown
       integer(int64) :: n
       integer :: d, e, first, last
 
@@ -140,20 +143,22 @@ contains
       if (value < 0.0_wp) text(first - 1:first - 1) = '-'
    end function with_exponent
 
-   !> Writes the `exponent` left-adjusted, with its sign and three digits, or four where it needs them.
+   !> Writes an exponent with its sign and three digits, or four if it needs them.
    pure subroutine put_exponent(exponent, text)
-      integer, intent(in) :: exponent
-      character(exponent_length), intent(out) :: text
+      integer, intent(in) :: exponent        !< between -9999 and 9999
+      character(table_exponent_length), intent(out) :: text   !< left-adjusted
 
       text = merge('-', '+', exponent < 0)
-      call put_digits(int(abs(exponent), int64), text(2:merge(4, exponent_length, abs(exponent) < 1000)))
+      call put_digits(int(abs(exponent), int64), text(2:merge(4, table_exponent_length, abs(exponent) < 1000)))
    end subroutine put_exponent
 
-   !> `value` rounded to so many `digits`, without blanks: in fixed point if |value| is 0, or not below `from` and below
-   !> `to`; otherwise with an exponent.
+   !> Gives a number in a few digits, rounded and without blanks. It is in fixed point if its size is 0 or lies in the
+   !> range of fixed point; otherwise it has an exponent.
    pure function rounded(value, digits, from, to) result(text)
-      real(wp), intent(in) :: value, from, to
-      integer, intent(in) :: digits
+      real(wp), intent(in) :: value          !< the number, in any unit
+      real(wp), intent(in) :: from           !< the least size in fixed point, in the unit of `value`
+      real(wp), intent(in) :: to             !< the size from which on there is an exponent, in the unit of `value`
+      integer, intent(in) :: digits          !< how many digits, 1 or more
       character(:), allocatable :: text
       character(40) :: field
       character(12) :: form
@@ -171,9 +176,9 @@ contains
       text = trim(adjustl(field))
    end function rounded
 
-   !> A whole number without blanks.
+   !> Gives a whole number as text without blanks.
    pure function whole(i) result(text)
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< any sign
       character(:), allocatable :: text
       character(12) :: field
       integer :: first
@@ -186,9 +191,9 @@ contains
       text = field(first:)
    end function whole
 
-   !> `value` with so many significant digits that it reads back as the same number, the sign of a zero included.
+   !> Gives a number with as many digits as it needs to read back unchanged, the sign of a zero included.
    pure function full(value) result(text)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value   !< any number; it may be infinite or NaN
       character(:), allocatable :: text
       character(full_length) :: field
       integer :: length
@@ -197,11 +202,11 @@ contains
       text = field(:length)
    end function full
 
-   !> `full`, written left-adjusted to `text`, and its `length`.
+   !> Writes a number with as many digits as it needs to read back unchanged. This is faster than `full`.
    pure subroutine put_full(value, text, length)
-      real(wp), intent(in) :: value
-      character(full_length), intent(out) :: text
-      integer, intent(out) :: length
+      real(wp), intent(in) :: value          !< any number; it may be infinite or NaN
+      character(full_length), intent(out) :: text   !< left-adjusted
+      integer, intent(out) :: length         !< characters of the number
       integer(int64) :: n, upper, first
       integer :: e
       logical :: sure
@@ -236,11 +241,11 @@ contains
       length = len_trim(text)
    end subroutine put_full
 
-   !> Writes the last digits of `n` >= 0, as many as `text` is long; `before`: the number of those before them.
+   !> Writes the last digits of a whole number, as many as the text is long.
    pure subroutine put_digits(n, text, before)
-      integer(int64), intent(in) :: n
-      character(*), intent(inout) :: text
-      integer(int64), intent(out), optional :: before
+      integer(int64), intent(in) :: n        !< 0 or more
+      character(*), intent(inout) :: text    !< becomes digits only, with leading zeros
+      integer(int64), intent(out), optional :: before   !< the number that the digits before those make
       integer(int64) :: rest, next
       integer :: i, pair
 
@@ -260,10 +265,11 @@ contains
    end subroutine put_digits
 
    !> Writes all digits of `n` >= 0 at the end of `text`, from its character `first` on.
+   !> Writes all digits of a whole number at the end of a text. The characters before them stay.
    pure subroutine put_whole(n, text, first)
-      integer(int64), intent(in) :: n
-      character(*), intent(inout) :: text
-      integer, intent(out) :: first
+      integer(int64), intent(in) :: n        !< 0 or more
+      character(*), intent(inout) :: text    !< as long as the digits at least
+      integer, intent(out) :: first          !< the character at which the digits begin
       integer(int64) :: rest, next
 
       rest = n
@@ -276,13 +282,13 @@ contains
       text(first:first) = achar(48 + int(rest))
    end subroutine put_whole
 
-   !> Writes `n` 10**-decimals with `decimals` decimals, 0 to 10, and at least one digit before the point, at the end of
-   !> `text`, from its character `first` on.
+   !> Writes n 10**-decimals at the end of a text, with at least one digit before the point. The characters before it
+   !> stay.
    pure subroutine put_with_point(n, decimals, text, first)
-      integer(int64), intent(in) :: n
-      integer, intent(in) :: decimals
-      character(*), intent(inout) :: text
-      integer, intent(out) :: first
+      integer(int64), intent(in) :: n        !< 0 or more
+      integer, intent(in) :: decimals        !< how many, 0 to 10
+      character(*), intent(inout) :: text    !< as long as the number at least
+      integer, intent(out) :: first          !< the character at which the number begins
       integer :: point
       integer(int64) :: rest
 
@@ -292,24 +298,24 @@ contains
       call put_whole(rest, text(:point - 1), first)
    end subroutine put_with_point
 
-   !> The whole number nearest to `value` 10**`k`, value >= 0, the even one of two equally near; at least 10**12 if it
-   !> has more than 12 digits.
+   !> Gives the whole number nearest to value 10**k, the even one of two equally near. If the number has more than 12
+   !> digits, the result is 10**12 at least.
    pure integer(int64) function nearest_whole(value, k) result(n)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: k
+      real(wp), intent(in) :: value          !< 0 or more
+      integer, intent(in) :: k               !< power of ten, of any sign
       logical :: sure
 
       call decide_whole(value, k, n, sure)
       if (.not. sure) n = nearest_by_format(value, k)
    end function nearest_whole
 
-   !> `n` is the whole number nearest to `value` 10**`k`, the even one of two equally near; value >= 0. `sure`: that is
-   !> certain, and n is at most 2E17. Source: Dekker, Numer. Math. 18 (1971) 224.
+   !> Finds the whole number nearest to value 10**k, the even one of two equally near, and tells whether the decision is
+   !> certain. Source: Dekker, Numer. Math. 18 (1971) 224.
    pure subroutine decide_whole(value, k, n, sure)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: k
-      integer(int64), intent(out) :: n
-      logical, intent(out) :: sure
+      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      integer, intent(in) :: k               !< power of ten, of any sign
+      integer(int64), intent(out) :: n       !< the whole number, if `sure`
+      logical, intent(out) :: sure           !< the decision is certain, and `n` is 2E17 at most
       real(wp) :: p, e, multiple, x_head, x_tail, rest, beyond, side
       integer :: carry
 
@@ -329,7 +335,7 @@ contains
       multiple = splitter*value
       x_head = multiple - (multiple - value)
       x_tail = value - x_head
-      e = x_tail*tail(k) - (((p - x_head*head(k)) - x_tail*head(k)) - x_head*tail(k))
+      e = x_tail*high_tail(k) - (((p - x_head*high_head(k)) - x_tail*high_head(k)) - x_head*high_tail(k))
       e = e + value*low(k)
 
       n = int(p, int64)
@@ -347,26 +353,26 @@ contains
       if (beyond > 0.0_wp .or. (.not. beyond < 0.0_wp .and. mod(n, 2_int64) == 1)) n = n + int(side)
    end subroutine decide_whole
 
-   !> The first `count` digits `n` of the finite number `value` >= 0 and their exponent: value = n 10**(exponent - count
-   !> + 1), rounded, 10**(count - 1) <= n < 10**count; both are 0 for value = 0.
+   !> Finds the first digits of a number and its exponent: value = n 10**(exponent - count + 1), rounded.
    pure subroutine first_digits(value, count, n, exponent)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: count
-      integer(int64), intent(out) :: n
-      integer, intent(out) :: exponent
+      real(wp), intent(in) :: value          !< finite, 0 or more
+      integer, intent(in) :: count           !< how many digits, 1 to 18
+      integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
+      integer, intent(out) :: exponent       !< the power of ten of the first digit; 0 for 0
       logical :: sure
 
       call leading_digits(value, count, n, exponent, sure)
       if (.not. sure) call digits_by_format(value, count, n, exponent)
    end subroutine first_digits
 
-   !> Finds the first digits of `value` > 0, as `first_digits`; `sure`: they are certain.
+   !> Finds the first digits of a number and its exponent by two reals, and tells whether they are certain. The value is
+   !> n 10**(power - count + 1), rounded.
    pure subroutine leading_digits(value, count, n, power, sure)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: count
-      integer(int64), intent(out) :: n
-      integer, intent(out) :: power
-      logical, intent(out) :: sure
+      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      integer, intent(in) :: count           !< how many digits, 1 to `significant`
+      integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count, if `sure`
+      integer, intent(out) :: power          !< the power of ten of the first digit, if `sure`
+      logical, intent(out) :: sure           !< the digits are certain; never for 0
 
       n = 0
       power = 0
@@ -383,21 +389,21 @@ contains
       power = power + 1
    end subroutine leading_digits
 
-   !> The whole number nearest to `value` 10**`k`, x >= 0, by formats, which round its decimal value; huge(n) if it
-   !> has more than 12 digits. Rejected: the scale factor kP. The library of gfortran prints wrong digits from -21P
-   !> down, and in a narrow field with some hundreds of P it writes beyond its own buffer.
+   !> Gives the whole number nearest to value 10**k by formats, which round its decimal value. Beyond 12 digits the
+   !> result is huge(n). Rejected: the scale factor kP. The library of gfortran prints wrong digits from -21P down. In a
+   !> narrow field with some hundreds of P it writes beyond its own buffer.
    pure function nearest_by_format(value, k) result(n)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: k
+      real(wp), intent(in) :: value          !< 0 or more, or NaN
+      integer, intent(in) :: k               !< power of ten, of any sign
       integer(int64) :: n
       character(80) :: line
       integer :: e, carried, places
-      integer, parameter :: max_places = 12, many = 60
-      character(*), parameter :: five = '5.'//repeat('0', many)
+      integer, parameter :: max_places = 12, format_decimals = 60
+      character(*), parameter :: five = '5.'//repeat('0', format_decimals)
 
       n = 0
       if (value <= 0.0_wp) return
-      line = scientific(value, many)
+      line = scientific(value, format_decimals)
       n = huge(n)
       if (index(line, 'E') == 0) return
       read (line(index(line, 'E') + 1:), '(i5)') e
@@ -411,12 +417,12 @@ contains
       n = n*tens(carried - e)
    end function nearest_by_format
 
-   !> `first_digits` by a format.
+   !> Finds the first digits of a number and its exponent by a format: value = n 10**(exponent - count + 1), rounded.
    pure subroutine digits_by_format(value, count, n, exponent)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: count
-      integer(int64), intent(out) :: n
-      integer, intent(out) :: exponent
+      real(wp), intent(in) :: value          !< finite, 0 or more
+      integer, intent(in) :: count           !< how many digits, 1 to 18
+      integer(int64), intent(out) :: n       !< 10**(count - 1) <= n < 10**count; 0 for 0
+      integer, intent(out) :: exponent       !< the power of ten of the first digit; 0 for 0
       character(80) :: line
 
       line = scientific(value, count - 1)
@@ -425,10 +431,10 @@ contains
       read (line, '(i18)') n
    end subroutine digits_by_format
 
-   !> `value` with one digit before the point and `decimals` after it, and an exponent, left-adjusted.
+   !> Gives a number with one digit before the point and an exponent, left-adjusted.
    pure function scientific(value, decimals) result(line)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: decimals
+      real(wp), intent(in) :: value   !< any number; it may be infinite or NaN
+      integer, intent(in) :: decimals   !< digits after the point, 0 or more
       character(80) :: line
       character(12) :: form
 

@@ -16,18 +16,18 @@ module plane_vectors
 
 contains
 
-   !> The length of `vector`.
+   !> Gives the length of a vector.
    elemental real(wp) function length_of(vector) result(length)
       type(vector_t), intent(in) :: vector
 
       length = norm2([vector%x, vector%y])
    end function length_of
 
-   !> `angle` (rad, or rad per unit of time to any power) in degrees. Degrees of a deck with at most precision(1.0_wp)
-   !> digits come back as they were: several numbers of degrees have the same nearest radians, and the one with the
-   !> fewest digits is meant. Any other comes back within one rounding.
+   !> Gives an angle in degrees. Degrees of a deck with at most precision(1.0_wp) digits come back as they were. Several
+   !> numbers of degrees have one nearest number of radians, and the one with the fewest digits is meant. Any other
+   !> angle comes back within one rounding.
    pure elemental real(wp) function in_degrees(angle) result(d)
-      real(wp), intent(in) :: angle
+      real(wp), intent(in) :: angle          !< rad, or rad per unit of time to any power
       real(wp) :: power, rounded
       integer :: decimals
 
@@ -40,60 +40,68 @@ contains
       if (abs(rounded*degree - angle) <= 0.0_wp) d = rounded
    end function in_degrees
 
-   !> `angle` (rad) less whole turns, between -pi and pi: the same direction. An angle in this range stays as it is.
+   !> Gives an angle without its whole turns, between -pi and pi. An angle in this range stays as it is.
    pure elemental real(wp) function wrap_angle(angle) result(rest)
-      real(wp), intent(in) :: angle
+      real(wp), intent(in) :: angle          !< rad
       real(wp), parameter :: turn = 2.0_wp*pi
 
       rest = angle - turn*anint(angle/turn)
    end function wrap_angle
 
-   !> Unit vector (2) at `angle` (rad) from the x axis.
+   !> Gives the unit vector (2) at an angle.
    pure function direction(angle) result(e)
-      real(wp), intent(in) :: angle
+      real(wp), intent(in) :: angle          !< rad, from the x axis
       real(wp) :: e(2)
 
       e = [cos(angle), sin(angle)]
    end function direction
 
-   !> `vector` (2) rotated by the angle at which the unit vector `direction` (2) stands.
+   !> Rotates a vector (2) by the angle of a direction.
    pure function rotated(vector, direction) result(w)
-      real(wp), intent(in) :: vector(2), direction(2)
+      real(wp), intent(in) :: vector(2)      !< x, y, in any unit
+      real(wp), intent(in) :: direction(2)   !< x, y of the unit vector at the angle
       real(wp) :: w(2)
 
       w = [vector(1)*direction(1) - vector(2)*direction(2), vector(1)*direction(2) + vector(2)*direction(1)]
    end function rotated
 
-   !> `vector` (2) rotated by a right angle, counterclockwise: the derivative of a rotating vector with respect to its
-   !> angle.
+   !> Rotates a vector (2) by a right angle, counterclockwise. The result is the derivative of a rotating vector with
+   !> respect to its angle.
    pure function quarter_turn(vector) result(w)
-      real(wp), intent(in) :: vector(2)
+      real(wp), intent(in) :: vector(2)      !< x, y, in any unit
       real(wp) :: w(2)
 
       w = [-vector(2), vector(1)]
    end function quarter_turn
 
-   !> The cross product u_x v_y - u_y v_x of u = `first` (2) and v = `second` (2); also v . u' with the quarter turn u'
-   !> of u.
+   !> Gives the cross product u_x v_y - u_y v_x of u = `first` and v = `second`. It is also v . u' with the quarter turn
+   !> u' of u.
    pure real(wp) function cross(first, second)
-      real(wp), intent(in) :: first(2), second(2)
+      real(wp), intent(in) :: first(2)       !< x, y, in any unit
+      real(wp), intent(in) :: second(2)      !< x, y, in any unit
 
       cross = first(1)*second(2) - first(2)*second(1)
    end function cross
 
-   !> Place (2) of a point of a link at `position` (x, y, phi); `offset` (2): in the link's own axes, from its origin.
+   !> Gives the place (2) of a point of a link.
    pure function point_of(position, offset) result(p)
-      real(wp), intent(in) :: position(3), offset(2)
+      real(wp), intent(in) :: position(3)    !< of the link: x, y (length), phi (rad)
+      real(wp), intent(in) :: offset(2)      !< length, in the link's own axes, from its origin
       real(wp) :: p(2)
 
       p = position(:2) + rotated(offset, direction(position(3)))
    end function point_of
 
-   !> Adds the vector (`along`, `across`), which rotates at `rate` with the angular `acceleration`, and its first two
-   !> derivatives with respect to time to `position`, `velocity` and `change` (2):  u,  phi' u',  phi'' u' - phi'^2 u.
+   !> Adds a rotating vector u and its first two derivatives with respect to time to three sums:
+   !> u,  phi' u',  phi'' u' - phi'^2 u.
    pure subroutine add_rotating(along, across, rate, acceleration, position, velocity, change)
-      real(wp), intent(in) :: along, across, rate, acceleration
-      real(wp), intent(inout) :: position(2), velocity(2), change(2)
+      real(wp), intent(in) :: along          !< x of the vector, length
+      real(wp), intent(in) :: across         !< y of the vector, length
+      real(wp), intent(in) :: rate           !< phi', rad per unit of time
+      real(wp), intent(in) :: acceleration   !< phi'', rad per unit of time squared
+      real(wp), intent(inout) :: position(2)   !< length
+      real(wp), intent(inout) :: velocity(2)   !< length per unit of time
+      real(wp), intent(inout) :: change(2)   !< change of velocity: length per unit of time squared
       real(wp) :: square
 
       square = rate*rate

@@ -7,9 +7,11 @@ module processes
    public :: processor_count, fork_process, interrupt_child, end_process
    public :: waitpid, no_hang, usleep, memfd_create, lseek, from_here, change_lock, locked, unlocked
 
-   !> SIGTERM; PR_SET_PDEATHSIG of prctl.
-   integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
-   !> Bits of a set of processors, as sched_getaffinity takes it.
+   !> SIGTERM.
+   integer(c_int), parameter :: signal_terminate = 15
+   !> PR_SET_PDEATHSIG of prctl.
+   integer(c_int), parameter :: when_parent_ends = 1
+   !> Words of 64 bits in a set of processors, as sched_getaffinity takes it: the 1024 processors of the GNU library.
    integer, parameter :: processor_words = 16
 
    !> Bytes that are locked, as fcntl takes them.
@@ -19,74 +21,85 @@ module processes
       integer(c_int) :: process = 0
    end type lock_t
 
-   !> Of fcntl: sets a lock, and waits for it. Kinds of locks. Of lseek: positions are counted from the present one. Of
-   !> waitpid: does not wait.
-   integer(c_int), parameter :: set_lock = 7, from_here = 1, no_hang = 1
+   !> F_SETLKW of fcntl: sets a lock, and waits for it.
+   integer(c_int), parameter :: set_lock = 7
+   !> SEEK_CUR of lseek: positions are counted from the present one.
+   integer(c_int), parameter :: from_here = 1
+   !> WNOHANG of waitpid: does not wait.
+   integer(c_int), parameter :: no_hang = 1
+   !> F_WRLCK and F_UNLCK, kinds of locks: no other process has the byte; all may have it.
    integer(c_int16_t), parameter :: locked = 1, unlocked = 2
    !> The system's number of the error that a signal came.
    integer, parameter :: interrupted = 4
 
    interface
-      !> fork(2): 0 in the child, its number in the parent, negative for an error.
+      !> Makes a copy of this process: fork(2). The result is 0 in the child, its number in the parent, negative for an
+      !> error.
       integer(c_int) function fork() bind(c)
          import :: c_int
       end function fork
-      !> usleep(3): waits so many microseconds, or until a signal comes.
+      !> Waits some time, or until a signal comes: usleep(3). The result is 0, or -1 for an error, such as a signal.
       integer(c_int) function usleep(microseconds) bind(c)
          import :: c_int
-         integer(c_int), value :: microseconds
+         integer(c_int), value :: microseconds   !< how long
       end function usleep
-      !> waitpid(2): how the child has ended; 0 with `no_hang` if it runs, -1 for an error.
+      !> Tells how a child has ended: waitpid(2). The result is its number; 0 if it runs (`no_hang`); -1 for an error.
       integer(c_int) function waitpid(child, status, options) bind(c)
          import :: c_int
-         integer(c_int), value :: child, options
-         integer(c_int), intent(out) :: status
+         integer(c_int), value :: child       !< its number
+         integer(c_int), value :: options     !< 0: waits; `no_hang`
+         integer(c_int), intent(out) :: status   !< how it has ended, in the bits of the system
       end function waitpid
-      !> prctl(2): what this process does on an occasion.
+      !> Sets an option of this process: prctl(2). The result is -1 for an error.
       integer(c_int) function prctl(occasion, number) bind(c)
          import :: c_int
-         integer(c_int), value :: occasion, number
+         integer(c_int), value :: occasion    !< the option: `when_parent_ends`
+         integer(c_int), value :: number      !< its value: the number of the signal that comes then
       end function prctl
-      !> kill(2): sends a signal to a process.
+      !> Sends a signal to a process: kill(2). The result is -1 for an error.
       integer(c_int) function kill(process, number) bind(c)
          import :: c_int
-         integer(c_int), value :: process, number
+         integer(c_int), value :: process     !< its number
+         integer(c_int), value :: number      !< the number of the signal
       end function kill
-      !> _exit(2): ends the process at once with an exit status; nothing that its parent has buffered is written.
+      !> Ends the process at once: _exit(2). Text that its parent has buffered is not written.
       subroutine end_process(status) bind(c, name='_exit')
          import :: c_int
-         integer(c_int), value :: status
+         integer(c_int), value :: status   !< exit status
       end subroutine end_process
-      !> sched_getaffinity(2): the processors that this process may use.
+      !> Finds the processors that this process may use: sched_getaffinity(2). The result is 0, or -1 for an error.
       integer(c_int) function sched_getaffinity(process, length, mask) bind(c)
          import :: c_int, c_size_t, c_int64_t
-         integer(c_int), value :: process
-         integer(c_size_t), value :: length
-         integer(c_int64_t), intent(inout) :: mask(*)
+         integer(c_int), value :: process     !< its number; 0: this one
+         integer(c_size_t), value :: length   !< bytes of `mask`
+         integer(c_int64_t), intent(inout) :: mask(*)   !< (length/8) a bit for each processor
       end function sched_getaffinity
-      !> memfd_create(2): the descriptor of a file without a name, negative for an error.
+      !> Makes a file without a name in memory: memfd_create(2). The result is its descriptor, negative for an error.
       integer(c_int) function memfd_create(name, flags) bind(c)
          import :: c_char, c_int
-         character(kind=c_char), intent(in) :: name(*)
-         integer(c_int), value :: flags
+         character(kind=c_char), intent(in) :: name(*)   !< for those who look at the process; ends with a null
+         integer(c_int), value :: flags       !< 0
       end function memfd_create
-      !> lseek(2): changes the position of an open file, for all processes that share it and in one piece.
+      !> Changes the position of an open file, for all processes that share it and in one piece: lseek(2). The result is
+      !> the position, -1 for an error.
       integer(c_long) function lseek(descriptor, offset, origin) bind(c)
          import :: c_int, c_long
-         integer(c_int), value :: descriptor, origin
-         integer(c_long), value :: offset
+         integer(c_int), value :: descriptor  !< of the file
+         integer(c_int), value :: origin      !< from where the position is counted: `from_here`
+         integer(c_long), value :: offset     !< bytes
       end function lseek
-      !> fcntl(2) with a lock: 0, or -1 for an error, such as a signal.
+      !> Sets a lock of a file: fcntl(2). The result is 0, or -1 for an error, such as a signal.
       integer(c_int) function fcntl(descriptor, command, lock) bind(c)
          import :: c_int, lock_t
-         integer(c_int), value :: descriptor, command
+         integer(c_int), value :: descriptor  !< of the file
+         integer(c_int), value :: command     !< `set_lock`
          type(lock_t), intent(inout) :: lock
       end function fcntl
    end interface
 
 contains
 
-   !> How many processors this process may use; 1 where the system does not say.
+   !> Counts the processors that this process may use; 1 if the system does not tell.
    integer function processor_count()
       integer(c_int64_t) :: mask(processor_words)
 
@@ -96,8 +109,8 @@ contains
          processor_count = max(1, sum(popcnt(mask)))
    end function processor_count
 
-   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. The
-   !> result is 0 in the child, its number in the parent, negative for an error.
+   !> Makes a child, a copy of this process. The child ends when this process does, and after the first signal by
+   !> itself. The result is 0 in the child, its number in the parent, negative for an error.
    integer function fork_process()
       integer(c_int) :: ignored
 
@@ -107,19 +120,20 @@ contains
       notes_all = .true.
    end function fork_process
 
-   !> Asks the process `child` to end.
+   !> Asks a process to end.
    impure elemental subroutine interrupt_child(child)
-      integer, intent(in) :: child
+      integer, intent(in) :: child   !< the number of the process
       integer(c_int) :: ignored
 
       ignored = kill(int(child, c_int), signal_terminate)
    end subroutine interrupt_child
 
-   !> Sets or opens the lock of byte `k` of the file `descriptor` when it can be had, whatever signals come meanwhile.
+   !> Sets or opens a lock of one byte of a file when the lock can be had, whatever signals come meanwhile. After any
+   !> error but a signal the lock stays as it is.
    subroutine change_lock(descriptor, k, kind)
-      integer(c_int), intent(in) :: descriptor
-      integer, intent(in) :: k
-      integer(c_int16_t), intent(in) :: kind
+      integer(c_int), intent(in) :: descriptor   !< of the file
+      integer, intent(in) :: k               !< the byte, counted from 0
+      integer(c_int16_t), intent(in) :: kind   !< `locked` or `unlocked`
       type(lock_t) :: lock
 
       lock%kind = kind

@@ -22,18 +22,23 @@ module system_calls
       logical :: device_or_pipe = .false.  !< neither regular nor a directory, and not missing
    end type identity_t
 
-   !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
+   !> Flags of open, of statx and numbers of errors are alike on every architecture of Linux. O_RDONLY and O_WRONLY:
    integer(c_int), parameter :: read_only = 0, write_only = 1
+   !> ENOENT and EBADF.
    integer, parameter :: no_such_file = 2, closed_descriptor = 9
+   !> AT_FDCWD of statx: paths begin at the working directory. STATX_BASIC_STATS: the facts that stat has.
    integer(c_int), parameter :: from_working_directory = -100, basic_facts = int(z'7FF', c_int)
+   !> AT_EMPTY_PATH: the descriptor itself. AT_SYMLINK_NOFOLLOW: a symbolic link itself.
    integer(c_int), parameter :: empty_path = int(z'1000', c_int), no_links = int(z'100', c_int)
    !> Read and write for all, less the user's mask.
    integer(c_int), parameter :: permissions = int(o'666', c_int)
    !> Kinds of files within a mode.
    integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000'), kind_directory = int(o'040000')
 
+   !> SIGINT, SIGPIPE, SIGTERM, SIGCHLD, SIGXFSZ: numbers of signals.
    integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_child = 17, &
       signal_file_size = 25
+   !> The signals that are noted.
    integer(c_int), parameter :: watched(2) = [signal_interrupt, signal_terminate]
    !> The address that means "ignore"; null means the usual action.
    integer(c_intptr_t), parameter :: ignored = 1
@@ -54,91 +59,92 @@ module system_calls
    end type facts_t
 
    interface
-      !> statx(2): what kind of file `path` is, and its identity.
+      !> Finds the kind of a file and its identity: statx(2). The result is 0, or -1 for an error.
       integer(c_int) function statx(directory, path, flags, mask, facts) bind(c)
          import :: c_int, c_char, facts_t
-         integer(c_int), value :: directory, flags, mask
-         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: directory   !< where the path begins: `from_working_directory` or a descriptor
+         integer(c_int), value :: flags       !< 0, `empty_path` or `no_links`
+         integer(c_int), value :: mask        !< the facts that are wanted: `basic_facts`
+         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
          type(facts_t), intent(out) :: facts
       end function statx
-      !> open(2) without a mode: a descriptor, negative on error.
+      !> Opens a file that exists: open(2) without a mode. The result is a descriptor, negative for an error.
       integer(c_int) function c_open(path, flags) bind(c, name='open')
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: flags
+         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         integer(c_int), value :: flags       !< `read_only` or `write_only`
       end function c_open
-      !> creat(2): creates or empties a file; a descriptor, negative on error.
+      !> Creates or empties a file: creat(2). The result is a descriptor, negative for an error.
       integer(c_int) function creat(path, mode) bind(c)
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: mode
+         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
+         integer(c_int), value :: mode        !< `permissions`
       end function creat
-      !> read(2): the number of bytes read, 0 at the end of the file, negative on error.
+      !> Reads bytes: read(2). The result is the number of bytes read, 0 at the end of the file, negative for an error.
       integer(c_size_t) function c_read(descriptor, text, length) bind(c, name='read')
          import :: c_int, c_char, c_size_t
-         integer(c_int), value :: descriptor
-         character(kind=c_char), intent(out) :: text(*)
-         integer(c_size_t), value :: length
+         integer(c_int), value :: descriptor  !< of the file
+         character(kind=c_char), intent(out) :: text(*)   !< (length) the bytes
+         integer(c_size_t), value :: length   !< bytes at most
       end function c_read
-      !> write(2): the number of bytes written, negative on error.
+      !> Writes bytes: write(2). The result is the number of bytes written, negative for an error.
       integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write')
          import :: c_int, c_char, c_size_t
-         integer(c_int), value :: descriptor
-         character(kind=c_char), intent(in) :: text(*)
-         integer(c_size_t), value :: length
+         integer(c_int), value :: descriptor  !< of the file
+         character(kind=c_char), intent(in) :: text(*)   !< (length) the bytes
+         integer(c_size_t), value :: length   !< bytes at most
       end function c_write
-      !> close(2).
+      !> Closes a file: close(2). The result is 0, or -1 for an error.
       integer(c_int) function c_close(descriptor) bind(c, name='close')
          import :: c_int
-         integer(c_int), value :: descriptor
+         integer(c_int), value :: descriptor   !< of the file
       end function c_close
-      !> ftruncate(2): cuts an open file to `length` bytes.
+      !> Cuts an open file: ftruncate(2). The result is 0, or -1 for an error.
       integer(c_int) function ftruncate(descriptor, length) bind(c)
          import :: c_int, c_long
-         integer(c_int), value :: descriptor
-         integer(c_long), value :: length
+         integer(c_int), value :: descriptor  !< of the file
+         integer(c_long), value :: length     !< bytes that stay
       end function ftruncate
-      !> isatty(3): 1 for a terminal.
+      !> Gives 1 for a terminal, otherwise 0: isatty(3).
       integer(c_int) function isatty(descriptor) bind(c)
          import :: c_int
-         integer(c_int), value :: descriptor
+         integer(c_int), value :: descriptor   !< of the file
       end function isatty
-      !> unlink(2): removes a file.
+      !> Removes a file: unlink(2). The result is 0, or -1 for an error.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
+         character(kind=c_char), intent(in) :: path(*)   !< ends with a null
       end function unlink
-      !> The address of errno, which C offers as a macro alone.
+      !> Gives the address of errno, which C offers as a macro only.
       type(c_ptr) function errno_location() bind(c, name='__errno_location')
          import :: c_ptr
       end function errno_location
-      !> strerror_r(3) of POSIX: writes the text of error `number`, and a null behind it.
+      !> Writes the text of an error and a null after it: strerror_r(3) of POSIX. The result is 0 for success.
       integer(c_int) function strerror_r(number, text, length) bind(c, name='__xpg_strerror_r')
          import :: c_int, c_char, c_size_t
-         integer(c_int), value :: number
-         character(kind=c_char), intent(inout) :: text(*)
-         integer(c_size_t), value :: length
+         integer(c_int), value :: number      !< of the error
+         character(kind=c_char), intent(inout) :: text(*)   !< (length) the text
+         integer(c_size_t), value :: length   !< characters at most, with the null
       end function strerror_r
-      !> signal(2): installs a handler; returns the one before.
+      !> Installs the handler of a signal: signal(2). The result is the handler before.
       type(c_funptr) function signal(number, handler) bind(c)
          import :: c_int, c_funptr
-         integer(c_int), value :: number
-         type(c_funptr), value :: handler
+         integer(c_int), value :: number      !< of the signal
+         type(c_funptr), value :: handler     !< null: the usual action
       end function signal
-      !> raise(3): sends this process a signal.
+      !> Sends this process a signal: raise(3). The result is 0 for success.
       integer(c_int) function raise(number) bind(c)
          import :: c_int
-         integer(c_int), value :: number
+         integer(c_int), value :: number   !< of the signal
       end function raise
    end interface
 
 contains
 
-   !> The identity of the file `path`, symbolic links followed, or of the file that is open as `descriptor`; the default
-   !> of its type if there is no such file.
+   !> Gives the identity of a file. If there is no such file, the result is the default of its type.
    type(identity_t) function identity_of(path, descriptor) result(id)
-      character(*), intent(in), optional :: path
-      integer(c_int), intent(in), optional :: descriptor
+      character(*), intent(in), optional :: path   !< of the file; symbolic links are followed
+      integer(c_int), intent(in), optional :: descriptor   !< instead: of a file that is open
       type(facts_t) :: facts
       integer(c_int) :: status
 
@@ -151,7 +157,7 @@ contains
       id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
    end function identity_of
 
-   !> Whether `first` and `second` are one regular file. A device, pipe or terminal may be used twice without harm.
+   !> Tells whether two are one regular file. A device, pipe or terminal may be used twice without harm.
    elemental logical function same_file(first, second)
       type(identity_t), intent(in) :: first, second
 
@@ -159,19 +165,18 @@ contains
          second%device)
    end function same_file
 
-   !> Opens the file `path` for reading. The result is its descriptor, or negative for an error: see `last_error`.
+   !> Opens a file for reading. The result is its descriptor, negative for an error, which `last_error` has.
    integer(c_int) function open_to_read(path)
-      character(*), intent(in) :: path
+      character(*), intent(in) :: path   !< of the file
 
       open_to_read = c_open(path//c_null_char, read_only)
    end function open_to_read
 
-   !> Opens the file `path` for writing and keeps its contents. `descriptor`: negative for an error, see `last_error`.
-   !> `made`: the file did not exist.
+   !> Opens a file for writing and keeps its contents, or creates it.
    subroutine open_to_write(path, descriptor, made)
-      character(*), intent(in) :: path
-      integer(c_int), intent(out) :: descriptor
-      logical, intent(out) :: made
+      character(*), intent(in) :: path       !< of the file
+      integer(c_int), intent(out) :: descriptor   !< negative for an error, which `last_error` has
+      logical, intent(out) :: made           !< the file did not exist
       integer :: error
 
       descriptor = c_open(path//c_null_char, write_only)
@@ -182,32 +187,32 @@ contains
       made = descriptor >= 0
    end subroutine open_to_write
 
-   !> Reads to `text`. The result is the number of bytes read: 0 at the end, negative for an error.
+   !> Reads bytes. The result is the number of bytes read: 0 at the end of the file, negative for an error.
    integer function read_bytes(descriptor, text)
-      integer(c_int), intent(in) :: descriptor
-      character(*), intent(out) :: text
+      integer(c_int), intent(in) :: descriptor   !< of an open file
+      character(*), intent(out) :: text   !< as many bytes as it is long, at most
 
       read_bytes = int(c_read(descriptor, text, len(text, c_size_t)))
    end function read_bytes
 
-   !> Writes `text` or its first part. The result is the number of bytes written, negative for an error.
+   !> Writes a text or its first part. The result is the number of bytes written, negative for an error.
    integer(c_size_t) function write_bytes(descriptor, text)
-      integer(c_int), intent(in) :: descriptor
-      character(*), intent(in) :: text
+      integer(c_int), intent(in) :: descriptor   !< of an open file
+      character(*), intent(in) :: text   !< the bytes
 
       write_bytes = c_write(descriptor, text, len(text, c_size_t))
    end function write_bytes
 
-   !> Closes `descriptor`; false if the system reports an error, such as a delayed write error.
+   !> Closes a file, and tells whether the system reports no error. A delayed write error is such an error.
    logical function close_descriptor(descriptor)
-      integer(c_int), intent(in) :: descriptor
+      integer(c_int), intent(in) :: descriptor   !< of an open file
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
 
-   !> Removes the file `path`; a symbolic link stays, and so does its file.
+   !> Removes a regular file. A symbolic link stays, and so does its file.
    subroutine remove_file(path)
-      character(*), intent(in) :: path
+      character(*), intent(in) :: path   !< of the file
       type(facts_t) :: facts
       integer(c_int) :: status
 
@@ -229,7 +234,7 @@ contains
       if (descriptor > 2) closed = close_descriptor(descriptor)
    end subroutine occupy_standard_descriptors
 
-   !> The system's number of its last error.
+   !> Gives the system's number of its last error.
    integer function last_error()
       integer(c_int), pointer :: number
 
@@ -237,9 +242,9 @@ contains
       last_error = number
    end function last_error
 
-   !> The system's words for the error number `error`.
+   !> Gives the system's words for an error.
    function reason_of(error) result(text)
-      integer, intent(in) :: error
+      integer, intent(in) :: error   !< the system's number of the error
       character(:), allocatable :: text
       character(256) :: words
       integer(c_int) :: status
@@ -249,8 +254,8 @@ contains
       text = words(:index(words, c_null_char) - 1)
    end function reason_of
 
-   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. The limit of file sizes is a write error
-   !> and no longer a signal that kills.
+   !> Notes SIGINT and SIGTERM from now on, unless they were ignored. The limit of file sizes becomes a write error and
+   !> is no longer a signal that kills.
    subroutine watch_signals
       type(c_funptr) :: before
       integer :: i
@@ -267,7 +272,7 @@ contains
    !> Handles a signal by what is safe at any moment: keeps its number, and restores the usual actions unless all are
    !> noted.
    subroutine note_signal(number) bind(c)
-      integer(c_int), value :: number
+      integer(c_int), value :: number   !< of the signal
       type(c_funptr) :: before
       integer :: i
 
@@ -278,14 +283,14 @@ contains
       end do
    end subroutine note_signal
 
-   !> The number of the signal that was noted; 0: none.
+   !> Gives the number of the signal that was noted; 0: none.
    integer function signal_received()
       signal_received = received
    end function signal_received
 
-   !> Ends the process by the signal `number`, so that a shell sees the usual status.
+   !> Ends the process by a signal, so that a shell sees the usual status.
    subroutine end_by_signal(number)
-      integer, intent(in) :: number
+      integer, intent(in) :: number   !< of the signal
       type(c_funptr) :: before
       integer(c_int) :: status
 
@@ -293,7 +298,7 @@ contains
       status = raise(int(number, c_int))
    end subroutine end_by_signal
 
-   !> The address of a handler as a number.
+   !> Gives the address of a handler as a number.
    pure integer(c_intptr_t) function address(handler)
       type(c_funptr), intent(in) :: handler
 

@@ -12,16 +12,18 @@ module text_output
    public :: move_text
    public :: held_length, write_held, release_output, turn_lost, replaced
 
-   integer, parameter :: block_length = 65536
+   !> Characters of a buffer: few calls of the system, and the buffer stays in the processor's cache.
+   integer, parameter :: buffer_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
    integer, parameter :: turn_lost = -1
+   !> Descriptors that every process has.
    integer(c_int), parameter :: standard_input = 0, standard_output = 1
 
    !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
    type :: output_t
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
-      character(:), allocatable :: buffer    !< (block_length or more); not allocated: not open
+      character(:), allocatable :: buffer    !< (buffer_length or more); not allocated: not open
       integer :: written = 0, used = 0       !< what is not written yet stands in the buffer between these places
       logical :: held = .false.              !< its turn to be written has not come: all text stays in the buffer
       logical :: made = .false.              !< the file did not exist before
@@ -31,15 +33,14 @@ module text_output
 
 contains
 
-   !> Opens the file `path` for writing; '' is standard output. The first block that is written replaces its old
-   !> contents. Errors: status_system.
+   !> Opens a file for writing. The first block that is written replaces its old contents. Errors: status_system.
    subroutine open_output(o, path, failure)
       type(output_t), intent(out) :: o
-      character(*), intent(in) :: path
+      character(*), intent(in) :: path   !< of the file; '' is standard output
       type(failure_t), allocatable, intent(out) :: failure
 
       o%path = path
-      allocate (character(block_length) :: o%buffer)
+      allocate (character(buffer_length) :: o%buffer)
       o%emptied = len(path) == 0
       if (o%emptied) then
          ! Writing no characters shows whether the descriptor is open.
@@ -55,29 +56,29 @@ contains
          //capitals(reason_of(o%error))//')')
    end subroutine open_output
 
-   !> Makes an output ready that is no file: all of its text is held.
+   !> Opens an output that is no file: all of its text is held.
    subroutine open_held(o)
       type(output_t), intent(out) :: o
 
       o%held = .true.
-      allocate (character(block_length) :: o%buffer)
+      allocate (character(buffer_length) :: o%buffer)
    end subroutine open_held
 
    !> Moves the text that an output holds to another one.
    subroutine move_text(from, o)
       type(output_t), intent(inout) :: from  !< holds nothing then
-      type(output_t), intent(inout) :: o
+      type(output_t), intent(inout) :: o     !< has the text then, after its own
 
       call add(o, from%buffer(from%written + 1:from%used))
       from%written = 0
       from%used = 0
    end subroutine move_text
 
-   !> Rejects a file that would be both read and written, or written twice, under whatever names. `list`: the outputs,
-   !> of which those that are open count. `deck`: the file of the deck, '' for standard input. Errors: status_rejected.
+   !> Rejects a file that would be both read and written, or written twice, under whatever names. Errors:
+   !> status_rejected.
    subroutine check_apart(list, deck, failure)
-      type(output_t), intent(in) :: list(:)
-      character(*), intent(in) :: deck
+      type(output_t), intent(in) :: list(:)  !< (outputs) those that are open count
+      character(*), intent(in) :: deck       !< the file of the deck; '' is standard input
       type(failure_t), allocatable, intent(out) :: failure
       type(identity_t) :: id(size(list)), read_from      ! those that are not open are no files
       character(:), allocatable :: name
@@ -101,7 +102,7 @@ contains
    !> Appends one line, or the rest of one that `add` began.
    subroutine put(o, line)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: line
+      character(*), intent(in) :: line   !< without its end
 
       if (len(line) >= len(o%buffer) - o%used) then
          call add(o, line)
@@ -116,7 +117,7 @@ contains
    !> Appends a part of a line.
    subroutine add(o, text)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text   !< any characters
       character(:), allocatable :: other
       integer :: held, last
 
@@ -145,17 +146,17 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> How many characters are held, or wait for a block to be full.
+   !> Counts the characters that are held, or wait for a block to be full.
    elemental integer function held_length(o)
       type(output_t), intent(in) :: o
 
       held_length = o%used - o%written
    end function held_length
 
-   !> Writes the first `length` characters that are held.
+   !> Writes the first characters that are held. After a write error they are dropped.
    subroutine write_held(o, length)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: length
+      integer, intent(in) :: length   !< how many characters, at most `held_length`
 
       call write_text(o, o%buffer(o%written + 1:o%written + length))
       o%written = o%written + length
@@ -164,15 +165,15 @@ contains
       o%used = 0
    end subroutine write_held
 
-   !> Writes all that is held, and text is held no longer. Its buffer is then short, and stays in the processor's cache.
+   !> Writes all text that is held, and holds no more. The buffer is then short and stays in the processor's cache.
    subroutine release_output(o)
       type(output_t), intent(inout) :: o
 
       call write_held(o, held_length(o))
       o%held = .false.
-      if (len(o%buffer) == block_length) return
+      if (len(o%buffer) == buffer_length) return
       deallocate (o%buffer)
-      allocate (character(block_length) :: o%buffer)
+      allocate (character(buffer_length) :: o%buffer)
    end subroutine release_output
 
    !> Writes the buffer of an open output at once, unless it is held: a reader that waits has its lines, and a write
@@ -183,7 +184,7 @@ contains
       if (allocated(o%buffer) .and. .not. o%held) call write_held(o, held_length(o))
    end subroutine flush_output
 
-   !> Writes the rest of the buffer and closes. Errors: status_system, if any line could not be written.
+   !> Writes the rest of the buffer and closes the output. Errors: status_system, if any line could not be written.
    subroutine close_output(o, failure)
       type(output_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
@@ -199,7 +200,7 @@ contains
       call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
 
-   !> Closes an output without writing, if it is open: the file is as it was before, and removed if it did not exist.
+   !> Closes an output without writing, if it is open. The file is as it was before, and removed if it did not exist.
    impure elemental subroutine abandon_output(o)
       type(output_t), intent(inout) :: o
       logical :: closed
@@ -211,10 +212,10 @@ contains
       if (o%made) call remove_file(o%path)
    end subroutine abandon_output
 
-   !> Writes all of `text`: the system may take it in several pieces.
+   !> Writes all of a text: the system may take it in several pieces. After a write error nothing is written.
    subroutine write_text(o, text)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text   !< any characters
       type(identity_t) :: id
       integer(c_size_t) :: written, done
 
@@ -234,9 +235,11 @@ contains
       end do
    end subroutine write_text
 
-   !> `text` with `words`(k), without blanks at its end, in the place of each letter number k of `letters`.
+   !> Replaces each letter of a list in a text by a word.
    pure function replaced(text, letters, words) result(other)
-      character(*), intent(in) :: text, letters, words(:)
+      character(*), intent(in) :: text       !< any characters
+      character(*), intent(in) :: letters    !< those that are replaced
+      character(*), intent(in) :: words(:)   !< (letters) the word for each; blanks at its end do not count
       character(:), allocatable :: other
       integer :: i, k
 

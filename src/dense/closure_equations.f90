@@ -10,7 +10,7 @@
 !>    y_i + u_y - y_j - w_y = 0        (8)
 !> Derivatives by phi are the slopes of the body vectors: u' = (-u_y, u_x). The second derivative by time is
 !> J a + (-phi_i'^2 u + phi_j'^2 w): its second part is the acceleration remainder.
-!> The pair alone is never singular: its x and y columns hold +1 and -1.
+!> By itself the pair is never singular: its x and y columns hold +1 and -1.
 !>
 !> Prismatic pair: point P of link i and point Q of link j; the guide lies in link i. Its direction
 !> e = (cos theta, sin theta), theta = phi_i + alpha, and its normal n = (-sin theta, cos theta) turn with link i.
@@ -35,12 +35,12 @@ module closure_equations
 
 contains
 
-   !> Residual (n) of all equations at `configuration`; `driven` (drives): the drives' values.
+   !> Finds the residuals of all closure equations (14).
    pure subroutine residual(system, configuration, driven, residuals)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: driven(:)
-      real(wp), intent(out) :: residuals(:)
+      real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
+      real(wp), intent(out) :: residuals(:)  !< (n) in the system's unit of length or rad
       integer :: k
 
       do k = 1, size(system%pairs)
@@ -52,6 +52,7 @@ contains
                   system%link_of(pair%point_i)) - pair%beta]
          end associate
       end do
+
       do k = 1, size(system%drives)
          associate (row => residuals(2*size(system%pairs) + k), subject => system%drives(k)%subject, &
             axis => axis_of(system%drives(k)%kind))
@@ -70,12 +71,11 @@ contains
       end do
    end subroutine residual
 
-   !> Jacobian (n, n) of the residual at `configuration`, or the matrix A of (20) where the configuration is in the
-   !> frozen form.
+   !> Finds the Jacobian of the residuals. If the configuration is in the frozen form, it is the matrix A of (20).
    pure subroutine jacobian(system, configuration, a)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(out) :: a(:, :)
+      real(wp), intent(out) :: a(:, :)       !< (n, n) in the system's unit of length and rad
       real(wp) :: coefficients(3)
       integer :: k, row
 
@@ -94,6 +94,7 @@ contains
             end if
          end associate
       end do
+
       do k = 1, size(system%drives)
          row = 2*size(system%pairs) + k
          coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
@@ -109,6 +110,7 @@ contains
             case (drive_relangle)
                call place(system, a, row, drive%second, coefficients)
                call place(system, a, row, subject, -coefficients)
+
             case (drive_slide)
                call place_both(system, a, row, subject, projection_row(system, configuration, subject, along(system, &
                   configuration, subject), &
@@ -119,13 +121,12 @@ contains
       end do
    end subroutine jacobian
 
-   !> Acceleration remainder (n): what the second derivative of the residual holds beside J a, at velocities
-   !> `rates` (3, links).
+   !> Finds the acceleration remainder: the part of the second derivative of the residuals in addition to J a.
    pure subroutine remainder(system, configuration, rates, gamma)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: rates(:, :)
-      real(wp), intent(out) :: gamma(:)
+      real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
+      real(wp), intent(out) :: gamma(:)      !< (n) in the system's unit of length or rad, per unit of time squared
       integer :: k
 
       gamma = 0.0_wp
@@ -147,13 +148,12 @@ contains
       end do
    end subroutine remainder
 
-   !> Value, rate and acceleration (3, drives) of the drives on `path` at the `parameter`, in the system's unit and
-   !> from its origin.
+   !> Finds value, rate and acceleration of all drives, in the system's unit and from its origin.
    pure subroutine find_drive_values(system, path, parameter, values)
       type(system_t), intent(in) :: system
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: parameter
-      real(wp), intent(out) :: values(:, :)
+      real(wp), intent(in) :: parameter      !< of the path
+      real(wp), intent(out) :: values(:, :)  !< (3, drives) in the system's unit of length or rad, by the parameter
       integer :: i
 
       do i = 1, size(system%drives)
@@ -165,41 +165,43 @@ contains
       end do
    end subroutine find_drive_values
 
-   !> The coordinate that a drive of this `kind`, X or Y, gives.
+   !> Gives the coordinate of a drive X or Y: 1 for x, 2 for y.
    pure integer function axis_of(kind)
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind   !< drive_x or drive_y
 
       axis_of = merge(1, 2, kind == drive_x)
    end function axis_of
 
-   !> Adds six `coefficients` to `row` of `a`, at the columns of the two links of pair `k`.
+   !> Adds coefficients to a row of the Jacobian, at the columns of the two links of a pair.
    pure subroutine place_both(system, a, row, k, coefficients)
       type(system_t), intent(in) :: system
-      real(wp), intent(inout) :: a(:, :)
-      integer, intent(in) :: row, k
-      real(wp), intent(in) :: coefficients(6)
+      real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
+      integer, intent(in) :: row             !< the number of the row
+      integer, intent(in) :: k               !< the number of the pair
+      real(wp), intent(in) :: coefficients(6)   !< of x_i, y_i, phi_i, x_j, y_j, phi_j
 
       call place(system, a, row, system%link_of(system%pairs(k)%point_i), coefficients(:3))
       call place(system, a, row, system%link_of(system%pairs(k)%point_j), coefficients(4:))
    end subroutine place_both
 
-   !> Adds three `coefficients` to `row` of `a` at the columns of `link`; a ground link has none.
+   !> Adds coefficients to a row of the Jacobian, at the columns of a link; a ground link has none.
    pure subroutine place(system, a, row, link, coefficients)
       type(system_t), intent(in) :: system
-      real(wp), intent(inout) :: a(:, :)
-      integer, intent(in) :: row, link
-      real(wp), intent(in) :: coefficients(3)
+      real(wp), intent(inout) :: a(:, :)     !< (n, n) the Jacobian
+      integer, intent(in) :: row             !< the number of the row
+      integer, intent(in) :: link            !< the number of the link
+      real(wp), intent(in) :: coefficients(3)   !< of x, y, phi
 
       associate (c => system%column(link))
          if (c > 0) a(row, c:c + 2) = a(row, c:c + 2) + coefficients
       end associate
    end subroutine place
 
-   !> P - Q (2) of pair `k` in the `configuration`.
+   !> Gives P - Q (2) of a pair, in the system's unit of length.
    pure function closure_error(system, configuration, k) result(d)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the pair
       real(wp) :: d(2)
 
       associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
@@ -208,36 +210,37 @@ contains
       end associate
    end function closure_error
 
-   !> Normal n of the guide of pair `k`.
+   !> Gives the normal n (2) of the guide of a prismatic pair, a unit vector.
    pure function normal(system, configuration, k) result(n)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the pair
       real(wp) :: n(2)
 
       n = quarter_turn(-along(system, configuration, k))
    end function normal
 
-   !> Minus the direction e of the guide of pair `k`: the slide is the projection of P - Q on it.
+   !> Gives minus the direction e (2) of the guide of a prismatic pair: the slide is the projection of P - Q on it.
    pure function along(system, configuration, k) result(f)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the pair
       real(wp) :: f(2)
 
       f = -rotated(system%guide(:, k), configuration%direction(:, system%link_of(system%pairs(k)%point_i)))
    end function along
 
-   !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `direction` (2), which has
-   !> the angle `psi` and in the frozen form the reference angles `zeros` (2).  In the frozen form (16), d . f is d_x
-   !> f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with h counted from the nearest zero of f;
-   !> the other keeps its sine or cosine as the coefficient of d. With x and y columns alone, as printed, the slot of
-   !> the yoke mechanism makes the matrix singular at every position.
+   !> Gives the row (6) of the projection of a prismatic pair, by x_i, y_i, phi_i, x_j, y_j, phi_j. In the frozen form
+   !> (16), d . f is d_x f_x + d_y f_y. The product whose f is nearer to zero becomes d s(h) h, with h counted from the
+   !> nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y columns only, as
+   !> printed, the slot of the yoke mechanism makes the matrix singular at every position.
    pure function projection_row(system, configuration, k, direction, psi, zeros) result(row)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
-      real(wp), intent(in) :: direction(2), psi, zeros(2)
+      integer, intent(in) :: k               !< the number of the pair
+      real(wp), intent(in) :: direction(2)   !< f, the unit vector on which P - Q is projected
+      real(wp), intent(in) :: psi            !< rad: the angle of `direction`
+      real(wp), intent(in) :: zeros(2)       !< rad: reference angles of its cosine and sine, in the frozen form
       real(wp) :: row(6), g(3), d(2), secant(2)
 
       d = closure_error(system, configuration, k)
@@ -253,13 +256,14 @@ contains
       end associate
    end function projection_row
 
-   !> Acceleration remainder of the projection of prismatic pair `k` on `direction` (2), at velocities `rates` (3,
-   !> links).
+   !> Gives the acceleration remainder of the projection of a prismatic pair, in the system's unit of length per unit of
+   !> time squared.
    pure real(wp) function projection_remainder(system, configuration, rates, k, direction) result(gamma)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: rates(:, :), direction(2)
-      integer, intent(in) :: k
+      real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
+      real(wp), intent(in) :: direction(2)   !< f, the unit vector on which P - Q is projected
+      integer, intent(in) :: k               !< the number of the pair
       real(wp) :: velocity(2)
 
       associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
@@ -273,13 +277,13 @@ contains
       end associate
    end function projection_remainder
 
-   !> Computes what the second derivative of P - Q (2) of pair `k` holds beside the accelerations: -phi_i'^2 u +
-   !> phi_j'^2 w.
+   !> Gives the part of the second derivative of P - Q (2) in addition to the accelerations: -phi_i'^2 u +
+   !> phi_j'^2 w, in the system's unit of length per unit of time squared.
    pure function turning_part(system, configuration, rates, k) result(gamma)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: rates(:, :)
-      integer, intent(in) :: k
+      real(wp), intent(in) :: rates(:, :)    !< (3, links) velocities: x', y' (system's unit of length), phi' (rad)
+      integer, intent(in) :: k               !< the number of the pair
       real(wp) :: gamma(2)
 
       associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)

@@ -31,7 +31,7 @@ module configuration
       real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
    end type system_t
 
-   !> A position of all links and what follows from it alone; lengths in the system's unit, angles in radians.
+   !> A position of all links and what follows from it; lengths in the system's unit, angles in radians.
    type :: configuration_t
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
@@ -44,9 +44,9 @@ module configuration
 
 contains
 
-   !> The closure equations of `m`, whose count of equations equals its count of unknowns.
+   !> Makes the closure equations of a mechanism.
    function new_system(m) result(s)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< with as many equations as unknowns
       type(system_t) :: s
       integer :: i
 
@@ -70,7 +70,7 @@ contains
       s%drives = m%drives
    end function new_system
 
-   !> The deck's positions: of ground links the given ones, of the others the estimates.
+   !> Gives the positions of the deck: the given ones of ground links, the estimates of the others.
    pure function new_configuration(system, m) result(p)
       type(system_t), intent(in) :: system
       type(mechanism_t), intent(in) :: m
@@ -86,7 +86,7 @@ contains
       call set_configuration(system, p)
    end function new_configuration
 
-   !> Directions, body vectors and slopes from `configuration%q`: one sine and one cosine a link.
+   !> Finds directions, body vectors and slopes from the coordinates: one sine and one cosine a link.
    pure subroutine set_configuration(system, configuration)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(inout) :: configuration
@@ -105,7 +105,7 @@ contains
       end do
    end subroutine set_configuration
 
-   !> Puts `configuration` into the frozen form of (16). Its angles are counted from the zeros nearest to their present
+   !> Puts a configuration into the frozen form of (16). Its angles are counted from the zeros nearest to their present
    !> values.
    pure subroutine choose_references(system, configuration)
       type(system_t), intent(in) :: system
@@ -122,11 +122,11 @@ contains
       call set_configuration(system, configuration)
    end subroutine choose_references
 
-   !> Adds the unknowns' vector `change` (n) to the coordinates `places` (3, links); ground links stay as they are.
+   !> Adds a change of the unknowns to coordinates of all links; ground links stay as they are.
    pure subroutine add_to_links(system, change, places)
       type(system_t), intent(in) :: system
-      real(wp), intent(in) :: change(:)
-      real(wp), intent(inout) :: places(:, :)
+      real(wp), intent(in) :: change(:)      !< (n) in the system's unit of length and rad, or per unit of time
+      real(wp), intent(inout) :: places(:, :)   !< (3, links) x, y, phi or their rates, in these units
       integer :: i
 
       do i = 1, size(system%column)
@@ -134,36 +134,37 @@ contains
       end do
    end subroutine add_to_links
 
-   !> The angle of the normal of pair `k`.
+   !> Gives the angle of the normal of a prismatic pair, in rad.
    pure real(wp) function normal_angle(system, configuration, k)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the pair
 
       normal_angle = configuration%q(3, system%link_of(system%pairs(k)%point_i)) + system%pairs(k)%alpha + pi/2.0_wp
    end function normal_angle
 
-   !> The angle of the body vector to point `i`.
+   !> Gives the angle of the body vector to a point, in rad.
    pure real(wp) function body_vector_angle(system, configuration, i)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the point
 
       body_vector_angle = configuration%q(3, system%link_of(i)) + atan2(system%offset(2, i), system%offset(1, i))
    end function body_vector_angle
 
-   !> The angles (2) nearest to `psi` at which cos, then sin, is zero.
+   !> Gives the angles (2) nearest to an angle at which cos, then sin, is zero, in rad.
    pure function nearest_zeros(psi) result(zeros)
-      real(wp), intent(in) :: psi
+      real(wp), intent(in) :: psi   !< rad
       real(wp) :: zeros(2)
 
       zeros(1) = (anint(psi/pi - 0.5_wp) + 0.5_wp)*pi
       zeros(2) = anint(psi/pi)*pi
    end function nearest_zeros
 
-   !> The frozen coefficients (2) of (15): cos(psi)/(psi - zeros(1)) and sin(psi)/(psi - zeros(2)).
+   !> Gives the frozen coefficients (2) of (15): cos(psi)/(psi - zeros(1)) and sin(psi)/(psi - zeros(2)).
    pure function secants(psi, zeros) result(c)
-      real(wp), intent(in) :: psi, zeros(2)
+      real(wp), intent(in) :: psi            !< rad
+      real(wp), intent(in) :: zeros(2)       !< rad: the reference angles of cosine and sine
       real(wp) :: c(2)
 
       c = [-sin(zeros(1)), cos(zeros(2))]

@@ -26,31 +26,32 @@ module position_iteration
    public :: solve_position
 
    !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding: it has diverged.
-   real(wp), parameter :: reach = largest_change
+   real(wp), parameter :: max_angle_change = largest_change
+   !> Near a singular position Newton's method only halves the step: 53 bits take 53 iterations.
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
    integer, parameter :: matrix_iterations = nint(7.55*digits(1.0_wp))
    !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
-   real(wp), parameter :: step_tolerance = 16.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: dense_step_tolerance = 16.0_wp*epsilon(1.0_wp)
    !> Even where the Jacobian has no inverse a residual at the rounding level leaves no more to correct than this.
    real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
-   !> An iteration does not return from a residual or step of this many sizes; well below overflow.
-   real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   !> An iteration does not return from a step of this size; it is well below overflow.
+   real(wp), parameter :: max_correction = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
 
 contains
 
-   !> Moves the links of `configuration` to a position where the drives have the values `driven` (drives): by Newton's
-   !> method or, if `is_matrix`, by the iteration of 1987. `tolerance`: relative, 0 for the limit of rounding.
-   !> `factors`: room for n equations. If a position is found, `factors` has the factors of the Jacobian for (21) and
-   !> (22): there, or by Newton's method one step of the tolerance's size before it. Otherwise those of the last matrix.
-   !> `convergence` says how it ended.
+   !> Moves all links to a position where the drives have given values: by Newton's method or by the iteration of 1987,
+   !> (20). If the position is found, the factors are those of the Jacobian, for (21) and (22). They belong to the
+   !> position or, by Newton's method, to one a step of the tolerance's size before. Otherwise they are the factors of
+   !> the last matrix.
    subroutine solve_position(system, driven, tolerance, is_matrix, configuration, factors, convergence)
       type(system_t), intent(in) :: system
-      real(wp), intent(in) :: driven(:), tolerance
-      logical, intent(in) :: is_matrix
-      type(configuration_t), intent(inout) :: configuration
-      type(factors_t), intent(inout) :: factors
-      type(convergence_t), intent(out) :: convergence
+      real(wp), intent(in) :: driven(:)      !< (drives) their values in the system's unit of length or rad
+      real(wp), intent(in) :: tolerance      !< relative; 0: the limit of rounding
+      logical, intent(in) :: is_matrix       !< by the iteration of 1987
+      type(configuration_t), intent(inout) :: configuration   !< the initial guess, then the last iterate
+      type(factors_t), intent(inout) :: factors   !< with room for n equations
+      type(convergence_t), intent(out) :: convergence   !< how the iteration ended
       real(wp) :: r(system%n), start(size(configuration%q, 2)), before, highest
       logical :: stays
       integer :: info
@@ -66,6 +67,7 @@ contains
          convergence%residual = maxval(abs(r))/highest
          call jacobian(system, configuration, factors%a)
          call factor(factors, info)
+
          if (info > 0) then
             convergence%singular = convergence%residual <= max(rounding_level, tolerance)
             convergence%ended = merge(ended_stalled, ended_singular, convergence%singular)
@@ -74,24 +76,26 @@ contains
          call solve(factors, r)
          convergence%step = maxval(abs(r))/highest
          if (convergence%residual <= rounding_level .and. &
-            convergence%step > max(step_tolerance, tolerance, min(0.5_wp*before, root_of_rounding))) then
+            convergence%step > max(dense_step_tolerance, tolerance, min(0.5_wp*before, root_of_rounding))) then
             ! Rounding is all that is left to correct, and the position stays.
             convergence%ended = ended_stalled
             exit
          end if
-         stays = all(abs(r) <= bound)
+
+         stays = all(abs(r) <= max_correction)
          if (stays) then
             call add_to_links(system, -r, configuration%q)
             stays = all(abs(configuration%q(3, :)) <= angle_limit) .and. all(abs(configuration%q(3, :) - start) <= &
-               reach)
+               max_angle_change)
          end if
          if (.not. stays) then
             convergence%ended = ended_diverged
             exit
          end if
+
          call set_configuration(system, configuration)
-         if (convergence%residual <= max(rounding_level, tolerance) .and. convergence%step <= max(step_tolerance, &
-            tolerance)) then
+         if (convergence%residual <= max(rounding_level, tolerance) .and. convergence%step <= &
+            max(dense_step_tolerance, tolerance)) then
             convergence%ended = ended_converged
             exit
          end if

@@ -1,8 +1,8 @@
-!> How far the next root of the closure equations is from a position found: what the steps along a curve of assemblies
-!> rely on (card CIRCUITS).
+!> How far the next root of the closure equations is from a position found: the steps along a curve of assemblies rely
+!> on it (card CIRCUITS).
 !>
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
-!> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles alone are
+!> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles only are
 !> linear: R is 0 there, and links that a prismatic pair ties together turn by the same angle. So
 !>    revolute pair        L = |u| + |w|      body vectors of links that turn
 !>    X, Y drive           L = |u|
@@ -40,7 +40,7 @@ module uniqueness_radius
 
 contains
 
-   !> Finds the coordinates of `system`, of its slides for the time being in units of length.
+   !> Finds the coordinates of a system; its slides are not measured yet.
    function new_coordinates(system) result(c)
       type(system_t), intent(in) :: system
       type(coordinates_t) :: c
@@ -67,7 +67,7 @@ contains
       end do
    end function new_coordinates
 
-   !> Measures the slides of `coordinates` in their unit W at `configuration`.
+   !> Measures the slides of the coordinates in their unit W at a configuration.
    pure subroutine measure_slides(system, configuration, coordinates)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
@@ -89,35 +89,35 @@ contains
       end do
    end subroutine measure_slides
 
-   !> |x_i - x_j| of pair number `k` at `configuration`.
+   !> Gives |x_i - x_j| of a pair at a configuration, in the system's unit of length.
    pure real(wp) function slide_length(system, configuration, k)
       type(system_t), intent(in) :: system
       type(configuration_t), intent(in) :: configuration
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the pair
 
       slide_length = norm2(configuration%q(:2, system%link_of(system%pairs(k)%point_i)) - configuration%q(:2, &
          system%link_of(system%pairs(k)%point_j)))
    end function slide_length
 
-   !> The largest coordinate of the difference `change` (n) of two positions.
+   !> Gives the largest coordinate of the difference of two positions, in rad or in W.
    pure real(wp) function distance(coordinates, change)
       type(coordinates_t), intent(in) :: coordinates
-      real(wp), intent(in) :: change(:)
+      real(wp), intent(in) :: change(:)   !< (n) in the system's unit of length and rad
 
       distance = largest(coordinates, abs(matmul(change, coordinates%forms)))
    end function distance
 
-   !> The largest coordinate where its forms are `values`, none negative; those of a slide are one vector.
+   !> Gives the largest coordinate from the values of the forms; the two forms of a slide are one vector.
    pure real(wp) function largest(coordinates, values)
       type(coordinates_t), intent(in) :: coordinates
-      real(wp), intent(in) :: values(:)             !< (forms)
+      real(wp), intent(in) :: values(:)      !< (forms) 0 or more, in rad or in W
 
       largest = maxval([0.0_wp, values(:coordinates%angles), hypot(values(coordinates%angles + 1::2), &
          values(coordinates%angles + 2::2))])
    end function largest
 
-   !> (n, forms + 1) The forms of `coordinates` times the inverse of the matrix with the `factors`, in whose place of
-   !> the last row stands the `tangent`, on which the other rows are 0. If `tangent` is 0 the matrix is as it is.
+   !> Multiplies the forms by the inverse of a factored matrix (n, forms + 1); the last column is scratch. The `tangent`
+   !> stands in the last row of the matrix, and the other rows are 0 on it. If `tangent` is 0, the matrix is as it is.
    function forms_by_inverse(coordinates, factors, tangent) result(y)
       type(coordinates_t), intent(in) :: coordinates
       type(factors_t), intent(in) :: factors
@@ -135,8 +135,8 @@ contains
       end associate
    end function forms_by_inverse
 
-   !> Bounds (rows) of what the rows hold beyond their linear part at `configuration`: L_k of above. The two rows of
-   !> a revolute pair have one bound, that of their vector.
+   !> Bounds the part of the rows beyond their linear part at a configuration: L_k of above (rows). The two rows of a
+   !> revolute pair have one bound, that of their vector.
    pure function jacobian_lipschitz(system, coordinates, configuration) result(bound)
       type(system_t), intent(in) :: system
       type(coordinates_t), intent(in) :: coordinates
@@ -167,13 +167,13 @@ contains
       end do
    end function jacobian_lipschitz
 
-   !> K at `configuration`: no other root is within 2/K, by `distance`. `columns`: the forms of `coordinates` times the
-   !> inverse of a matrix whose first rows are those of the system; its others are linear.
+   !> Gives K at a configuration: no other root is within 2/K, by `distance`. The factored matrix has the rows of the
+   !> system first; its others are linear.
    pure real(wp) function kantorovich(system, coordinates, columns, configuration) result(k)
       type(system_t), intent(in) :: system
       type(coordinates_t), intent(in) :: coordinates
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more)
+      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more) as `forms_by_inverse` gives them
       real(wp) :: bound(2*size(system%pairs) + size(system%drives))
       integer :: m
 
@@ -182,9 +182,9 @@ contains
 
    contains
 
-      !> The sum over the rows of |g . J^-1 e_k| L_k for one form, `row` = g . J^-1; the two of a pair as one vector.
+      !> Adds up |g . J^-1 e_k| L_k over the rows for one form; the two rows of a pair are one vector.
       pure real(wp) function row_sum(row) result(total)
-         real(wp), intent(in) :: row(:)
+         real(wp), intent(in) :: row(:)   !< (n) g . J^-1
 
          associate (pairs => 2*size(system%pairs), each => row(:size(bound))*bound)
             total = sum(hypot(each(1:pairs:2), each(2:pairs:2))) + sum(abs(each(pairs + 1:)))
@@ -192,13 +192,13 @@ contains
       end function row_sum
    end function kantorovich
 
-   !> D at `configuration` in the direction `along`; `columns` as of `kantorovich`.
+   !> Gives D at a configuration in a direction.
    pure real(wp) function change_along(system, coordinates, columns, configuration, along) result(change)
       type(system_t), intent(in) :: system
       type(coordinates_t), intent(in) :: coordinates
-      real(wp), intent(in) :: columns(:, :)          !< (n, forms or more)
+      real(wp), intent(in) :: columns(:, :)  !< (n, forms or more) as `forms_by_inverse` gives them
       type(configuration_t), intent(in) :: configuration
-      real(wp), intent(in) :: along(:, :)      !< (3, links)
+      real(wp), intent(in) :: along(:, :)    !< (3, links) the direction, in the system's unit of length and rad
       real(wp) :: total(size(coordinates%forms, 2)), part(size(coordinates%forms, 2), 2), unit(3, size(along, 2))
       logical :: is_of_pair(size(columns, 1))
       integer :: k, axis
@@ -229,7 +229,7 @@ contains
 
    contains
 
-      !> (n) The rows' second derivative by `along` and by `unit`.
+      !> Gives the second derivatives of the rows by `along` and by `unit` (n).
       pure function mixed_derivative() result(rows)
          real(wp) :: rows(size(columns, 1)), less(size(columns, 1))
 

@@ -1,5 +1,5 @@
 !> Systems of 2p equations x^T C y = 0 in two groups of p unknowns each, in homogeneous coordinates x and y (0:p). With
-!> coefficients by chance they have C(2p, p) solutions (the two-homogeneous number of Bezout), some of them at infinity.
+!> random coefficients they have C(2p, p) solutions (the two-homogeneous number of Bezout), some of them at infinity.
 !> Those with p = 1 are solved in closed form.
 module bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
@@ -45,27 +45,28 @@ module bilinear
 
    !> Rounding of coefficients, which may be of another kind.
    real(dp), parameter :: rounding = max(epsilon(1.0_dp), real(epsilon(1.0_wp), dp))
-   !> A discriminant below this part of its terms is zero.
-   real(dp), parameter :: zero_level = 256.0_dp*rounding
+   !> A determinant, a discriminant or a row below this part of its terms is zero.
+   real(dp), parameter :: zero_part = 256.0_dp*rounding
    !> Solutions nearer to infinity than this are there: no slide is a million times as long as its loop.
    real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*rounding)
 
 contains
 
-   !> How far (`one`, `other`) is from infinity: 0 there, about 1 where no coordinate is large.
+   !> Measures how far a solution is from infinity: 0 there, about 1 if no coordinate is large.
    pure real(dp) function finiteness(bilinear, one, other)
       type(bilinear_t), intent(in) :: bilinear
-      complex(dp), intent(in) :: one(0:), other(0:)
+      complex(dp), intent(in) :: one(0:)     !< (0:p) x, up to a factor
+      complex(dp), intent(in) :: other(0:)   !< (0:p) y, up to a factor
 
       finiteness = min(abs(sum(bilinear%plane*one))/maxval(abs(one)), &
          abs(sum(conjg(bilinear%plane)*other))/maxval(abs(other)))
    end function finiteness
 
-   !> The solutions of `bilinear` with p = 1. `moves`: every x is part of one.
+   !> Finds the solutions of a system with p = 1 in closed form.
    subroutine solve_quadratic(bilinear, ends, moves)
       type(bilinear_t), intent(in) :: bilinear
       type(ends_t), intent(out) :: ends
-      logical, intent(out) :: moves
+      logical, intent(out) :: moves   !< every x is part of a solution
       complex(dp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
       real(dp) :: size_of
       type(path_end_t) :: e
@@ -73,6 +74,7 @@ contains
 
       ends%paths = 2
       allocate (ends%list(0))
+
       ! The two rows x^T C are parallel where their determinant, a quadratic form in x, is zero.
       associate (c => bilinear%c)
          q(0) = c(0, 0, 1)*c(0, 1, 2) - c(0, 1, 1)*c(0, 0, 2)
@@ -80,10 +82,12 @@ contains
          q(2) = c(1, 0, 1)*c(1, 1, 2) - c(1, 1, 1)*c(1, 0, 2)
       end associate
       size_of = maxval(abs(q))
-      moves = size_of <= zero_level
+
+      moves = size_of <= zero_part
       if (moves) ends%paths = 0
       if (moves) return
-      e%is_singular = abs(q(1)**2 - 4.0_dp*q(0)*q(2)) <= zero_level*size_of**2
+
+      e%is_singular = abs(q(1)**2 - 4.0_dp*q(0)*q(2)) <= zero_part*size_of**2
       root = 0.0_dp
       if (.not. e%is_singular) root = sqrt(q(1)**2 - 4.0_dp*q(0)*q(2))
       if (real(conjg(q(1))*root) < 0.0_dp) root = -root
@@ -93,11 +97,12 @@ contains
          if (k == 2) x = [-q(1) - root, 2.0_dp*q(0)]
          if (e%is_singular .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_dp*q(0)]
          if (e%is_singular .and. abs(q(2)) >= abs(q(0))) x = [2.0_dp*q(2), -q(1)]
+
          r(:, 1) = x(0)*bilinear%c(0, :, 1) + x(1)*bilinear%c(1, :, 1)
          r(:, 2) = x(0)*bilinear%c(0, :, 2) + x(1)*bilinear%c(1, :, 2)
          if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
          y = [r(1, 1), -r(0, 1)]
-         if (sum(abs(y)) <= zero_level*sum(abs(x))) then
+         if (sum(abs(y)) <= zero_part*sum(abs(x))) then
             moves = .true.
             ends%failed = ends%failed + 1
          else if (finiteness(bilinear, x, y) > infinity_level) then
@@ -110,12 +115,12 @@ contains
       end do
    end subroutine solve_quadratic
 
-   !> The null space of `a` (rows, columns): `basis` (columns, any number). Complete pivoting over the columns from 2
-   !> on, the first one last of all; what is below `level` of the largest element counts as zero.
+   !> Finds a basis of the null space of a matrix. Pivoting is complete over the columns from 2 on; the first column
+   !> comes last.
    pure subroutine find_null_space(a, level, basis)
-      complex(wp), intent(in) :: a(:, :)
-      real(wp), intent(in) :: level
-      complex(wp), allocatable, intent(out) :: basis(:, :)
+      complex(wp), intent(in) :: a(:, :)     !< (rows, columns)
+      real(wp), intent(in) :: level          !< relative to the largest element: what is below counts as zero
+      complex(wp), allocatable, intent(out) :: basis(:, :)   !< (columns, dimension of the null space)
       complex(wp) :: w(size(a, 1), size(a, 2)), row(size(a, 2))
       real(wp) :: left(size(a, 1), size(a, 2)), zero
       integer :: pivot_column(size(a, 1)), at(2), rank, k, i, free
@@ -125,6 +130,7 @@ contains
       is_free = .true.
       rank = 0
       zero = level*maxval([0.0_wp, abs(a)])
+
       do k = 1, min(size(a, 1), size(a, 2))
          left = merge(abs(w), 0.0_wp, spread(is_free, 1, size(a, 1)))
          left(:k - 1, :) = 0.0_wp
@@ -141,6 +147,7 @@ contains
             if (i /= k) w(i, :) = w(i, :) - w(i, at(2))*w(k, :)
          end do
       end do
+
       allocate (basis(size(a, 2), size(a, 2) - rank), source=(0.0_wp, 0.0_wp))
       k = 0
       do free = 1, size(a, 2)

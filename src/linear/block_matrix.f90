@@ -22,8 +22,8 @@ module block_matrix
    !> Columns that DGEQRF takes together.
    integer, parameter :: panel = 32
 
-   !> The matrix of a block of two unknowns beside one that is factored: so near that its equations are solved by the
-   !> factors there are. In steps of some degrees that saves a second DGESV, a sixth of the step.
+   !> The matrix of a block of two unknowns near another one that is factored: so near that its equations are solved by
+   !> those factors. In steps of some degrees that saves a second DGESV, a sixth of the step.
    type :: nearby_t
       real(wp) :: a(4) = 0.0_wp                  !< the matrix, by columns
       real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
@@ -38,15 +38,15 @@ module block_matrix
 
 contains
 
-   !> A square matrix of `n` rows with so many entries is best sparse. Where many stand in a row, most of the others
-   !> fill up.
+   !> Tells whether a square matrix is best sparse. If there are many entries in a row, most other places fill up.
    pure logical function is_sparse_better(n, entries)
-      integer, intent(in) :: n, entries
+      integer, intent(in) :: n               !< rows of the matrix
+      integer, intent(in) :: entries         !< those that are not always zero
 
       is_sparse_better = n >= min_sparse .and. entries/max(n, 1) < 8 + n/50
    end function is_sparse_better
 
-   !> Numbers that the matrix takes.
+   !> Counts the numbers that the matrix takes.
    elemental integer function entries_of(shape)
       type(shape_t), intent(in) :: shape
 
@@ -54,22 +54,24 @@ contains
       if (shape%pattern == 0) entries_of = shape%rows*shape%n
    end function entries_of
 
-   !> Numbers that `work` takes below.
+   !> Counts the numbers that the workspace of `solve_first` takes.
    elemental integer function work_length(shape)
       type(shape_t), intent(in) :: shape
 
       work_length = merge(4*shape%n, shape%n*(panel + 4) + shape%rows, shape%rows == shape%n)
    end function work_length
 
-   !> Solves `a` x = `right` (rows); the first n of `right` become x, `a` its factors where it is dense. `info` > 0:
-   !> exactly singular. `pivots` (n), `work` (work_length): to be kept for the calls that follow. A sparse matrix is one
-   !> of the `patterns`; its factors are kept in `sparse`, until `release`.
+   !> Factors a matrix and solves its equations, in the sense of least squares if rows are more than unknowns. A sparse
+   !> matrix has its factors in `sparse` until `release`.
    subroutine solve_first(shape, a, pivots, work, right, info, patterns, sparse)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(inout) :: a(*), work(*), right(*)
-      integer, intent(out) :: pivots(*), info
-      type(pattern_t), intent(in), optional :: patterns(:)
-      type(sparse_factors_t), intent(inout), optional :: sparse
+      real(wp), intent(inout) :: a(*)        !< (entries_of) the matrix; a dense one becomes its factors
+      real(wp), intent(inout) :: work(*)     !< (work_length) kept for the calls that follow
+      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n become the solution
+      integer, intent(out) :: pivots(*)      !< (n) kept for the calls that follow
+      integer, intent(out) :: info           !< 0; above 0: exactly singular, and there is no solution
+      type(pattern_t), intent(in), optional :: patterns(:)   !< (patterns) of a sparse matrix: `shape` has the number
+      type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: i
 
       info = 0
@@ -93,13 +95,14 @@ contains
       end if
    end subroutine solve_first
 
-   !> Solves for another right-hand side, from the factors.
+   !> Solves the equations for another right-hand side, from the factors.
    subroutine solve_again(shape, a, pivots, work, right, sparse)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      integer, intent(in) :: pivots(*)
-      real(wp), intent(inout) :: work(*), right(*)
-      type(sparse_factors_t), intent(inout), optional :: sparse
+      real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
+      integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
+      real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
+      real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n become the solution
+      type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: info
 
       if (shape%n == 2 .and. shape%rows == 2) then
@@ -123,15 +126,16 @@ contains
       end if
    end subroutine solve_again
 
-   !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
-   !> The pivots of a sparse matrix can be another's choice: 0 and the largest entry are in their place.
+   !> Finds the smallest and the largest pivot from the factors, and the sign of the determinant. KLU may have chosen
+   !> other pivots than LAPACK: of a sparse matrix, 0 and the largest entry are in their place.
    subroutine pivot_range(shape, a, pivots, least, largest, sign_of, sparse)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      integer, intent(in) :: pivots(*)
-      real(wp), intent(out) :: least, largest
-      integer, intent(out) :: sign_of
-      type(sparse_factors_t), intent(in), optional :: sparse
+      real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix; of a sparse one, its entries
+      integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
+      real(wp), intent(out) :: least         !< the size of the smallest pivot
+      real(wp), intent(out) :: largest       !< the size of the largest pivot
+      integer, intent(out) :: sign_of        !< 1 or -1; 1 if there is no determinant
+      type(sparse_factors_t), intent(in), optional :: sparse   !< of a sparse matrix: its factors
       real(wp) :: pivot
       integer :: i
 
@@ -142,6 +146,7 @@ contains
          sign_of = determinant_sign(sparse)
          return
       end if
+
       least = huge(least)
       largest = 0.0_wp
       do i = 1, shape%n
@@ -153,15 +158,15 @@ contains
       if (shape%rows > shape%n) sign_of = 1
    end subroutine pivot_range
 
-   !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2); `iwork` (n).
-   !> `work` keeps what the next solve_again needs.
+   !> Gives |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2). If it is
+   !> no finite number, the result is huge(norm).
    real(wp) function inverse_norm(shape, a, pivots, work, iwork, sparse) result(norm)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      integer, intent(in) :: pivots(*)
-      real(wp), intent(inout) :: work(*)
-      integer, intent(inout) :: iwork(*)
-      type(sparse_factors_t), intent(inout), optional :: sparse
+      real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
+      integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
+      real(wp), intent(inout) :: work(*)     !< (work_length) what the next `solve_again` needs stays
+      integer, intent(inout) :: iwork(*)     !< (n) scratch
+      type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       integer :: asks, state(3), info
 
       if (shape%rows == 1) then
@@ -194,15 +199,15 @@ contains
       if (.not. norm <= huge(norm)) norm = huge(norm)
    end function inverse_norm
 
-   !> |A^-1| bounds for the vector `bounds` (rows), as `spread` (n), from the factors, column by column.
+   !> Finds |A^-1| times a vector, from the factors, column by column: how far errors of the right-hand side go.
    subroutine spread_by_inverse(shape, a, pivots, work, bounds, spread, sparse)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      integer, intent(in) :: pivots(*)
-      real(wp), intent(inout) :: work(*)
-      real(wp), intent(in) :: bounds(:)
-      real(wp), intent(out) :: spread(:)
-      type(sparse_factors_t), intent(inout), optional :: sparse
+      real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
+      integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
+      real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
+      real(wp), intent(in) :: bounds(:)      !< (rows) bounds of the right-hand sides, in their units
+      real(wp), intent(out) :: spread(:)     !< (n) bounds of the unknowns, in their units
+      type(sparse_factors_t), intent(inout), optional :: sparse   !< of a sparse matrix: its factors
       real(wp) :: column(shape%rows)
       integer :: j
 
@@ -215,13 +220,13 @@ contains
       end do
    end subroutine spread_by_inverse
 
-   !> The matrix of `shape` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
-   !> unless it is better factored itself.
+   !> Prepares the solution of a matrix near one that is factored. If the two differ too much, it is factored itself.
    pure subroutine stay_near(shape, a, pivots, change, near)
-      type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*), change
-      integer, intent(in) :: pivots(*)
-      type(nearby_t), intent(inout) :: near
+      type(shape_t), intent(in) :: shape     !< with two rows and two unknowns; otherwise nothing is done
+      real(wp), intent(in) :: a(*)           !< (4) the factors, by columns
+      real(wp), intent(in) :: change         !< bound of its change in the maximum norm, added to earlier ones
+      integer, intent(in) :: pivots(*)       !< (2) as `solve_first` left them
+      type(nearby_t), intent(inout) :: near  !< its distance grows; 0: not to be used
 
       if (shape%n /= 2 .or. shape%rows /= 2) return
       near%factors = a(:4)
@@ -233,12 +238,12 @@ contains
       if (.not. near%distance <= max_distance) near%distance = 0.0_wp
    end subroutine stay_near
 
-   !> Solves `near` x = `right` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy
-   !> and Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two,
-   !> to what a factorization of its own would leave.
+   !> Solves the equations of a nearby matrix with the inverse of the factored one, by iterative refinement (Higham,
+   !> Accuracy and Stability of Numerical Algorithms, 2002, ch. 12). Each pass takes the error down by the distance of
+   !> the two, to that of a factorization of its own.
    pure subroutine solve_nearby(near, right)
       type(nearby_t), intent(in) :: near
-      real(wp), intent(inout) :: right(2)
+      real(wp), intent(inout) :: right(2)    !< the right-hand side, then the solution
       real(wp) :: x(2), error
 
       x = times(near%inverse, right)
@@ -251,9 +256,10 @@ contains
 
    contains
 
-      !> `a` (4, by columns) times `vector`.
+      !> Multiplies a matrix by a vector (2).
       pure function times(a, vector) result(y)
-         real(wp), intent(in) :: a(4), vector(2)
+         real(wp), intent(in) :: a(4)        !< the matrix, by columns
+         real(wp), intent(in) :: vector(2)   !< in any unit
          real(wp) :: y(2)
 
          y(1) = a(1)*vector(1) + a(3)*vector(2)

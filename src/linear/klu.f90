@@ -1,5 +1,5 @@
 !> Large sparse matrices by KLU (Davis and Palamadai Natarajan, ACM TOMS 37, 2010; part of SuiteSparse):
-!> what is used of its C interface.
+!> the part of its C interface that is used.
 !>
 !> Columns in the order of COLAMD and rows by true partial pivoting, as in LAPACK: KLU's own choices, which take a pivot
 !> on the diagonal a thousand times smaller than another, lose six digits on nets of rods.
@@ -63,50 +63,57 @@ module klu
    !> The sizes of factors before they are found; never written.
    real(c_double), target, save :: unknown(1) = -1
 
+   !> Of `ordering` and `scale` of klu_common: the columns in the order of COLAMD, the rows as they are.
    integer(c_int), parameter :: colamd = 1, unscaled = -1
 
    interface
-      !> Sets the default parameters.
+      !> Sets the default parameters. The result is 1, or 0 for an error.
       integer(c_int) function klu_defaults(common) bind(c)
          import :: c_int, common_t
          type(common_t), intent(inout) :: common
       end function klu_defaults
-      !> Orders the pattern: block triangular form, then COLAMD or AMD.
+      !> Orders the pattern: block triangular form, then COLAMD or AMD. The result is the ordering, null for an error.
       type(c_ptr) function klu_analyze(n, ap, ai, common) bind(c)
          import :: c_int, c_ptr, common_t
-         integer(c_int), value :: n
-         integer(c_int), intent(in) :: ap(*), ai(*)
+         integer(c_int), value :: n           !< rows of the matrix
+         integer(c_int), intent(in) :: ap(*)  !< (n + 1) `first` of the pattern
+         integer(c_int), intent(in) :: ai(*)  !< (entries) `row` of the pattern
          type(common_t), intent(inout) :: common
       end function klu_analyze
-      !> Factors with pivoting.
+      !> Factors with pivoting. The result is the factors, null for an error or an exactly singular matrix.
       type(c_ptr) function klu_factor(ap, ai, ax, symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
-         integer(c_int), intent(in) :: ap(*), ai(*)
-         type(c_ptr), value :: ax, symbolic
+         integer(c_int), intent(in) :: ap(*)  !< (n + 1) `first` of the pattern
+         integer(c_int), intent(in) :: ai(*)  !< (entries) `row` of the pattern
+         type(c_ptr), value :: ax             !< (entries) the matrix
+         type(c_ptr), value :: symbolic       !< its ordering
          type(common_t), intent(inout) :: common
       end function klu_factor
-      !> Solves A x = right in place.
+      !> Solves A x = right in place. The result is 1, or 0 for an error.
       integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, right, common) bind(c)
          import :: c_int, c_ptr, common_t
-         type(c_ptr), value :: symbolic, numeric, right
-         integer(c_int), value :: ldim, nrhs
+         type(c_ptr), value :: symbolic       !< the ordering
+         type(c_ptr), value :: numeric        !< the factors
+         type(c_ptr), value :: right          !< (ldim, nrhs) right-hand sides, then solutions
+         integer(c_int), value :: ldim        !< distance of two right-hand sides
+         integer(c_int), value :: nrhs        !< how many right-hand sides
          type(common_t), intent(inout) :: common
       end function klu_solve
-      !> Frees the ordering.
+      !> Frees the ordering. The result is 1, or 0 for an error.
       integer(c_int) function klu_free_symbolic(symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
-         type(c_ptr), intent(inout) :: symbolic
+         type(c_ptr), intent(inout) :: symbolic   !< becomes null
          type(common_t), intent(inout) :: common
       end function klu_free_symbolic
    end interface
-   !> Solves A' x = b in place.
+   !> Solves A' x = right in place, with the transposed matrix.
    procedure(klu_solve), bind(c) :: klu_tsolve
    !> Frees the factors.
    procedure(klu_free_symbolic), bind(c) :: klu_free_numeric
 
 contains
 
-   !> Finds the order of elimination of `pattern`: the columns in that of COLAMD, so that the factors fill up little.
+   !> Finds the order of elimination of a pattern: the columns by COLAMD, so that the factors fill up little.
    subroutine order_columns(pattern)
       type(pattern_t), intent(inout) :: pattern
       type(common_t) :: common
@@ -124,7 +131,7 @@ contains
       done = klu_free_symbolic(symbolic, common)
    end subroutine order_columns
 
-   !> The settings: see the head of the module. The blocks of a mechanism have been found before.
+   !> Sets the parameters of KLU: columns by COLAMD, true partial pivoting. The blocks of a mechanism are known already.
    subroutine set_common(common)
       type(common_t), intent(inout) :: common
       integer(c_int) :: done
@@ -136,14 +143,13 @@ contains
       common%btf = 0
    end subroutine set_common
 
-   !> Factors the matrix `a` (entries of the `pattern`, column by column). `info` > 0: exactly singular, no factors.
-   !> Rejected: to take the pivots of the matrix before while they serve. It halves the time of large matrices, but
-   !> digits then depend on the way there.
+   !> Factors a matrix. Rejected: to take the pivots of the matrix before while they serve. It halves the time of large
+   !> matrices, but digits then depend on the way there.
    subroutine factor(pattern, a, factors, info)
       type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in), target :: a(*)
+      real(wp), intent(in), target :: a(*)   !< (entries) of the pattern, column by column
       type(sparse_factors_t), intent(inout), target :: factors
-      integer, intent(out) :: info
+      integer, intent(out) :: info           !< 0; above 0: exactly singular, no factors
       integer(c_int) :: n
 
       call release(factors)
@@ -171,11 +177,11 @@ contains
       factors%numeric = c_null_ptr
    end subroutine release
 
-   !> `right` (n): the right-hand side, then the solution, from the factors; with the matrix `transposed` or not.
+   !> Solves the equations for a right-hand side, from the factors.
    subroutine solve(factors, right, transposed)
       type(sparse_factors_t), intent(inout), target :: factors
-      real(wp), intent(inout), target :: right(*)
-      logical, intent(in) :: transposed
+      real(wp), intent(inout), target :: right(*)   !< (n) the right-hand side, then the solution
+      logical, intent(in) :: transposed      !< with the transposed matrix
       integer(c_int) :: done
 
       associate (symbolic => c_loc(factors%symbolic), n => factors%symbolic%n)
@@ -198,9 +204,9 @@ contains
       if (mod(count(pivots < 0.0_c_double), 2) == 1) sign_of = -sign_of
    end function determinant_sign
 
-   !> The sign of the `permutation` of 0 to n - 1: a cycle of length c is c - 1 exchanges.
+   !> Finds the sign of a permutation: a cycle of length c is c - 1 exchanges.
    pure integer function sign_of_permutation(permutation) result(sign_of)
-      integer(c_int), intent(in) :: permutation(:)
+      integer(c_int), intent(in) :: permutation(:)   !< (n) of 0 to n - 1
       logical :: is_seen(size(permutation))
       integer :: i, next
 

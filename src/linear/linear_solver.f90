@@ -16,9 +16,9 @@ module linear_solver
 
 contains
 
-   !> Room for an `n` by `n` matrix.
+   !> Makes room for a square matrix.
    pure function new_factors(n) result(f)
-      integer, intent(in) :: n
+      integer, intent(in) :: n   !< its rows
       type(factors_t) :: f
 
       f%n = n
@@ -26,19 +26,19 @@ contains
       allocate (f%pivots(n), source=0)
    end function new_factors
 
-   !> Factors `factors%a` in place. `info` > 0: exactly singular, the pivot of that number is zero.
+   !> Factors the matrix in place.
    subroutine factor(factors, info)
       type(factors_t), intent(inout) :: factors
-      integer, intent(out) :: info
+      integer, intent(out) :: info   !< 0; above 0: exactly singular, the pivot of that number is zero
 
       info = 0
       if (factors%n > 0) call getrf(factors%n, factors%n, factors%a, factors%n, factors%pivots, info)
    end subroutine factor
 
-   !> Replaces the right-hand side `right` (n) by the solution, from the factors.
+   !> Solves the equations for a right-hand side, from the factors.
    subroutine solve(factors, right)
       type(factors_t), intent(in) :: factors
-      real(wp), intent(inout) :: right(:)
+      real(wp), intent(inout) :: right(:)   !< (n) the right-hand side, then the solution
       integer :: info
 
       if (factors%n == 0) return

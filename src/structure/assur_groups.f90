@@ -25,8 +25,10 @@ module assur_groups
       integer, allocatable :: link_of(:)             !< (unknowns)
    end type closure_t
 
-   real(wp), parameter :: rounding = 8.0_wp*epsilon(1.0_wp)
-   real(wp), parameter :: along(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
+   !> A component of a unit vector below this is zero.
+   real(wp), parameter :: zero_component = 8.0_wp*epsilon(1.0_wp)
+   !> (2, axes) Unit vectors along x and along y.
+   real(wp), parameter :: axis_directions(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
 
    type :: group_t
       integer, allocatable :: links(:)    !< numbers of its links
@@ -35,7 +37,7 @@ module assur_groups
 
 contains
 
-   !> The incidence of `m`: time and memory proportional to links, pairs and drives.
+   !> Makes the closure equations of a mechanism: time and memory are proportional to links, pairs and drives.
    function new_closure(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(closure_t) :: c
@@ -48,6 +50,7 @@ contains
       moving(links) = [(i, i=1, size(links))]
       c%link_of = [((links(i), k=1, 3), i=1, size(links))]
       c%incidence%unknowns = size(c%link_of)
+
       associate (equations => 2*size(m%pairs) + size(m%drives))
          allocate (c%incidence%first(equations + 1), c%incidence%unknown(6*equations))
          c%incidence%equations = equations
@@ -55,12 +58,13 @@ contains
       c%incidence%first(1) = 1
       n = 0
       k = 0
+
       do i = 1, size(m%pairs)
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (.not. has_guide(m%pairs(i)%kind)) then
                do axis = 1, 2
-                  call note_component(p, along(:, axis))
-                  call note_component(q, along(:, axis))
+                  call note_component(p, axis_directions(:, axis))
+                  call note_component(q, axis_directions(:, axis))
                   call close_equation()
                end do
             else
@@ -72,6 +76,7 @@ contains
             end if
          end associate
       end do
+
       do i = 1, size(m%drives)
          associate (subject => m%drives(i)%subject)
             select case (m%drives(i)%kind)
@@ -81,9 +86,9 @@ contains
                call note(subject, angle)
                call note(m%drives(i)%second, angle)
             case (drive_x)
-               call note_component(subject, along(:, 1))
+               call note_component(subject, axis_directions(:, 1))
             case (drive_y)
-               call note_component(subject, along(:, 2))
+               call note_component(subject, axis_directions(:, 2))
             case (drive_slide)
                call note_projection(subject, across=.false.)
             end select
@@ -93,11 +98,10 @@ contains
 
    contains
 
-      !> Those of the coordinates x, y, phi of `link` that are `in` the equation at hand; those of the ground are no
-      !> unknowns.
+      !> Notes coordinates of a link in the equation at hand. Coordinates of the ground are no unknowns.
       subroutine note(link, in)
-         integer, intent(in) :: link
-         logical, intent(in) :: in(3)
+         integer, intent(in) :: link         !< its number among all links
+         logical, intent(in) :: in(3)        !< which of x, y, phi are in the equation
          integer :: k
 
          if (moving(link) == 0) return
@@ -105,18 +109,18 @@ contains
          n = n + count(in)
       end subroutine note
 
-      !> The component of point `pair` along the fixed `direction`.
-      subroutine note_component(pair, direction)
-         integer, intent(in) :: pair
-         real(wp), intent(in) :: direction(2)
+      !> Notes the coordinates in the component of a point along a fixed direction.
+      subroutine note_component(point, direction)
+         integer, intent(in) :: point        !< its number
+         real(wp), intent(in) :: direction(2)   !< x and y; a zero tells that the coordinate is not in the equation
 
-         call note(m%points(pair)%link, [abs(direction) > rounding, any(abs(m%points(pair)%offset) > 0.0_wp)])
+         call note(m%points(point)%link, [abs(direction) > zero_component, any(abs(m%points(point)%offset) > 0.0_wp)])
       end subroutine note_component
 
-      !> The projection of prismatic pair `i` across its guide or along it.
+      !> Notes the coordinates in the projection of a prismatic pair.
       subroutine note_projection(i, across)
-         integer, intent(in) :: i
-         logical, intent(in) :: across
+         integer, intent(in) :: i            !< the number of the pair
+         logical, intent(in) :: across       !< on the normal of its guide; otherwise along the guide
          real(wp) :: angle
 
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
@@ -131,7 +135,7 @@ contains
          end associate
       end subroutine note_projection
 
-      !> The equation at hand is complete.
+      !> Completes the equation at hand.
       subroutine close_equation()
 
          k = k + 1
@@ -139,11 +143,11 @@ contains
       end subroutine close_equation
    end function new_closure
 
-   !> The groups of `m`, in whose `closure` each unknown can have an equation. The links of the part with too many
-   !> equations are one group.
+   !> Finds the Assur groups of a mechanism in solving order. The links of the part with too many equations are one
+   !> group.
    function groups_of(m, closure) result(groups)
       type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: closure
+      type(closure_t), intent(in) :: closure   !< of `m`; each unknown can have an equation in it
       type(group_t), allocatable :: groups(:)
       logical :: over(closure%incidence%equations)
       type(incidence_t) :: waits
@@ -159,12 +163,14 @@ contains
       do i = 1, size(first) - 1
          of_link(member(first(i):first(i + 1) - 1)) = i
       end do
+
       order = numbers()
       allocate (groups(maxval([0, order])))
       by_group = sorted(order(of_link), size(groups))
       do i = 1, size(groups)
          groups(i)%links = members(by_group, i)
       end do
+
       do e = 2*size(m%pairs) + 1, size(unknown_of)
          if (closure%incidence%first(e) == closure%incidence%first(e + 1)) cycle
          i = closure%link_of(merge(closure%incidence%unknown(closure%incidence%first(e)), unknown_of(e), over(e)))
@@ -173,7 +179,7 @@ contains
 
    contains
 
-      !> (components) The number of each component of links among the groups; 0 for ground links.
+      !> Numbers the components of links in the order of the groups (components); 0 for ground links.
       function numbers() result(order)
          integer, allocatable :: order(:)
          type(sorted_t) :: by_depth
@@ -189,6 +195,7 @@ contains
             end do
             depth(i) = depth(i) + 1
          end do
+
          by_depth = sorted(depth(of_link), size(depth))
          allocate (order(size(depth)), source=0)
          n = 0
@@ -201,13 +208,13 @@ contains
       end function numbers
    end function groups_of
 
-   !> For which links each link waits; a ground link for none. The links of the part `over` wait for one another in a
-   !> ring.
+   !> Finds the links for which each link waits; a ground link waits for none. The links of the part with too many
+   !> equations wait for one another in a ring.
    function waiting(m, closure, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: closure
-      integer, intent(in) :: equation_of(:)
-      logical, intent(in) :: over(:)
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation that is matched with each
+      logical, intent(in) :: over(:)         !< (equations) it is in the part with too many equations
       type(incidence_t) :: w
       logical :: tied(size(m%links))
       integer :: u, i, k, link, before, n
@@ -220,6 +227,7 @@ contains
       n = 0
       u = 0
       before = findloc(tied, .true., dim=1, back=.true.)
+
       do link = 1, size(m%links)
          w%first(link) = n + 1
          call wait_for(link)
@@ -239,9 +247,9 @@ contains
 
    contains
 
-      !> The link at hand waits for link `other`.
+      !> Makes the link at hand wait for another link.
       subroutine wait_for(other)
-         integer, intent(in) :: other
+         integer, intent(in) :: other        !< the number of that link
 
          n = n + 1
          w%unknown(n) = other

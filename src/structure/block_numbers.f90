@@ -5,8 +5,8 @@
 !> body vector. A residual, closure error or correction is then small or large for that loop and not for the largest
 !> link of the mechanism. Units are powers of two: no digit changes.
 !>
-!> What a block knows may be much larger than its own body vectors. Its rounding cannot be corrected: `coarse` says how
-!> much larger it is, and levels of rounding are that much higher.
+!> The known part of a block may be much larger than its own body vectors. Its rounding cannot be corrected: `coarse` is
+!> how much larger it is, and levels of rounding are that much higher.
 module block_numbers
    use kinds, only: wp
    use plane_vectors, only: vector_t, length_of
@@ -20,18 +20,21 @@ module block_numbers
    private
    public :: put_numbers, fill_numbers, find_units, lipschitz_of
 
+   !> A loop below this part of the largest loop of its block has a unit of its own.
    real(wp), parameter :: much_smaller = 0.0625_wp
+   !> The least unit of a loop with slides and no own body vector, in the unit of the mechanism: where only slides
+   !> balance, these may be long though the known part is short.
+   real(wp), parameter :: least_slide_unit = 0.0625_wp
 
 contains
 
-   !> Gives `x` the numbers of `m`, a mechanism with the links, points, pairs and drives of that of which the blocks `b`
-   !> were made; `x`: a copy of those of `b`, which stay as they are. `fits`: each equation has the unknowns, and each
-   !> loop the body vectors, that they have in `b`; otherwise `x` leaves out what `b` does.
+   !> Puts the numbers of a mechanism into the geometry of its blocks. The structure stays as it is. If the numbers do
+   !> not fit, `x` leaves out the unknowns and body vectors that `b` leaves out.
    subroutine put_numbers(m, b, x, fits)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< with the links, points, pairs and drives of which `b` was made
       type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(inout) :: x
-      logical, intent(out) :: fits
+      type(geometry_t), intent(inout) :: x   !< a geometry of `b`
+      logical, intent(out) :: fits           !< equations and loops have the unknowns and body vectors of `b`
       logical, allocatable :: has_vector(:), counts(:, :)
 
       x%span = solver_length(m)
@@ -39,6 +42,7 @@ contains
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
       if (.not. fits) return
+
       has_vector = b%equations%has_vector
       counts = b%equations%counts
       call find_unknowns(b%equations, x%equations, has_vector, counts)
@@ -47,7 +51,7 @@ contains
       call find_units(b, x)
    end subroutine put_numbers
 
-   !> Fills `x` from the numbers of its equations, in their unit of length. Allocates the lists of `x` if they are not.
+   !> Fills a geometry from the numbers of its equations, in their unit of length, and allocates its lists if needed.
    pure subroutine fill_numbers(b, x)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(inout) :: x
@@ -58,11 +62,13 @@ contains
       x%unit = 1.0_wp
       x%rows%unit = 1.0_wp
       x%rows%constant = x%equations%constant(b%equation)
+
       associate (sums => x%equations%sums, p => b%equations%vector_loops)
          x%d%x = sums%body_vector(1, b%body_vectors%source)
          x%d%y = sums%body_vector(2, b%body_vectors%source)
          x%e%x = sums%slide_body_vector(1, b%slides%source)
          x%e%y = sums%slide_body_vector(2, b%slides%source)
+
          do i = 1, size(b%list)
             associate (first => b%list(i)%first_row, last => b%list(i)%last_row)
                x%blocks(i)%has_right_sides = any(b%rows(first:last)%drive > 0 &
@@ -84,8 +90,8 @@ contains
       end associate
    end subroutine fill_numbers
 
-   !> Divides the numbers `x` of the rows of all blocks of `b`, filled in one unit of length, by units of their own, and
-   !> those of its slides.
+   !> Divides the numbers of the rows of all blocks, and those of the slides, by the units of their loops. Before that
+   !> they have one unit of length.
    subroutine find_units(b, x)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(inout) :: x
@@ -128,9 +134,9 @@ contains
 
    contains
 
-      !> Unit of loop `cards`: its largest own body vector. A slide is as long as what is known lets it be, and a
+      !> Finds the unit of a loop: its largest own body vector. A slide is as long as the known part lets it be. A
       !> projection that turns with an orientation of the block turns the whole loop. Slides that nothing else balances
-      !> may be long where what is known is short, as the way to a point beside the origin.
+      !> may be long where the known part is short, as the way to a point near the origin.
       subroutine measure(cards, loop)
          type(block_loop_t), intent(in) :: cards
          type(loop_numbers_t), intent(inout) :: loop
@@ -145,23 +151,23 @@ contains
             if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
          end do
          slides = any(b%slides(cards%first_slide:cards%last_slide)%column > 0)
-         if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = much_smaller
+         if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = least_slide_unit
          if (own <= 0.0_wp .or. slides .or. (cards%kind == loop_projection .and. cards%orientation_column > 0)) &
             own = max(own, known)
          if (own > 0.0_wp) loop%unit = power_of_two(own)
          loop%coarse = known
       end subroutine measure
 
-      !> The largest component of `vectors`; 0 of none.
+      !> Gives the largest component of vectors; 0 of none.
       pure real(wp) function largest(vectors)
-         type(vector_t), intent(in) :: vectors(:)
+         type(vector_t), intent(in) :: vectors(:)   !< (any number) in one unit
 
          largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
       end function largest
 
-      !> Divides the rows of `loop`, of the block whose rows begin at `first_row`, by its unit.
+      !> Divides the rows of a loop by its unit.
       subroutine divide(first_row, loop, own)
-         integer, intent(in) :: first_row
+         integer, intent(in) :: first_row    !< the first row of its block, among all rows
          type(block_loop_t), intent(in) :: loop
          type(loop_numbers_t), intent(inout) :: own
          integer :: k, side
@@ -176,6 +182,7 @@ contains
                row%constant = row%constant/own%unit
             end associate
          end do
+
          if (loop%kind == loop_angles) return
          own%ground = vector_t(own%ground%x/own%unit, own%ground%y/own%unit)
          do k = loop%first_vector, loop%last_vector
@@ -189,8 +196,8 @@ contains
       end subroutine divide
    end subroutine find_units
 
-   !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
-   !> with the length of their unit; a projection turns once more with its own orientation.
+   !> Bounds |J(x) - J(z)|/|x - z| of a block in the maximum norm: for a row, the sum of its second derivatives. Slides
+   !> count with the length of their unit; a projection turns once more with its own orientation.
    pure real(wp) function lipschitz_of(b, x, block) result(lipschitz)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -210,9 +217,9 @@ contains
       end do
    end function lipschitz_of
 
-   !> The sum of the lengths of `vectors`.
+   !> Adds up the lengths of vectors.
    pure real(wp) function sum_of_lengths(vectors)
-      type(vector_t), intent(in) :: vectors(:)
+      type(vector_t), intent(in) :: vectors(:)   !< (any number) in one unit
 
       sum_of_lengths = sum(hypot(vectors%x, vectors%y))
    end function sum_of_lengths

@@ -18,16 +18,16 @@ module block_structure
    private
    public :: structure_t, make_structure, new_blocks
 
-   !> Made once, and handed to the engine, which takes both over.
+   !> The structure and its first geometry: made once, and handed to the engine, which takes both over.
    type :: structure_t
       type(blocks_t), allocatable :: blocks
-      type(geometry_t), allocatable :: geometry      !< the first
+      type(geometry_t), allocatable :: geometry      !< of the numbers on the cards
    end type structure_t
 
 contains
 
-   !> Makes the `structure` of the independent mechanism `m`, in place. Time and memory are proportional to its links,
-   !> pairs and drives.
+   !> Makes the structure of an independent mechanism, in place. Time and memory are proportional to its links, pairs
+   !> and drives.
    subroutine make_structure(m, structure)
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(out) :: structure
@@ -48,7 +48,7 @@ contains
       end associate
    end subroutine make_structure
 
-   !> The blocks of the `equations` on the `tree`, without numbers.
+   !> Divides equations into blocks, without numbers. If an unknown has no equation, there are no blocks: `solvable`.
    function new_blocks(tree, equations) result(b)
       type(spanning_tree_t), intent(in) :: tree
       type(equations_t), intent(in) :: equations
@@ -76,6 +76,7 @@ contains
          member = [rows, member]
          first = [1, first + size(rows)]
       end if
+
       allocate (b%list(size(first) - 1))
       b%list%first_row = first(:size(b%list))
       b%list%last_row = first(2:) - 1
@@ -116,11 +117,10 @@ contains
       call find_places(b)
    end function new_blocks
 
-   !> The loops of all blocks that iterate. `member`: the equations of `equations` by
-   !> block.
+   !> Fills the loops of all blocks that iterate.
    subroutine fill_block_loops(equations, member, b)
       type(equations_t), intent(in) :: equations
-      integer, intent(in) :: member(:)
+      integer, intent(in) :: member(:)       !< (rows) the number of each row's equation, by block
       type(blocks_t), intent(inout) :: b
       integer :: column(0:b%unknowns)                 ! of the block being filled; 0: not its own
       integer :: latest(0:equations%vector_loops%count)       ! the block loop made of each vector loop last
@@ -130,11 +130,13 @@ contains
       ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
       allocate (b%loops(equations%count), b%body_vectors(2*equations%vector_loops%vectors), &
          b%slides(2*equations%vector_loops%slides))
+
       column = 0
       latest = 0
       loops = 0
       body_vectors = 0
       slides = 0
+
       do i = 1, size(b%list)
          associate (block => b%list(i))
             block%first_loop = loops + 1
@@ -150,16 +152,18 @@ contains
             block%last_loop = loops
          end associate
       end do
+
       b%loops = b%loops(:loops)
       b%body_vectors = b%body_vectors(:body_vectors)
       b%slides = b%slides(:slides)
 
    contains
 
-      !> Row `row`, in a loop of its own unless x and y of one vector loop share it.
+      !> Adds a row, in a loop of its own unless x and y of one vector loop share it.
       subroutine add_row(equation, row, first_loop)
          type(equation_t), intent(in) :: equation
-         integer, intent(in) :: row, first_loop
+         integer, intent(in) :: row          !< its number in the block
+         integer, intent(in) :: first_loop   !< the first loop of the block, among all loops
 
          if (any(equation%kind == [equation_x, equation_y])) then
             if (latest(equation%vector_loop) < first_loop) then
@@ -172,6 +176,7 @@ contains
             end associate
             return
          end if
+
          call add_block_loop(equation%vector_loop, merge(loop_projection, loop_angles, &
             equation%kind == equation_projection))
          associate (block_loop => b%loops(loops))
@@ -184,10 +189,11 @@ contains
          end associate
       end subroutine add_row
 
-      !> Vector loop `i`, 0 for one without vectors, as the block with these columns has it: first the body vectors that
-      !> it knows, then those of its own orientations.
+      !> Adds a vector loop as the block at hand has it: first the body vectors that the block knows, then those of its
+      !> own orientations.
       subroutine add_block_loop(i, kind)
-         integer, intent(in) :: i, kind
+         integer, intent(in) :: i            !< the number of the vector loop; 0: one without vectors
+         integer, intent(in) :: kind         !< loop_components, loop_projection or loop_angles
          integer :: k, side
 
          loops = loops + 1
@@ -206,6 +212,7 @@ contains
                end do
             end do
             block_loop%last_vector = body_vectors
+
             block_loop%first_slide = slides + 1
             do k = p%first_slide(i), p%first_slide(i + 1) - 1
                slides = slides + 1
@@ -219,7 +226,7 @@ contains
       end subroutine add_block_loop
    end subroutine fill_block_loops
 
-   !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.
+   !> Finds the places of all entries in the Jacobians, and the patterns of the blocks whose Jacobian is best sparse.
    subroutine find_places(b)
       type(blocks_t), intent(inout) :: b
       type(pattern_t) :: pattern
@@ -243,6 +250,7 @@ contains
                do c = 1, shape%n
                   pattern%first(c + 1) = pattern%first(c) + last(c)
                end do
+
                allocate (pattern%row(pattern%first(shape%n + 1)))
                latest = 0
                last = pattern%first(:shape%n)
@@ -264,7 +272,7 @@ contains
 
    contains
 
-      !> The places of all entries of `block`, row by row.
+      !> Finds the places of all entries of a block, row by row.
       subroutine place_entries(block)
          type(block_t), intent(in) :: block
          integer :: m, k, side, row
@@ -288,10 +296,11 @@ contains
          end do
       end subroutine place_entries
 
-      !> The place `at` of entry (row, column), 0 where there is no column.
+      !> Finds the place of an entry in the Jacobian of the block at hand.
       subroutine place(row, column, at)
-         integer, intent(in) :: row, column
-         integer, intent(out) :: at
+         integer, intent(in) :: row          !< its number in the block
+         integer, intent(in) :: column       !< its number in the block; 0: known, no column
+         integer, intent(out) :: at          !< the place; 0: no column
 
          at = 0
          if (column == 0) return
@@ -308,7 +317,7 @@ contains
       end subroutine place
    end subroutine find_places
 
-   !> A square Jacobian of so many rows may be better sparse, if it has few entries.
+   !> Tells whether a square Jacobian of so many rows may be better sparse, if it has few entries.
    elemental logical function may_be_sparse(shape)
       type(shape_t), intent(in) :: shape
 

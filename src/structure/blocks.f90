@@ -1,10 +1,10 @@
 !> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the vector loops it
-!> closes, split into what earlier blocks have found and what it solves for. What the numbers of the cards make of them
-!> is `geometry_t`: a variant has the same blocks with other numbers, see `block_numbers`.
+!> closes, split into the part that earlier blocks have found and the part it solves for. The numbers of the cards make
+!> `geometry_t` of them: a variant has the same blocks with other numbers (`block_numbers`).
 !>
-!> Unknowns: 1 to `orientations` the angles of the orientations, then the slides. A block is one drive alone, or what
-!> the tree leaves of one or more Assur groups with their drives. Contract: a block needs unknowns of earlier blocks
-!> only; every unknown belongs to exactly one block.
+!> Unknowns: 1 to `orientations` the angles of the orientations, then the slides. A block is one drive only, or the part
+!> that the tree leaves of one or more Assur groups with their drives. Contract: a block needs unknowns of earlier
+!> blocks only; every unknown belongs to exactly one block.
 !>
 !> Which blocks have to be solved: those whose unknowns move a link that a table names, those that they build
 !> on, and no other; and of these again and again only what a drive moves.
@@ -47,7 +47,7 @@ module blocks
 
    !> A vector loop as one block has it: rows (0: none), the known body vectors, then those of the block's own angles.
    type :: block_loop_t
-      integer :: kind = loop_components           !< what its rows ask for: loop_components, ...
+      integer :: kind = loop_components           !< which equations its rows are: loop_components, ...
       integer :: row_x = 0, row_y = 0             !< of the block; 0: none
       !> Its body vectors; from first_own on those that angles of the block rotate.
       integer :: first_vector = 1, first_own = 1, last_vector = 0
@@ -128,7 +128,7 @@ module blocks
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
       type(spanning_tree_t) :: tree
-      ! What the requests ask for.
+      ! For the requests:
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: ratios(:)                 !< numbers of the drives by which ratios are asked for
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
@@ -138,19 +138,19 @@ module blocks
 
 contains
 
-   !> Lists the unknowns of block number `i`, in its order.
+   !> Lists the unknowns of a block, in its order.
    pure function own_unknowns(b, i) result(list)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the block
       integer :: list(b%list(i)%last - b%list(i)%first + 1)
 
       list = b%unknown(b%list(i)%first:b%list(i)%last)
    end function own_unknowns
 
-   !> Block `i` and those that it builds on, in solving order.
+   !> Lists a block and those that it builds on, in solving order.
    function blocks_below(b, i) result(list)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the block
       integer, allocatable :: list(:)
       logical :: need(0:b%unknowns)
       integer :: k
@@ -159,12 +159,11 @@ contains
       list = blocks_that_give(b, [(k == i, k=1, size(b%list))], need)
    end function blocks_below
 
-   !> The blocks, in solving order, that are `taken` (blocks), that give one of the unknowns of which there is `need`
-   !> (0:unknowns), or on which one of these builds.
+   !> Lists the blocks that are wanted and those on which they build, in solving order.
    function blocks_that_give(b, taken, need) result(list)
       type(blocks_t), intent(in) :: b
-      logical, intent(in) :: taken(:)
-      logical, intent(inout) :: need(0:)
+      logical, intent(in) :: taken(:)        !< (blocks) the block is wanted
+      logical, intent(inout) :: need(0:)     !< (0:unknowns) the unknown is wanted; then also if a block needs it
       integer, allocatable :: list(:)
       logical :: needed(size(taken))
       integer :: i
@@ -176,10 +175,10 @@ contains
       list = pack([(i, i=1, size(taken))], needed)
    end function blocks_that_give
 
-   !> (size(list)) Those of the blocks `list` that a drive moves, itself or through what they build on.
+   !> Tells which blocks a drive moves, itself or through those on which they build (size(list)).
    pure function moving_blocks(b, list) result(moving)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
+      integer, intent(in) :: list(:)   !< (any number) blocks with all on which they build, in solving order
       logical :: moving(size(list))
       integer :: moves(0:b%unknowns), k
 
@@ -192,10 +191,10 @@ contains
       end do
    end function moving_blocks
 
-   !> The unknowns of those of the blocks `list` that iterate.
+   !> Lists the unknowns of those blocks that iterate.
    pure function iterated_unknowns(b, list) result(unknowns)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
+      integer, intent(in) :: list(:)   !< (any number) numbers of blocks
       integer, allocatable :: unknowns(:)
       logical :: iterated(size(b%list))
       integer :: u
@@ -205,19 +204,20 @@ contains
       unknowns = pack([(u, u=1, b%unknowns)], iterated(b%block_of))
    end function iterated_unknowns
 
-   !> The largest `mark` (0:unknowns) of what block `i` builds on; 0 at least. Marks of its own unknowns are 0.
+   !> Gives the largest mark of the unknowns on which a block builds; 0 at least.
    pure integer function largest_known(b, i, mark) result(largest)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, mark(0:)
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: mark(0:)        !< (0:unknowns) any numbers; 0 for the block's own unknowns
 
       largest = maxval([0, mark(known_to(b, i))])
    end function largest_known
 
-   !> The unknowns in the equations of block `i`, of other blocks and its own, some of them more than once; 0 for the
+   !> Lists the unknowns in the equations of a block, those of other blocks and its own, some more than once; 0 for the
    !> ground.
    pure function known_to(b, i) result(list)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the block
       integer, allocatable :: list(:)
 
       associate (block => b%list(i))

@@ -1,7 +1,7 @@
 !> The equations that the tree leaves over, and those of the drives: each gives a component of a vector loop, its
-!> projection on a direction that turns with an orientation, an angle or a slide. A revolute pair asks both components
-!> to be zero, a prismatic pair that the projection on the guide's normal is h; a drive X or Y gives one component of
-!> its point, a drive SLIDE the projection along the guide.
+!> projection on a direction that turns with an orientation, an angle or a slide. A revolute pair requires both
+!> components to be zero, a prismatic pair that the projection on the guide's normal is h. A drive X or Y gives one
+!> component of its point, a drive SLIDE the projection along the guide.
 !>
 !> Equations are integers; `equation_numbers_t` holds what the numbers of the cards make of them.
 module loop_equations
@@ -26,7 +26,7 @@ module loop_equations
    integer, parameter :: equation_angle = 4       !< angle of an orientation, or of one less another
    integer, parameter :: equation_slide = 5       !< a slide
 
-   !> What `kind` says = a constant + value of the drive.
+   !> An equation: the coordinate that `kind` names = a constant + value of the drive.
    type :: equation_t
       integer :: kind = equation_angle
       integer :: vector_loop = 0
@@ -38,7 +38,7 @@ module loop_equations
 
    type :: equations_t
       integer :: count = 0
-      type(equation_t), allocatable :: list(:)    !< (count), with room behind
+      type(equation_t), allocatable :: list(:)    !< (count), with room after them
       type(vector_loops_t) :: vector_loops
       logical, allocatable :: has_vector(:)       !< (body vectors) it does not vanish
       logical, allocatable :: counts(:, :)        !< (2, slides) in x of its loop, or in the projection; in y
@@ -55,7 +55,7 @@ module loop_equations
 
 contains
 
-   !> The equations of `m` on its `tree`.
+   !> Makes the equations of a mechanism on its tree.
    function new_equations(m, tree) result(e)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
@@ -109,9 +109,9 @@ contains
 
    contains
 
-      !> The equation of drive `k`.
+      !> Adds the equation of a drive.
       subroutine add_drive(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< its number
          integer :: link
 
          associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
@@ -131,6 +131,7 @@ contains
                end do
                call add_vector_loop(m, tree, i, 0, s, e%vector_loops)
                call add(equation_t(merge(equation_x, equation_y, m%drives(k)%kind == drive_x), vector_loop=n, drive=k))
+
             case (drive_slide)
                if (tree%slide(i) > 0) then
                   call add(equation_t(equation_slide, drive=k, orientation=tree%slide(i)))
@@ -146,7 +147,7 @@ contains
          end associate
       end subroutine add_drive
 
-      !> Appends `equation` to `e`.
+      !> Appends an equation to the list.
       subroutine add(equation)
          type(equation_t), intent(in) :: equation
 
@@ -155,12 +156,12 @@ contains
       end subroutine add
    end function new_equations
 
-   !> The numbers of `m` in its `equations`, which are told what of their vectors vanishes.
+   !> Makes the numbers of equations from those of a mechanism.
    function new_equation_numbers(m, tree, length, equations) result(x)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
-      real(wp), intent(in) :: length
-      type(equations_t), intent(inout) :: equations
+      real(wp), intent(in) :: length         !< unit of length of the equations, in the deck's unit
+      type(equations_t), intent(inout) :: equations   !< `has_vector` and `counts` are found
       type(equation_numbers_t) :: x
 
       associate (p => equations%vector_loops)
@@ -173,11 +174,11 @@ contains
       call find_unknowns(equations, x, equations%has_vector, equations%counts)
    end function new_equation_numbers
 
-   !> Gives the `numbers` of the `equations` those of `m`, whose tree is `tree`.
+   !> Puts the numbers of a mechanism into those of its equations.
    subroutine put_equation_numbers(m, tree, length, equations, numbers)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length         !< unit of length of the equations, in the deck's unit
       type(equations_t), intent(in) :: equations
       type(equation_numbers_t), intent(inout) :: numbers
       integer :: i
@@ -199,6 +200,7 @@ contains
                end associate
             else
                associate (drive => m%drives(q%drive))
+
                   select case (drive%kind)
                   case (drive_angle)
                      numbers%constant(i) = -angle(drive%subject)
@@ -217,12 +219,13 @@ contains
       end do
    end subroutine put_equation_numbers
 
-   !> Which body vectors and slides of `equations` are in its equations with the `numbers`: `has_vector` and `counts` of
-   !> `equations_t`. A slide is not if it is at right angles to what is asked for, in whatever position.
+   !> Finds which body vectors and slides are in equations with given numbers. A slide is not if it is at right angles
+   !> to the direction of the equation in every position.
    pure subroutine find_unknowns(equations, numbers, has_vector, counts)
       type(equations_t), intent(in) :: equations
       type(equation_numbers_t), intent(in) :: numbers
-      logical, intent(out) :: has_vector(:), counts(:, :)
+      logical, intent(out) :: has_vector(:)  !< (body vectors) as in `equations_t`
+      logical, intent(out) :: counts(:, :)   !< (2, slides) as in `equations_t`
       real(wp) :: asked(2)
       integer :: i, k
 
@@ -246,17 +249,18 @@ contains
       end do
    end subroutine find_unknowns
 
-   !> 2 of the y of a loop, otherwise 1.
+   !> Gives the row of `counts` that belongs to an equation: 2 for the y of a loop, otherwise 1.
    pure integer function side_of(equation)
       type(equation_t), intent(in) :: equation
 
       side_of = merge(2, 1, equation%kind == equation_y)
    end function side_of
 
-   !> Which unknown is in which equation: 1 to `orientations` angles, then slides.
+   !> Lists the unknowns of each equation.
    function incidence(equations, orientations, unknowns) result(g)
       type(equations_t), intent(in) :: equations
-      integer, intent(in) :: orientations, unknowns
+      integer, intent(in) :: orientations    !< how many angles are unknown: unknowns 1 to `orientations`
+      integer, intent(in) :: unknowns        !< how many unknowns there are: angles, then slides
       type(incidence_t) :: g
       integer :: seen(0:unknowns), constant, n, i, k
       logical :: turns
@@ -302,9 +306,9 @@ contains
 
    contains
 
-      !> Notes `unknown`, once; the ground's orientation is none.
+      !> Notes an unknown in the equation at hand, once; the ground's orientation is none.
       subroutine note(unknown)
-         integer, intent(in) :: unknown
+         integer, intent(in) :: unknown      !< its number; 0: the ground
 
          if (unknown == 0) return
          if (seen(unknown) == i) return

@@ -22,10 +22,11 @@ module matching
 
 contains
 
-   !> `unknown_of` (equations): the unknown matched with each equation, 0 for none; `equation_of` (unknowns) likewise.
+   !> Finds a largest matching of equations with unknowns.
    subroutine match(incidence, unknown_of, equation_of)
       type(incidence_t), intent(in) :: incidence
-      integer, allocatable, intent(out) :: unknown_of(:), equation_of(:)
+      integer, allocatable, intent(out) :: unknown_of(:)    !< (equations) the unknown matched with each; 0: none
+      integer, allocatable, intent(out) :: equation_of(:)   !< (unknowns) the equation matched with each; 0: none
       ! Of each equation: where the look ahead for a free unknown stands, never set back, and the last search that came
       ! to it. Of the search at hand: its path of equations, and the place of the next unknown of each.
       integer :: look(incidence%equations), seen(incidence%equations), path(incidence%equations), &
@@ -48,18 +49,19 @@ contains
 
    contains
 
-      !> Matches `equation` with `unknown`.
+      !> Matches an equation with an unknown.
       subroutine join(equation, unknown)
-         integer, intent(in) :: equation, unknown
+         integer, intent(in) :: equation     !< its number
+         integer, intent(in) :: unknown      !< its number
 
          unknown_of(equation) = unknown
          equation_of(unknown) = equation
       end subroutine join
 
-      !> Looks for a path from equation `start` to a free unknown. Every equation of it takes the unknown of the one
-      !> after it, the last the free one.
+      !> Looks for a path from an equation to a free unknown. Every equation on the path takes the unknown of the one
+      !> after it, the last one the free unknown. Without such a path nothing changes.
       subroutine augment(start)
-         integer, intent(in) :: start
+         integer, intent(in) :: start        !< the number of the equation, which has no unknown
          integer :: depth, e, u
 
          depth = 0
@@ -97,14 +99,15 @@ contains
       end subroutine augment
    end subroutine match
 
-   !> The blocks of a perfect matching: equations `member`(first(b)), ..., member(first(b + 1) - 1) are block b,
-   !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. No equation: no
-   !> block. `skip` (equations): those that belong to no block.
+   !> Finds the blocks of a perfect matching. Equations member(first(k)), ..., member(first(k + 1) - 1) are block k,
+   !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. Without equations there
+   !> is no block.
    subroutine find_blocks(incidence, equation_of, first, member, skip)
       type(incidence_t), intent(in) :: incidence
-      integer, intent(in) :: equation_of(:)
-      integer, allocatable, intent(out) :: first(:), member(:)
-      logical, intent(in), optional :: skip(:)
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation matched with each
+      integer, allocatable, intent(out) :: first(:)    !< (blocks + 1) where each block begins in `member`
+      integer, allocatable, intent(out) :: member(:)   !< (equations) their numbers, by block in solving order
+      logical, intent(in), optional :: skip(:)   !< (equations) the equation belongs to no block
       integer, parameter :: done = huge(1)
       integer :: number(incidence%equations), low(incidence%equations), path(incidence%equations), &
          next(incidence%equations)
@@ -118,6 +121,7 @@ contains
       members = 0
       allocate (first(incidence%equations + 1), member(incidence%equations))
       first(1) = 1
+
       do root = 1, incidence%equations
          if (number(root) > 0) cycle
          depth = 0
@@ -158,9 +162,9 @@ contains
 
    contains
 
-      !> The search comes to `equation`.
+      !> Enters an equation to which the search has come.
       subroutine enter(equation)
-         integer, intent(in) :: equation
+         integer, intent(in) :: equation     !< its number
 
          depth = depth + 1
          path(depth) = equation
@@ -173,11 +177,12 @@ contains
       end subroutine enter
    end subroutine find_blocks
 
-   !> (equations) The part with too many equations, of a largest matching: those without an unknown, and all that
-   !> stand for unknowns of theirs, again and again. It needs no other unknowns.
+   !> Finds the part with too many equations (equations): those without an unknown, and all that are matched with
+   !> unknowns of these, again and again. The part needs no other unknowns.
    function overdetermined(incidence, unknown_of, equation_of) result(over)
       type(incidence_t), intent(in) :: incidence
-      integer, intent(in) :: unknown_of(:), equation_of(:)
+      integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation of each in the matching; 0: none
       logical :: over(incidence%equations)
       integer :: queue(incidence%equations), last, next, i, e
 
@@ -199,11 +204,12 @@ contains
       end do
    end function overdetermined
 
-   !> (unknowns) The part with too few equations, of a largest matching: the free unknowns, and all that could be free
-   !> in their place. Turned round, too few equations are too many.
+   !> Finds the part with too few equations (unknowns): the free unknowns, and all that could be free in their place.
+   !> With equations and unknowns exchanged, too few equations are too many.
    function underdetermined(incidence, unknown_of, equation_of) result(loose)
       type(incidence_t), intent(in) :: incidence
-      integer, intent(in) :: unknown_of(:), equation_of(:)
+      integer, intent(in) :: unknown_of(:)   !< (equations) the unknown of each in a largest matching; 0: none
+      integer, intent(in) :: equation_of(:)  !< (unknowns) the equation of each in the matching; 0: none
       logical :: loose(incidence%unknowns)
       integer :: owner(incidence%first(incidence%equations + 1) - 1), e
       type(sorted_t) :: s

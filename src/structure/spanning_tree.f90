@@ -3,7 +3,7 @@
 !> parent needs no x and y of its own. The pairs left over close the loops.
 !>
 !> The tree grows from the ground, revolute pairs first: a prismatic pair that closes a loop costs one equation and
-!> no unknown, one in the tree a slide. The tree is integers alone; the axes in which its links stand are `axes_t`.
+!> no unknown, one in the tree a slide. The tree is integers only; the axes in which its links stand are `axes_t`.
 module spanning_tree
    use kinds, only: wp
    use plane_vectors, only: direction, rotated, quarter_turn
@@ -46,7 +46,7 @@ module spanning_tree
 
 contains
 
-   !> The tree of `m`; time and memory proportional to links and pairs.
+   !> Makes the tree of a mechanism; time and memory are proportional to links and pairs.
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t) :: t
@@ -59,8 +59,8 @@ contains
 
    contains
 
-      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from every link not yet
-      !> seen.
+      !> Finds the orientations by a walk over prismatic pairs only, first from the ground links, then from every link
+      !> not yet seen.
       subroutine find_orientations()
          integer :: first, next, link, far, i, k
          logical :: used(size(m%pairs))
@@ -71,6 +71,7 @@ contains
          used = .false.
          last = count(m%links%ground)
          t%by_angle(:last) = pack([(i, i=1, size(m%links))], m%links%ground)
+
          next = 1
          do first = 0, size(m%links)
             if (first > 0) then
@@ -80,6 +81,7 @@ contains
                last = last + 1
                t%by_angle(last) = first
             end if
+
             do while (next <= last)
                link = t%by_angle(next)
                next = next + 1
@@ -101,7 +103,7 @@ contains
          end do
       end subroutine find_orientations
 
-      !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
+      !> Joins every link to the tree, breadth first. A prismatic pair is taken only if no revolute pair reaches on.
       subroutine grow()
          integer :: revolute_next, prismatic_next, link
          logical :: attached
@@ -109,6 +111,7 @@ contains
          allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
          allocate (t%depth(size(m%links)), source=-1)
          allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
+
          last = 0
          do link = 1, size(m%links)
             if (m%links(link)%ground) call attach(link, 0, 0)
@@ -116,6 +119,7 @@ contains
          revolute_next = 1
          prismatic_next = 1
          link = 1
+
          do
             if (revolute_next <= last) then
                call attach_neighbours(.false., t%order(revolute_next), attached)
@@ -157,9 +161,11 @@ contains
          end do
       end subroutine attach_neighbours
 
-      !> `link` is next in the tree, joined to its `parent` by `pair`; 0 for the ground and for roots.
+      !> Joins a link to the tree as its next one.
       subroutine attach(link, parent, pair)
-         integer, intent(in) :: link, parent, pair
+         integer, intent(in) :: link         !< its number
+         integer, intent(in) :: parent       !< the number of its parent; 0: ground or root
+         integer, intent(in) :: pair         !< the number of the pair between them; 0: ground or root
 
          last = last + 1
          t%order(last) = link
@@ -172,7 +178,7 @@ contains
       end subroutine attach
    end function new_tree
 
-   !> Gives the `axes` the numbers of `m`, whose tree is `tree`.
+   !> Puts the numbers of a mechanism into the axes of its links.
    pure subroutine put_axes(m, tree, axes)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
@@ -191,20 +197,21 @@ contains
       end do
    end subroutine put_axes
 
-   !> The link at the other end of pair `k` of `link`.
+   !> Gives the number of the link at the other end of a pair.
    pure integer function other_link(m, k, link) result(other)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k, link
+      integer, intent(in) :: k               !< the number of the pair
+      integer, intent(in) :: link            !< the number of one of its links
 
       other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
 
-   !> Where `link` is, seen from its parent, in the deck's unit of length.
+   !> Finds where a link is, seen from its parent, in the deck's unit of length.
    pure function place_on_tree(m, tree, axes, link) result(p)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
-      integer, intent(in) :: link
+      integer, intent(in) :: link   !< its number; it has a parent
       type(link_offset_t) :: p
       real(wp) :: sign_of
 
@@ -220,12 +227,12 @@ contains
       end associate
    end function place_on_tree
 
-   !> Direction (2) of the guide of pair `k`, or of its normal, in the axes of its orientation.
+   !> Gives the direction (2) of the guide of a prismatic pair, or of its normal, in the axes of its orientation.
    pure function guide(m, axes, k, across) result(e)
       type(mechanism_t), intent(in) :: m
       type(axes_t), intent(in) :: axes
-      integer, intent(in) :: k
-      logical, intent(in) :: across
+      integer, intent(in) :: k   !< the number of the pair
+      logical, intent(in) :: across   !< the normal; otherwise the guide
       real(wp) :: e(2), angle
 
       angle = axes%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
@@ -233,11 +240,11 @@ contains
       if (across) e = quarter_turn(e)
    end function guide
 
-   !> Point number `i` from the origin of its link, in the axes of the link's orientation.
+   !> Gives a point (2), seen from the origin of its link, in the axes of the link's orientation, in the deck's length.
    pure function point_offset(m, axes, i) result(v)
       type(mechanism_t), intent(in) :: m
       type(axes_t), intent(in) :: axes
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the point
       real(wp) :: v(2)
 
       v = rotated(m%points(i)%offset, axes%turn(:, m%points(i)%link))

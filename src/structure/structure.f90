@@ -1,5 +1,5 @@
 !> The structure of a set before anything is solved: the blocks of its independent mechanisms, which their engines take
-!> over, its counts, its Assur groups, and what it lacks or has too much of, in words and by name.
+!> over, its counts, its Assur groups, and its missing and surplus equations, in words and by name.
 !>
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
@@ -33,19 +33,20 @@ module structure
       integer :: free = 0                       !< unknowns that no equation can find, among those of
       integer, allocatable :: loose(:)          !< links that still can move
       integer :: redundant = 0                  !< equations that are too many, among those of
-      integer, allocatable :: many_pairs(:), many_drives(:)
+      integer, allocatable :: many_pairs(:)     !< pairs, each once for each of its equations, and of
+      integer, allocatable :: many_drives(:)    !< drives
       type(group_t), allocatable :: groups(:)   !< in solving order, once `find_groups` has been asked for them
       ! Of the independent mechanisms, where nothing is lacking:
       type(set_t), allocatable :: set                   !< divided, where it is several
       type(structure_t), allocatable :: structures(:)   !< (parts)
    end type structure_report_t
 
-   !> The faults of so many sets are reported.
+   !> A job reports the faults of at most so many sets.
    integer, parameter :: max_sets = 10
 
 contains
 
-   !> The counts (12) and (13) of `m`, and what its structure lacks or has too much of.
+   !> Finds the counts (12) and (13) of a mechanism, and which equations its structure lacks or has too many of.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t) :: f
@@ -53,6 +54,7 @@ contains
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
       integer :: k, parts
+
 
       f%links = count(.not. m%links%hidden)
       f%ground = count(m%links%ground)
@@ -74,12 +76,14 @@ contains
             if (is_hidden(m, pair)) f%many_pairs(k) = findloc(m%pairs%point_j, pair%point_i, dim=1)
          end associate
       end do
+
       f%many_drives = pack([(k, k=1, size(m%drives))], over(2*size(m%pairs) + 1:))
       f%free = count(equation_of == 0)
       if (f%free > 0) then
          f%loose = shown_links(m, once(pack(c%link_of, underdetermined(c%incidence, unknown_of, equation_of))))
          return
       end if
+
       parts = max(1, maxval([0, part_of_links(m)]))
       allocate (f%structures(parts))
       if (parts == 1) then
@@ -97,12 +101,11 @@ contains
       if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. (m%links%ground .or. m%links%hidden))
    end function find_structure
 
-   !> Finds the groups of `m`, whose findings `report` are, without the blocks of slots; none where it is not solvable.
-   !> Only the listing has them, and the sets of a long job are checked one after another, but listed by several
-   !> processes.
+   !> Finds the Assur groups of a mechanism, without the blocks of slots; none if it is not solvable. Only the listing
+   !> has them, and the sets of a long job are checked one after another, but listed by several processes.
    subroutine find_groups(m, report)
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(inout) :: report
+      type(structure_report_t), intent(inout) :: report   !< what `find_structure` has found; its groups are filled
       integer :: i
 
       if (.not. allocated(report%groups)) allocate (report%groups(0))
@@ -114,10 +117,10 @@ contains
       report%groups = pack(report%groups, [(size(report%groups(i)%links) > 0, i=1, size(report%groups))])
    end subroutine find_groups
 
-   !> Every link of every set can be found: `findings` (sets).
+   !> Checks that every link of every set can be found. Errors: status_rejected.
    subroutine check_structure(sets, findings, failure)
       type(mechanism_t), intent(in) :: sets(:)
-      type(structure_report_t), allocatable, intent(out) :: findings(:)
+      type(structure_report_t), allocatable, intent(out) :: findings(:)   !< (sets)
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: text, all_of_them
       integer :: i, reported
@@ -137,11 +140,11 @@ contains
       if (reported > 0) call fail(failure, status_rejected, all_of_them)
    end subroutine check_structure
 
-   !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
+   !> Names each fault of a set, in lines that are joined by new_line('a'); '' without a fault.
    function faults_text(m, report, set) result(text)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t), intent(in) :: report
-      integer, intent(in) :: set
+      integer, intent(in) :: set   !< the number of the set in the deck
       character(:), allocatable :: text
 
       text = ''
@@ -166,9 +169,9 @@ contains
 
    contains
 
-      !> Appends `line`.
+      !> Appends a line.
       subroutine add_line(line)
-         character(*), intent(in) :: line
+         character(*), intent(in) :: line    !< without its end
 
          if (len(text) > 0) text = text//new_line('a')//' *** '
          text = text//line
@@ -176,20 +179,22 @@ contains
 
    end function faults_text
 
-   !> `word` and the `names` to which it applies: LINK A, or LINKS A, B.
+   !> Lists names with a word before them: LINK A, or LINKS A, B.
    function counted(word, names) result(text)
-      character(*), intent(in) :: word, names(:)
+      character(*), intent(in) :: word       !< of one of them
+      character(*), intent(in) :: names(:)   !< (1 or more)
       character(:), allocatable :: text
 
       text = word//trim(merge(' ', 'S', size(names) == 1))//' '//listed(names, .false.)
    end function counted
 
-   !> Names, in lines that each begin with new_line('a'), the two links of each pair of the links that still can move,
-   !> and of the pairs that are too many: a JOINT card may have a wrong link. '' without JOINT cards.
+   !> Names the two links of each pair of the links that still can move, and of the pairs with surplus equations. A
+   !> JOINT card may have a wrong link. Each line begins with new_line('a'). Without JOINT cards the text is ''.
    function joined_links(m, report) result(text)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t), intent(in) :: report
       character(:), allocatable :: text
+      !> Pairs in a line of 80 columns, and in all.
       integer, parameter :: pairs_a_line = 4, most = 40
       integer :: i, n, ends(2)
 
@@ -213,7 +218,7 @@ contains
       text = text//more(max(0, n - most), .false.)
    end function joined_links
 
-   !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
+   !> Names the surplus equations: TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, report) result(text)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t), intent(in) :: report

@@ -5,8 +5,8 @@
 !>
 !> Body vectors of one orientation in one loop are added up, so each orientation stands in it once.
 !>
-!> A loop is integers: which points and prismatic pairs it is the sum of. What the numbers of the cards make of its body
-!> vectors are `loop_sums_t`.
+!> A loop is integers: which points and prismatic pairs it is the sum of. The numbers of the cards make `loop_sums_t` of
+!> its body vectors.
 !>
 !> The paths lead over the pairs taken so far: those of the tree, and each revolute pair once it has closed its loop. A
 !> loop that takes the shortest such path holds its own pair and earlier ones only, so all loops are independent; and it
@@ -20,7 +20,7 @@ module vector_loops
    public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
    public :: search_t, find_path
 
-   !> What a search needs; links are nodes, all ground links one, node 0.
+   !> The memory of a search; links are nodes, all ground links one, node 0.
    type :: search_t
       logical, allocatable :: open(:)       !< (pairs) can be gone through
       integer, allocatable :: pairs(:)      !< (length) the path found last
@@ -32,7 +32,7 @@ module vector_loops
    end type search_t
 
    !> Body vectors of loop p are first_vector(p), ..., first_vector(p + 1) - 1; slides and terms likewise. Loop 0 has
-   !> none. Orientation 0 is the ground's. All lists have room behind.
+   !> none. Orientation 0 is the ground's. All lists have room for more.
    type :: vector_loops_t
       integer :: count = 0
       integer :: vectors = 0, slides = 0, term_count = 0 !< so far, with those of the loop in the making
@@ -56,14 +56,14 @@ module vector_loops
 
 contains
 
-   !> Adds to `loops` the one from point `point_j` to point `point_i` by the path that `search` found last from p's link
-   !> to q's; `point_j` = 0 is the origin of all places, and the path then leads to the ground or to a root. Points are
-   !> added from the origins of their links, never the difference of two: the largest that was added tells which sums
-   !> are rounding alone.
+   !> Adds the loop from point `point_j` to point `point_i` by the path of the last search. The path begins at the link
+   !> of `point_i`. If there is no `point_j`, it leads to the ground or to a root. Points are added from the origins of
+   !> their links, never the difference of two. The largest one that was added tells which sums are rounding only.
    subroutine add_vector_loop(m, tree, point_i, point_j, search, loops)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
-      integer, intent(in) :: point_i, point_j
+      integer, intent(in) :: point_i         !< the number of the point at which the loop ends
+      integer, intent(in) :: point_j         !< the number of the point at which it begins; 0: the origin of all places
       type(search_t), intent(in) :: search
       type(vector_loops_t), intent(inout) :: loops
       integer :: link, i, exit_point, entry_point, sign_of
@@ -102,9 +102,10 @@ contains
 
    contains
 
-      !> Adds a term, which turns with an orientation, to the loop in the making.
+      !> Adds a term to the loop in the making.
       subroutine add_term(term, orientation)
-         integer, intent(in) :: term(2), orientation
+         integer, intent(in) :: term(2)      !< as in `terms`: a point and 0, or 0 and a pair, with their signs
+         integer, intent(in) :: orientation  !< the number of the orientation with which it turns; 0: the ground
 
          if (loops%vector_of(orientation) == 0) then
             loops%vectors = loops%vectors + 1
@@ -122,9 +123,11 @@ contains
          loops%term_vector(loops%term_count) = loops%vector_of(orientation)
       end subroutine add_term
 
-      !> Adds slide number `slide` along the guide of `pair`, with its sign, to the loop in the making.
+      !> Adds a slide to the loop in the making.
       subroutine add_slide(orientation, slide, pair)
-         integer, intent(in) :: orientation, slide, pair
+         integer, intent(in) :: orientation  !< the number of the orientation with which its guide turns; 0: the ground
+         integer, intent(in) :: slide        !< the number of the slide
+         integer, intent(in) :: pair         !< the number of its pair, with its sign; 0: x or y of a root
 
          loops%slides = loops%slides + 1
          if (loops%slides > size(loops%slide_number)) then
@@ -138,13 +141,12 @@ contains
       end subroutine add_slide
    end subroutine add_vector_loop
 
-   !> Gives `sums`, the sums of the `loops`, the numbers of `m`, whose links stand in the `axes` on the `tree`;
-   !> lengths in units of `length`.
+   !> Sums up body vectors and slides of all loops from the numbers of a mechanism.
    pure subroutine put_sums(m, tree, axes, length, loops, sums)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length         !< unit of length of the sums, in the deck's unit
       type(vector_loops_t), intent(in) :: loops
       type(loop_sums_t), intent(inout) :: sums
       real(wp) :: places(2), place(2), more(2), sign_of
@@ -173,10 +175,12 @@ contains
                sums%largest(v) = max(sums%largest(v), maxval(abs(more)), maxval(abs(place)))
             end associate
          end do
+
          do k = loops%first_vector(i), loops%first_vector(i + 1) - 1
             if (loops%vector_orientation(k) == 0) sums%body_vector(:, k) = sums%body_vector(:, k) + places
          end do
       end do
+
       sums%body_vector = sums%body_vector/length
       sums%largest = sums%largest/length
       do k = 1, loops%slides
@@ -190,21 +194,22 @@ contains
       end do
    end subroutine put_sums
 
-   !> Tells whether what is left of body vectors that cancel is rounding, which would put an angle into equations
-   !> that do not hold it.
+   !> Tells whether a sum of body vectors that cancel is rounding only. Rounding would put an angle into equations that
+   !> do not hold it.
    pure logical function vanishes(sums, k)
       type(loop_sums_t), intent(in) :: sums
-      integer, intent(in) :: k
+      integer, intent(in) :: k   !< the number of the body vector
 
       vanishes = all(abs(sums%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*sums%largest(k))
    end function vanishes
 
-   !> `search%pairs`: the pairs on a short path from link `i` to link `j`, which are joined. Breadth first from both
-   !> ends in turn; the ground ends a path and is never searched level by level, since all links may be joined to it.
+   !> Finds the pairs on a short path between two links that are joined. The search is breadth first from both ends in
+   !> turn. The ground ends a path and is never searched level by level, since all links may be joined to it.
    subroutine find_path(m, tree, i, j, search)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
-      integer, intent(in) :: i, j
+      integer, intent(in) :: i               !< the number of the link at which the path begins
+      integer, intent(in) :: j               !< the number of the link at which it ends
       type(search_t), intent(inout) :: search
       integer :: first(2), last(2), side, meeting
 
@@ -228,9 +233,9 @@ contains
 
    contains
 
-      !> One level more from an end.
+      !> Searches one level more from an end.
       subroutine go_on(side)
-         integer, intent(in) :: side
+         integer, intent(in) :: side         !< 1: from link `i`; 2: from link `j`
          integer :: n, level_end, k, p, link
 
          level_end = last(side)
@@ -245,9 +250,11 @@ contains
          first(side) = level_end + 1
       end subroutine go_on
 
-      !> The search from end `side` comes to node `n` through `pair`.
+      !> Notes that the search has come to a node.
       subroutine reach(side, n, pair)
-         integer, intent(in) :: side, n, pair
+         integer, intent(in) :: side         !< the end from which it comes: 1 or 2
+         integer, intent(in) :: n            !< the number of the node
+         integer, intent(in) :: pair         !< the number of the pair by which it was reached; 0: the end itself
 
          if (search%seen(2*n + side - 1) == search%number) return
          search%seen(2*n + side - 1) = search%number
@@ -258,9 +265,10 @@ contains
          search%queue(last(side), side) = n
       end subroutine reach
 
-      !> Appends the pairs from the meeting node back to the node `goal`, where the search from `side` began.
+      !> Appends the pairs from the meeting node back to the node where a search began.
       subroutine collect(side, goal)
-         integer, intent(in) :: side, goal
+         integer, intent(in) :: side         !< the end at which it began: 1 or 2
+         integer, intent(in) :: goal         !< the number of that node
          integer :: n
 
          n = meeting
@@ -275,10 +283,10 @@ contains
       end subroutine collect
    end subroutine find_path
 
-   !> The node of `link`: 0 for every ground link.
+   !> Gives the number of a link's node: 0 for every ground link.
    pure integer function node(m, link)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link
+      integer, intent(in) :: link   !< its number
 
       node = merge(0, link, m%links(link)%ground)
    end function node

@@ -1,5 +1,5 @@
 !> Speed against error (--study): methods, tolerances and predictors tried on a deck, each with the time of a step and
-!> the error of the printed rows. The time alone (--time).
+!> the error of the printed rows. Or the time only (--time).
 module study
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
@@ -29,7 +29,8 @@ module study
 
    !> Measurements of a time.
    integer, parameter :: repeats = 9
-   !> One way to solve a set, and what came of it.
+
+   !> One way to solve a set, and its results.
    type :: trial_t
       integer :: method = method_newton
       real(dp) :: tolerance = 0.0_dp             !< 0: the limit of rounding
@@ -41,7 +42,7 @@ module study
       real(dp) :: error(0:2) = 0.0_dp            !< of positions, velocities, accelerations, in parts of the largest
    end type trial_t
 
-   !> What the rows of a set are compared with.
+   !> The numbers with which the rows of a set are compared.
    type :: truth_t
       logical :: is_reference = .false.          !< kinmat-quad's table; otherwise the estimates of errors
       integer :: compared = 0                    !< instants
@@ -50,17 +51,25 @@ module study
       real(qp), allocatable :: value(:, :)       !< (columns, 0:compared - 1) angles as the deck has them
    end type truth_t
 
-   !> One measurement takes at least so many seconds: many ticks of the clock; and at most, as far as few steps let it.
-   real(dp), parameter :: min_seconds = 0.0005_dp, max_seconds = 0.01_dp
+   !> One measurement takes at least so many seconds: many ticks of the clock.
+   real(dp), parameter :: min_seconds = 0.0005_dp
+   !> One measurement takes at most so many seconds, unless it has too few steps then.
+   real(dp), parameter :: max_seconds = 0.01_dp
+   !> Steps of a measurement at least, if the motion has so many.
    integer, parameter :: min_steps = 4
    !> A trial ends early if it misses instants and has taken so many seconds.
-   real(dp), parameter :: long = 2.0_dp
-   !> A study solves this number of links at instants in each trial, and compares this number of numbers.
-   integer, parameter :: max_solved = 1000000, max_compared = 1000000
+   real(dp), parameter :: max_seconds_missed = 2.0_dp
+   !> A study solves this number of links at instants in each trial.
+   integer, parameter :: max_solved = 1000000
+   !> A study compares this number of numbers.
+   integer, parameter :: max_compared = 1000000
    !> Methods that solve all equations at once are tried up to this number of equations.
    integer, parameter :: max_equations = 130
+   !> The tolerances that are tried; 0: the limit of rounding.
    real(dp), parameter :: tolerances(*) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, 1.0e-12_dp, 0.0_dp]
+   !> Microseconds in a second.
    real(dp), parameter :: micro = 1.0e6_dp
+   !> Degrees in a radian.
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
    !> Seconds that the reference of a set may take. What it has written until then is compared.
@@ -70,13 +79,14 @@ module study
 
 contains
 
-   !> Prints the study of the deck in the file `path` to `output`, '' for standard output; with `only_times` the time of
-   !> a step of each set. Then the deck may be '', standard input. `message`: lines for standard error, '' for none.
+   !> Prints the study of a deck, or the time of a step of each of its sets. Errors: the status of the failure, with its
+   !> message.
    subroutine run_study(path, output, only_times, status, message)
-      character(*), intent(in) :: path, output
-      logical, intent(in) :: only_times
-      integer, intent(out) :: status
-      character(:), allocatable, intent(out) :: message
+      character(*), intent(in) :: path       !< the file of the deck; with `only_times` '' is standard input
+      character(*), intent(in) :: output     !< the file that is written; '' is standard output
+      logical, intent(in) :: only_times      !< only the time of a step of each set
+      integer, intent(out) :: status         !< exit status, of `failures`
+      character(:), allocatable, intent(out) :: message   !< lines for standard error; '' for none
       type(mechanism_t), allocatable :: sets(:)
       type(structure_report_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
@@ -89,6 +99,7 @@ contains
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
       if (.not. allocated(failure)) call check_apart([o], path, failure)
+
       if (allocated(failure)) then
          call abandon_output(o)
       else
@@ -104,14 +115,15 @@ contains
          end do
          call close_output(o, failure)
       end if
+
       if (.not. allocated(failure)) return
       status = failure%status
       if (len(message) == 0) message = ' *** '//failure%text
 
    contains
 
-      !> Prints iterations and time of a step of `m`, as the deck asks for it. `status`: status_flagged if a position is
-      !> not found.
+      !> Prints iterations and time of a step of a set, as the deck has it. If a position is not found, the status
+      !> becomes status_flagged.
       subroutine put_times(m)
          type(mechanism_t), intent(in) :: m
          type(trial_t) :: t
@@ -134,10 +146,10 @@ contains
          call put(o, trim(line))
       end subroutine put_times
 
-      !> Prints the study of `m`. `redundant`: it has too many equations.
+      !> Prints the study of a set.
       subroutine study_set(m, redundant)
          type(mechanism_t), intent(in) :: m
-         logical, intent(in) :: redundant
+         logical, intent(in) :: redundant    !< it has too many equations
          integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
          type(trial_t), allocatable :: trials(:)
          type(mechanism_t), allocatable :: tried(:)
@@ -160,7 +172,7 @@ contains
          allocate (tried(size(trials)))
          call read_truth(m, last, path, size(sets), truth)
          do i = 1, size(trials)
-            ! The mechanism as the trial solves it, with no question of the deck but its rows.
+            ! The mechanism as the trial solves it: of the deck's requests only its rows.
             tried(i) = m
             tried(i)%method = trials(i)%method
             tried(i)%tolerance = real(trials(i)%tolerance, wp)
@@ -168,7 +180,7 @@ contains
             tried(i)%assemblies = .false.
             call solve(tried(i), last, trials(i), truth)
          end do
-         ! All trials take turns, so that what else the machine does meets all of them.
+         ! All trials take turns, so that other work of the machine meets all of them.
          do k = 1, repeats
             do i = 1, size(trials)
                if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
@@ -184,6 +196,7 @@ contains
             call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
                //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
          end if
+
          if (redundant) then
             call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
          else if (equations > max_equations) then
@@ -193,16 +206,17 @@ contains
          call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
          call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION' &
             //'   VELOCITY   ACCELER.')
+
          standard = findloc(trials%tolerance, 0.0_dp, dim=1)
          do i = 1, size(trials)
             call put_trial(trials(i), median(trials(standard)%time))
          end do
       end subroutine study_set
 
-      !> Prints the row of `trial`. `unit`: microseconds of the default, 0 if that does not find every position.
+      !> Prints the row of a trial.
       subroutine put_trial(trial, unit)
          type(trial_t), intent(in) :: trial
-         real(dp), intent(in) :: unit
+         real(dp), intent(in) :: unit        !< microseconds of a step by default; 0: the default misses a position
          character(120) :: line
          integer :: d
 
@@ -218,6 +232,7 @@ contains
             if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(trial%time)/unit
             write (line(68:), '(f7.2)') trial%iterations
          end if
+
          do d = 0, merge(2, -1, trial%missed == 0)
             if (trial%error(d) < 1.0e-3_dp*nothing_known) then
                write (line(75 + 11*d:), '(es11.1)') trial%error(d)
@@ -229,11 +244,11 @@ contains
       end subroutine put_trial
    end subroutine run_study
 
-   !> Solves `m` at instants 0 to `last`. Fills missed instants, iterations, seconds and errors of `trial`; errors only
-   !> if something is compared with the `truth`.
+   !> Solves a set by one trial, and finds its missed instants, iterations and seconds, and its errors if something is
+   !> compared.
    subroutine solve(m, last, trial, truth)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last
+      integer, intent(in) :: last   !< the number of the last instant, counted from 0
       type(trial_t), intent(inout) :: trial
       type(truth_t), intent(in) :: truth
       type(set_analysis_t) :: a
@@ -254,7 +269,7 @@ contains
          if (k == 0) at_first = maxval(a%list%iterations)
          if (is_flagged(a%now)) trial%missed = trial%missed + 1
          if (k < truth%compared) call compare()
-         if (trial%missed > 0 .and. trial%seconds > long) exit
+         if (trial%missed > 0 .and. trial%seconds > max_seconds_missed) exit
       end do
       trial%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
@@ -292,13 +307,13 @@ contains
       end subroutine compare
    end subroutine solve
 
-   !> Reads what the rows of links, points and pairs of `m`, one of so many `sets` of the deck in the file `path`, are
-   !> compared with at instants 0 to `last`: the table of kinmat-quad as far as it goes. Without one the program's own
-   !> estimates of errors stand for it.
+   !> Reads the table of kinmat-quad for the rows of links, points and pairs of a set, as far as it goes. Without such a
+   !> table the program's own estimates of errors stand for it.
    subroutine read_truth(m, last, path, sets, truth)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last, sets
-      character(*), intent(in) :: path
+      integer, intent(in) :: last            !< the number of the last instant, counted from 0
+      integer, intent(in) :: sets            !< how many sets the deck has
+      character(*), intent(in) :: path       !< the file of the deck
       type(truth_t), intent(out) :: truth
       type(set_motion_t) :: s
       type(request_t), allocatable :: requests(:)
@@ -324,12 +339,11 @@ contains
       close (unit)
    end subroutine read_truth
 
-   !> Returns microseconds of a step of `m`, position, velocity and acceleration at instants 1 to `last`, without the
-   !> first instant. `whole_time`: seconds that all steps take, about.
+   !> Measures the microseconds of a step, with position, velocity and acceleration, without the first instant.
    real(dp) function step_time(m, last, whole_time) result(time)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last
-      real(dp), intent(in) :: whole_time
+      integer, intent(in) :: last            !< the number of the last instant, counted from 0, 1 or more
+      real(dp), intent(in) :: whole_time     !< seconds that all steps take, about
       type(set_analysis_t) :: a
       real(dp) :: begun
       real(wp) :: instants(0:last)
@@ -352,7 +366,7 @@ contains
       time = micro*time/(real(passes, dp)*steps)
    end function step_time
 
-   !> Returns the clock (s), from some instant.
+   !> Reads the clock, in seconds from some instant.
    real(dp) function seconds()
       integer(int64) :: ticks, per_second
 
@@ -360,20 +374,21 @@ contains
       seconds = real(ticks, dp)/real(per_second, dp)
    end function seconds
 
-   !> Returns the median of the sample `values`, which has one value at least.
+   !> Gives the median of a sample.
    pure real(dp) function median(values)
-      real(dp), intent(in) :: values(:)
+      real(dp), intent(in) :: values(:)   !< (1 or more) in any order
       integer :: twice(size(values)), i               ! twice the number of values that are no larger
 
       twice = [(2*count(values <= values(i)), i=1, size(values))]
       median = 0.5_dp*(minval(values, mask=twice >= size(values)) + minval(values, mask=twice > size(values)))
    end function median
 
-   !> Lets kinmat-quad solve set K of N, `set` K/N, of the deck in the file `path`: its table is open at `unit`. That is
-   !> 0 if it stands neither beside this program nor in PATH, or if it computes in another kind of reals.
+   !> Lets kinmat-quad solve one set of a deck, and opens its table. There is no table if kinmat-quad stands neither
+   !> in the directory of this program nor in PATH, or if it computes in another kind of reals.
    subroutine open_reference(path, set, unit)
-      character(*), intent(in) :: path, set
-      integer, intent(out) :: unit
+      character(*), intent(in) :: path       !< the file of the deck
+      character(*), intent(in) :: set        !< K/N: set K of N sets
+      integer, intent(out) :: unit           !< that of the table; 0: there is none
       character(:), allocatable :: rows
       character(4096) :: this
       integer(c_int) :: descriptor
@@ -396,9 +411,9 @@ contains
       closed = close_descriptor(descriptor)
    end subroutine open_reference
 
-   !> `text` as one word of a shell's command.
+   !> Gives a text as one word of a shell's command.
    pure function shell_word(text) result(word)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text   !< any characters
       character(:), allocatable :: word
 
       word = ''''//replaced(text, '''', ['''\'''''])//''''

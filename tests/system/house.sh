@@ -62,7 +62,8 @@ printf '   !> Doc.\n   pure function a(x)\n   end function a\n\n   real(wp) func
 equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: real(wp) function b(x, &" \
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 # The files whose dummies all have their meaning, unit and shape; those of new folders and files belong to them.
-explained='src/job.f90 src/kinmat_c.f90 src/rows/*.f90 src/mechanism/columns.f90 src/mechanism/drives.f90 src/mechanism/pair_geometry.f90
+explained='src/base/*.f90 src/linear/[bk]*.f90 src/linear/linear_solver.f90 src/structure/*.f90 src/dense/[cpu]*.f90 src/study/*.f90
+   src/job.f90 src/kinmat_c.f90 src/rows/*.f90 src/mechanism/columns.f90 src/mechanism/drives.f90 src/mechanism/pair_geometry.f90
    src/mechanism/separations.f90 src/answers/answers.f90 src/answers/counts.f90 src/answers/proofs.f90
    src/answers/set_circuits.f90 src/answers/tolerance_contributions.f90 src/lanes/lane_runs.f90 src/results/answer_tables.f90
    src/results/csv.f90 src/results/canvas.f90 src/results/drawing.f90 src/results/shapes.f90 src/results/labels.f90
