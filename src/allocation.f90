@@ -1,5 +1,5 @@
 !> malloc, calloc and realloc of the command and of all libraries that it calls: if memory is short, the process ends
-!> with a message and exit status 3. Code that gfortran makes for an assignment uses memory without a look whether
+!> with a message and exit status 3. Code that gfortran makes for an assignment uses memory without a check that
 !> there is any.
 !>
 !> The dynamic linker finds these procedures before those of the C library. This file is linked with main and does not
@@ -13,27 +13,28 @@ module allocation
    private
 
    interface
-      !> malloc(3) of the C library.
+      !> Calls malloc(3) of the C library.
       type(c_ptr) function libc_malloc(length) bind(c, name='__libc_malloc')
          import :: c_ptr, c_size_t
-         integer(c_size_t), value :: length
+         integer(c_size_t), value :: length  !< bytes
       end function libc_malloc
-      !> calloc(3) of the C library.
+      !> Calls calloc(3) of the C library.
       type(c_ptr) function libc_calloc(count, length) bind(c, name='__libc_calloc')
          import :: c_ptr, c_size_t
-         integer(c_size_t), value :: count, length
+         integer(c_size_t), value :: count   !< elements
+         integer(c_size_t), value :: length  !< bytes of an element
       end function libc_calloc
-      !> realloc(3) of the C library.
+      !> Calls realloc(3) of the C library.
       type(c_ptr) function libc_realloc(place, length) bind(c, name='__libc_realloc')
          import :: c_ptr, c_size_t
-         type(c_ptr), value :: place
-         integer(c_size_t), value :: length
+         type(c_ptr), value :: place         !< memory that was allocated before, or null
+         integer(c_size_t), value :: length  !< bytes
       end function libc_realloc
    end interface
 
 contains
 
-   !> Allocates `length` bytes, or ends the process.
+   !> Allocates memory, or ends the process.
    type(c_ptr) function malloc(length) bind(c) result(place)
       integer(c_size_t), value :: length  !< bytes
 
@@ -41,18 +42,19 @@ contains
       if (.not. c_associated(place)) call end_without_memory
    end function malloc
 
-   !> Allocates `count` elements of `length` bytes, all 0, or ends the process.
+   !> Allocates memory for elements, all bytes 0, or ends the process.
    type(c_ptr) function calloc(count, length) bind(c) result(place)
-      integer(c_size_t), value :: count, length  !< elements, bytes
+      integer(c_size_t), value :: count   !< elements
+      integer(c_size_t), value :: length  !< bytes of an element
 
       place = libc_calloc(count, length)
       if (.not. c_associated(place)) call end_without_memory
    end function calloc
 
-   !> Changes the size of the memory at `before` to `length` bytes, of which 0 free it, or ends the process.
+   !> Changes the size of allocated memory, or ends the process.
    type(c_ptr) function realloc(before, length) bind(c) result(place)
-      type(c_ptr), value :: before
-      integer(c_size_t), value :: length  !< bytes
+      type(c_ptr), value :: before        !< memory that was allocated before, or null
+      integer(c_size_t), value :: length  !< bytes; 0 frees the memory
 
       place = libc_realloc(before, length)
       if (.not. c_associated(place) .and. length /= 0) call end_without_memory

@@ -1,9 +1,9 @@
-!> The command's words: what to read, what to write, which sets. What the documents say of messages, as lines for a
-!> terminal: --explain.
+!> The words of the command: the deck to read, the outputs to write, the sets to compute. For --explain, the entries of
+!> the documents on messages, as lines for a terminal.
 module command_line
    use number_format, only: whole
    use failures, only: failure_t, fail, status_rejected, capitals
-   use cards, only: forms, form_name, find_form, form_unknown
+   use cards, only: card_forms, form_name, find_form, form_unknown
    use document_texts, only: message_cell, message_count
    implicit none
    private
@@ -47,12 +47,14 @@ module command_line
       character(:), allocatable :: show
    end type options_t
 
-   !> More processes than any machine has processors would only take memory.
+   !> The largest number of --jobs: more processes than any machine has processors would only take memory.
    integer, parameter :: max_jobs = 1024
+   !> Digits of a whole number among the options: any such number is of the default kind.
+   integer, parameter :: max_option_digits = 8
 
 contains
 
-   !> Reads the process's arguments.
+   !> Reads the arguments of the process. Errors: status_rejected, for the first fault that is found.
    subroutine read_command(options, failure)
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
@@ -63,6 +65,7 @@ contains
       options%deck = ''
       options%show = ''
       has_deck = .false.
+
       i = 0
       do while (i < command_argument_count() .and. .not. allocated(failure))
          word = next_word()
@@ -71,6 +74,7 @@ contains
             call take_file(options%files(k))
             cycle
          end if
+
          select case (word)
          case ('--sets')
             word = next_word()
@@ -83,6 +87,7 @@ contains
             options%jobs = whole_of(next_word())
             if (options%jobs < 1 .or. options%jobs > max_jobs) &
                call reject('OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
+
          case ('--errors')
             options%errors = .true.
          case ('--arrows')
@@ -99,6 +104,7 @@ contains
             options%time = .true.
          case ('--check')
             options%check = .true.
+
          case ('--help', '-h')
             options%show = 'HELP'
          case ('--version')
@@ -115,6 +121,7 @@ contains
             options%deck = trim(adjustl(options%deck))
             if (len(explained(options%deck)) == 0) &
                call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+
          case default
             if (len(word) == 0) then
                call reject('THE NAME OF THE DECK IS EMPTY')
@@ -129,6 +136,7 @@ contains
             end if
          end select
       end do
+
       ! A study and times are no listing; a study reads its deck more than once.
       if ((options%study .or. options%time) .and. len(options%show) == 0) then
          if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
@@ -140,6 +148,7 @@ contains
             call reject('OPTION --study NEEDS THE DECK AS A FILE')
          end if
       end if
+
       ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
       if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
          call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
@@ -148,9 +157,10 @@ contains
          if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
             call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
       end do
+
       if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
          word = ''
-         do k = 1, size(forms)
+         do k = 1, size(card_forms)
             word = word//' '//trim(form_name(k))
          end do
          call reject('OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//word)
@@ -160,14 +170,14 @@ contains
 
    contains
 
-      !> Makes `failure` hold the sentence `text`, if it is the first.
+      !> Makes `failure` hold a sentence, if there is no failure yet.
       subroutine reject(text)
-         character(*), intent(in) :: text
+         character(*), intent(in) :: text    !< the fault of the command
 
          if (.not. allocated(failure)) call fail(failure, status_rejected, text)
       end subroutine reject
 
-      !> Takes the name of a `file` from after `word`, its option: `-` is standard output.
+      !> Takes the name of a file from the word after `word`, its option: `-` is standard output.
       subroutine take_file(file)
          type(word_t), intent(inout) :: file
          character(:), allocatable :: path
@@ -183,7 +193,7 @@ contains
          file%text = path
       end subroutine take_file
 
-      !> The word after word number `i`, '' if there is none; that is number `i` then.
+      !> Gives the word after word number `i`, '' if there is none, and increases `i` by 1.
       function next_word() result(next)
          character(:), allocatable :: next
          integer :: length
@@ -194,27 +204,28 @@ contains
          if (length > 0) call get_command_argument(i, next)
       end function next_word
 
-      !> The whole number `word`, of at most 8 digits without a sign; 0 if it is none.
+      !> Gives the value of a word; 0 if it is no whole number, or has too many digits.
       pure integer function whole_of(word) result(number)
-         character(*), intent(in) :: word
+         character(*), intent(in) :: word    !< at most `max_option_digits` digits without a sign
 
          number = 0
-         if (len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0) read (word, *) number
+         if (len(word) > 0 .and. len(word) <= max_option_digits .and. verify(word, '0123456789') == 0) &
+            read (word, *) number
       end function whole_of
    end subroutine read_command
 
-   !> Whether `file` is asked for, as standard output.
+   !> Tells whether an output is asked for on standard output.
    elemental logical function to_standard_output(file)
-      type(word_t), intent(in) :: file
+      type(word_t), intent(in) :: file       !< the name of its file
 
       to_standard_output = .false.
       if (allocated(file%text)) to_standard_output = len(file%text) == 0
    end function to_standard_output
 
-   !> Gives the entries of docs/messages.md that have most letters in words of `words`: a code, words of a message, or a
-   !> printed message; '' if none has any.
+   !> Gives the entries of docs/messages.md that share most letters, in whole words, with what is asked; '' if none
+   !> shares a word.
    pure function explained(words) result(text)
-      character(*), intent(in) :: words
+      character(*), intent(in) :: words      !< a code, words of a message, or a printed message
       character(:), allocatable :: text
       integer :: scores(message_count), i
 
@@ -227,9 +238,10 @@ contains
       end do
    end function explained
 
-   !> Counts the letters of those words of `key` that are words of `message`, each word once.
+   !> Counts the letters of those words of a key that are words of a message, each word once.
    pure integer function likeness(message, key) result(letters)
-      character(*), intent(in) :: message, key
+      character(*), intent(in) :: message    !< its words, a blank between two
+      character(*), intent(in) :: key        !< the words that are sought, a blank between two, in capitals
       integer :: first, last, next
 
       letters = 0

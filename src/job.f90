@@ -41,11 +41,12 @@ module job
 
 contains
 
-   !> Does what `options` say. `status`: the exit status; `message`: lines for standard error, '' for none.
+   !> Runs a job: reads the deck, computes its sets and writes the outputs. On an error, status and message are those of
+   !> the error. A child process does not return: it ends here.
    subroutine run_job(options, status, message)
       type(options_t), intent(in) :: options
       integer, intent(out) :: status         !< exit status
-      character(:), allocatable, intent(out) :: message !< lines for standard error
+      character(:), allocatable, intent(out) :: message   !< lines for standard error; '': none
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
       type(structure_report_t), allocatable, save :: findings(:)
@@ -100,7 +101,7 @@ contains
 
    contains
 
-      !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
+      !> Gives the remarks about `sets`, each line ended by new_line('a'), if no listing has them; '' for --quiet.
       function said() result(text)
          character(:), allocatable :: text
 
@@ -112,8 +113,8 @@ contains
       end function said
    end subroutine run_job
 
-   !> Checks the `options` for the `sets` of the deck. A deck with VARY cards has no table, which has columns for one
-   !> motion, and no picture of a part of its sets. Errors: status_rejected, in `failure`.
+   !> Checks the options against the sets of the deck. Errors: status_rejected. A deck with VARY cards has no table,
+   !> which has columns for one motion, and no picture of a part of its sets.
    subroutine check_options(options, sets, failure)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: sets(:)
@@ -130,15 +131,14 @@ contains
          'OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
    end subroutine check_options
 
-   !> The number of variants of all `sets`. A set without VARY cards counts as one.
+   !> Counts the variants of all sets. A set without VARY cards counts as one.
    pure integer(int64) function variant_count(sets)
       type(mechanism_t), intent(in) :: sets(:)
 
       variant_count = sum(int(max(1, sets%variants), int64))
    end function variant_count
 
-   !> Finds what this command computes of the `sets` of the deck by its option --sets: of variants, if the deck has VARY
-   !> cards, otherwise of sets.
+   !> Finds which sets this command computes by its option --sets. If the deck has VARY cards, it finds which variants.
    subroutine choose_share(sets, writers)
       type(mechanism_t), intent(in) :: sets(:)
       type(writers_t), intent(inout) :: writers
@@ -153,8 +153,8 @@ contains
       writers%last = merge(size(sets), writers%share%last, writers%varies)
    end subroutine choose_share
 
-   !> The number of processes that compute `sets`: one where they take no time, are drawn on one page, or where nothing
-   !> can be written.
+   !> Gives the number of processes that compute the sets. It is 1 if they take no time, are drawn on one page, or if no
+   !> output can be written.
    integer function process_count(sets, writers)
       type(mechanism_t), intent(in) :: sets(:)
       type(writers_t), intent(in) :: writers
@@ -170,7 +170,8 @@ contains
       process_count = min(process_count, sum(max(1, sets%variants)))
    end function process_count
 
-   !> The sets of this share, one after another: shares put together in their order are the whole.
+   !> Computes and writes the sets of the part at hand, one after another. The texts of all parts in their order are the
+   !> text of the whole.
    subroutine run_sets(sets, findings, writers)
       type(writers_t), intent(inout) :: writers
       type(mechanism_t), intent(inout) :: sets(writers%first:)
@@ -186,6 +187,7 @@ contains
          if (writers%asked(k)) call begin_page(writers%files(k), pages(k))
       end do
       if (writers%asked(out_dxf)) call begin_dxf(writers%files(out_dxf))
+
       before = writers%first - 1
       ! Where no set has variants, those before the part at hand need not be passed over.
       if (.not. writers%varies) before = writers%own_first - 1
@@ -216,17 +218,18 @@ contains
             call put_circuits(pages(out_circuits), sets(i), a, found)
          end if
       end do
+
       do k = out_svg, out_circuits
          if (writers%asked(k)) call end_page(writers%files(k), pages(k))
       end do
       if (writers%asked(out_dxf)) call end_dxf(writers%files(out_dxf))
    end subroutine run_sets
 
-   !> Draws the film of `m`, one of so many `sets`, on those of the `pages` that are asked for. It has an analysis of
-   !> its own: a picture shows links that no table asks for, and what is printed must not depend on it.
+   !> Draws the film of a set on the pages that are asked for. If a signal comes, nothing is drawn. The film has an
+   !> analysis of its own: a picture shows links that no table asks for, and printed numbers must not depend on it.
    subroutine draw_set(m, sets, writers, pages)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: sets            !< their count
+      integer, intent(in) :: sets            !< number of sets that are drawn
       type(writers_t), intent(inout) :: writers
       type(page_t), intent(inout), target :: pages(out_svg:)
       type(mechanism_t) :: film
@@ -248,8 +251,8 @@ contains
       if (writers%asked(out_animation)) call put_animation(pages(out_animation), d)
    end subroutine draw_set
 
-   !> Exports set number `i` of the file for CAD, `m`, at the instants of the deck. Its analysis is its own, as that
-   !> of a picture.
+   !> Exports the motion of a set at the instants of the deck to the file for CAD. If a signal comes, nothing is
+   !> written. The export has an analysis of its own, for the reasons of `draw_set`.
    subroutine export_set(m, i, writers)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< the number of the set in the file, from 1
@@ -271,10 +274,12 @@ contains
       call put_dxf(writers%files(out_dxf), d, paths, i)
    end subroutine export_set
 
-   !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
+   !> Solves and writes a set, or some of its variants. If the file of its table cannot be opened, the run is broken
+   !> off.
    subroutine run_set(m, i, first, last, findings, writers)
       type(mechanism_t), intent(inout) :: m
-      integer, intent(in) :: i, first, last  !< numbers of the set and of variants
+      integer, intent(in) :: i               !< number of the set in the deck
+      integer, intent(in) :: first, last     !< the first and the last variant, which may be below 1 or beyond the count
       type(structure_report_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: writers
       type(failure_t), allocatable :: failure
@@ -291,6 +296,7 @@ contains
       ! It is as large as the deck, and only the head of the listing has it.
       if (allocated(m%echo)) deallocate (m%echo)
       if (writers%options%check) return
+
       if (first <= 1) then
          call open_table(writers%options, writers%first, writers%last, i, .false., writers, failure)
          if (allocated(failure)) then
@@ -306,6 +312,7 @@ contains
          ! An output that takes nothing is known before anything is computed.
          call flush_output(writers%files)
       end if
+
       if (m%variants == 0) then
          call run_motion(a, findings, .true., writers, counts, asked)
          if (counts%flagged + counts%unproved > 0) writers%status = status_flagged

@@ -1,5 +1,5 @@
-!> KINMAT for C, by eight functions: contrib/kinmat.h says what each does. A handle is a set and where it is in its
-!> motion; nothing else is kept, so that threads with a handle each do not meet.
+!> KINMAT for C, by eight functions, which contrib/kinmat.h describes. A handle is a set and its place in its motion;
+!> nothing else is kept, so that threads with a handle each do not meet.
 !>
 !> Decks are read one at a time: gfortran keeps the length of the text that a function returns in static memory.
 module kinmat_c
@@ -19,7 +19,7 @@ module kinmat_c
    private
 
    !> Characters of the name of a column, and the null after it.
-   integer, parameter :: name_length = 80
+   integer, parameter :: column_name_length = 80
 
    !> Bytes for each character of a deck: without these it is not read. Decks of `tests/make_deck` take up to 17.
    integer(c_size_t), parameter :: memory_of_character = 20
@@ -29,7 +29,7 @@ module kinmat_c
       type(table_t) :: table
       type(finished_row_t), allocatable :: rows(:)  !< (requests) of the last instant
       real(wp), allocatable :: values(:)            !< (columns)
-      character(name_length), allocatable :: names(:)   !< (columns) with a null after each
+      character(column_name_length), allocatable :: names(:)   !< (columns) with a null after each
       character(:), allocatable :: message          !< why it is rejected, or ''; with a null after it
       logical :: is_ready = .false.                 !< the set can be solved
       real(wp) :: last = -huge(1.0_wp)              !< time of the call before
@@ -44,23 +44,23 @@ module kinmat_c
    integer(c_long), target :: reading(16) = 0
 
    interface
-      !> strlen(3).
+      !> Counts the characters of a text of C: strlen(3).
       pure integer(c_size_t) function strlen(text) bind(c)
          import :: c_ptr, c_size_t
          type(c_ptr), value :: text
       end function strlen
-      !> pthread_mutex_lock(3).
+      !> Locks a mutex, and waits until it is free: pthread_mutex_lock(3). Gives 0.
       integer(c_int) function pthread_mutex_lock(mutex) bind(c)
          import :: c_int, c_long
          integer(c_long), intent(inout) :: mutex(*)   !< pthread_mutex_t
       end function pthread_mutex_lock
    end interface
-   !> pthread_mutex_unlock(3).
+   !> Unlocks a mutex: pthread_mutex_unlock(3). Gives 0.
    procedure(pthread_mutex_lock), bind(c) :: pthread_mutex_unlock
 
 contains
 
-   !> Names the program and its version.
+   !> Gives the name of the program and its version, with a null after them.
    type(c_ptr) function kinmat_version() bind(c)
       kinmat_version = c_loc(version)
    end function kinmat_version
@@ -121,7 +121,7 @@ contains
       call make_set_analysis(sets(number), handle%set, findings(number))
       handle%table = new_table(handle%set%now)
       allocate (handle%rows(size(handle%set%now%rows)), handle%values(table_width(handle%table)))
-      handle%names = [character(name_length) :: 't', handle%table%drives, handle%table%columns%name]
+      handle%names = [character(column_name_length) :: 't', handle%table%drives, handle%table%columns%name]
       do i = 1, size(handle%names)
          handle%names(i) = trim(handle%names(i))//c_null_char
       end do
@@ -165,8 +165,8 @@ contains
    !> Counts the instants of the deck, and gives the first of them.
    integer(c_int) function kinmat_instants(handle, room, n) bind(c)
       type(c_ptr), value :: handle
-      type(c_ptr), value :: room                !< (n) room for their times
-      integer(c_int), value :: n
+      type(c_ptr), value :: room             !< (n) room for their times, in the deck's unit; null: none
+      integer(c_int), value :: n             !< number of times that are given at most
       type(handle_t), pointer :: k
       real(c_double), pointer :: times(:)
       integer :: i
@@ -182,11 +182,12 @@ contains
       end do
    end function kinmat_instants
 
-   !> Solves for a time, which is not before that of the call before, unless both are instants of the deck as they
-   !> follow one another there. Gives the exit status of the command for this instant.
+   !> Solves for a time, and gives the exit status of the command for this instant. The time is not before the time of
+   !> the previous call, unless all calls are for the instants of the deck in their order. Otherwise, and for a time
+   !> that is not finite, the status is status_rejected and the row NaN.
    integer(c_int) function kinmat_advance(handle, t, row) bind(c) result(status)
       type(c_ptr), value :: handle
-      real(c_double), value :: t
+      real(c_double), value :: t             !< time, in the deck's unit
       real(c_double), intent(inout) :: row(*)   !< (columns) NaN: it does not exist or has no known digit
       type(handle_t), pointer :: k
       real(wp) :: time
@@ -237,7 +238,7 @@ contains
 
    !> Copies a text of C; null is ''.
    function text_of(place) result(text)
-      type(c_ptr), intent(in) :: place
+      type(c_ptr), intent(in) :: place       !< characters with a null after them
       character(:), allocatable :: text
       character(kind=c_char), pointer :: characters(:)
       integer :: i

@@ -24,6 +24,7 @@ program main
    if (command_argument_count() == 0) then
       if (isatty(0_c_int) /= 0) options%show = 'HELP'
    end if
+
    select case (options%show)
    case ('HELP')
       call show(help_on(''))
@@ -46,9 +47,9 @@ program main
 
 contains
 
-   !> One text on standard output.
+   !> Writes a text on standard output. If the output fails, the process ends with a message and the failure's status.
    subroutine show(text)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text       !< one or several lines, without the end of the last
       type(output_t) :: o
 
       call open_output(o, '', failure)
@@ -59,10 +60,10 @@ contains
       if (allocated(failure)) call leave(failure%status, ' *** '//failure%text)
    end subroutine show
 
-   !> Ends the process with an exit status, or by the signal that the status stands for; `message`: for standard error.
+   !> Ends the process with an exit status, or by the signal that the status stands for.
    subroutine leave(status, message)
-      integer, intent(in) :: status
-      character(*), intent(in) :: message
+      integer, intent(in) :: status          !< exit status; above status_signal, the number of a signal is added to it
+      character(*), intent(in) :: message    !< lines for standard error; '': none
       integer :: ignored
 
       if (len(message) > 0) write (error_unit, '(a)', iostat=ignored) message

@@ -19,7 +19,8 @@ module motion_run
 
 contains
 
-   !> Solves and prints the set set%now, instant by instant.
+   !> Solves and prints the motion of a set, instant by instant. If the run is broken off, the last line of the listing
+   !> tells so.
    subroutine run_motion(set, findings, full, writers, counts, asked)
       type(set_analysis_t), intent(inout) :: set
       type(structure_report_t), intent(inout) :: findings

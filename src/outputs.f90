@@ -41,12 +41,15 @@ module outputs
 
 contains
 
-   !> Opens the outputs that `options` ask for and that all sets share, and sees whether those of each of the sets
-   !> `first` to `last`, of `count` in the deck, can be opened. Errors: status_system; status_rejected where one of
-   !> them is a file of all sets or of the same set, or where tables would be one after another on standard output.
+   !> Opens the outputs that all sets share, and checks that the outputs of each set can be opened. Only outputs that
+   !> the options ask for are opened.
+   !>
+   !> Errors: status_system if a file cannot be opened; status_rejected if two outputs are one file, or if several
+   !> tables would follow one another on standard output. After an error no output is open.
    subroutine open_outputs(options, first, last, count, outputs, failure)
       type(options_t), intent(in) :: options
-      integer, intent(in) :: first, last, count
+      integer, intent(in) :: first, last     !< numbers of the first and the last set that are computed
+      integer, intent(in) :: count           !< sets in the deck
       class(outputs_t), intent(inout) :: outputs
       type(failure_t), allocatable, intent(out) :: failure
       integer :: k, i
@@ -56,12 +59,14 @@ contains
          if (outputs%asked(k) .and. .not. allocated(failure)) &
             call open_output(outputs%files(k), options%files(k)%text, failure)
       end do
+
       if (outputs%asked(out_table) .and. first < last .and. .not. allocated(failure)) then
          if (len(options%files(out_table)%text) == 0) call fail(failure, status_rejected, &
             'STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count)//' WITH --sets K/' &
             //whole(count))
       end if
       if (.not. allocated(failure)) call check_apart(outputs%files, options%deck, failure)
+
       do i = first, last
          if (allocated(failure)) exit
          call open_table(options, first, last, i, .true., outputs, failure)
@@ -70,13 +75,15 @@ contains
       if (allocated(failure)) call abandon_output(outputs%files)
    end subroutine open_outputs
 
-   !> Opens the table of set number `i` of those from `first` to `last`; where these are several, its name has the
-   !> number before its extension. One that `tries` leaves devices and pipes alone, whose readers would go. Errors: as
-   !> for `open_outputs`.
+   !> Opens the table of a set, if tables are asked for. If several sets are computed, the name of its file has the
+   !> number of the set before its extension.
+   !>
+   !> Errors: status_system if the file cannot be opened; status_rejected if it is the deck or another output.
    subroutine open_table(options, first, last, i, tries, outputs, failure)
       type(options_t), intent(in) :: options
-      integer, intent(in) :: first, last, i
-      logical, intent(in) :: tries
+      integer, intent(in) :: first, last     !< numbers of the first and the last set that are computed
+      integer, intent(in) :: i               !< number of the set, from `first` to `last`
+      logical, intent(in) :: tries           !< a trial: devices and pipes stay closed, for their readers would leave
       class(outputs_t), intent(inout) :: outputs
       type(failure_t), allocatable, intent(out) :: failure
       type(identity_t) :: there
@@ -94,11 +101,10 @@ contains
       if (.not. allocated(failure)) call check_apart(outputs%files, options%deck, failure)
    end subroutine open_table
 
-   !> Closes the outputs number `first` to `last`; outputs%failure becomes that of the last one that could not be
-   !> written.
+   !> Closes several outputs. outputs%failure becomes the failure of the last one that could not be written.
    subroutine close_outputs(outputs, first, last)
       class(outputs_t), intent(inout) :: outputs
-      integer, intent(in) :: first, last
+      integer, intent(in) :: first, last     !< the outputs: out_listing, ..., out_table
       type(failure_t), allocatable :: failure
       integer :: k
 
@@ -109,7 +115,7 @@ contains
       end do
    end subroutine close_outputs
 
-   !> Tells whether what follows need not be computed: an output has failed, or a signal has come.
+   !> Tells whether the rest of the job need not be computed: an output has failed, or a signal has come.
    logical function is_over(outputs)
       class(outputs_t), intent(in) :: outputs
 

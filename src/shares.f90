@@ -25,33 +25,37 @@ module shares
    private
    public :: run_shares, next_part, write_in_turn
 
-   !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
-   !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
-   integer, parameter :: parts_a_process = 1024, parts_together = 32
+   !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache.
+   integer, parameter :: parts_a_process = 1024
+   !> Parts for each process, if variants are solved together: each part makes its structure again, which takes as long
+   !> as several variants.
+   integer, parameter :: parts_together = 32
    !> Microseconds after which the parent looks whether a child has ended or a signal has come.
    integer(c_int), parameter :: look_time = 2000
 
    !> An output that holds more characters than these waits for its turn after the instant. Its buffer, twice as large
    !> at most, is 128 MB unless the text of an instant is longer.
-   integer, parameter :: max_held = 2**26
-   !> An output that holds more than these begins no further part.
+   integer, parameter :: max_held_length = 2**26
+   !> A process of which an output holds more characters than these begins no further part.
    integer, parameter :: max_ahead = 2**24
-   !> After so many characters it is looked whether the turn has come: in a block's time it may.
+   !> Characters of an output between two looks whether the turn has come: the time of a block of text.
    integer, parameter :: look_length = 65536
-   !> The lock of who takes a part: parts are counted from 1.
+   !> The number of the lock of the process that takes a part: parts are counted from 1.
    integer, parameter :: taking = 0
 
 contains
 
-   !> Computes the sets or variants of the share `outputs%share` in `processes` processes. It returns more than once: in
-   !> each child, to compute the parts that `next_part` gives and to end then; in the parent when all is done:
-   !> `next_part` gives none. `status`: then the exit status; `message`: what to say of an error that no child has
-   !> printed.
+   !> Computes the sets or variants of the share `outputs%share` in several processes. It returns more than once:
+   !>
+   !> - in each child, which computes the parts that `next_part` gives, and ends then;
+   !> - in the parent when all is done: `next_part` gives no part.
+   !>
+   !> If a process cannot be started or was ended by a signal, the parent has its status and message.
    subroutine run_shares(outputs, processes, status, message)
       class(outputs_t), intent(inout) :: outputs
-      integer, intent(in) :: processes
-      integer, intent(inout) :: status
-      character(:), allocatable, intent(inout) :: message
+      integer, intent(in) :: processes       !< number of children
+      integer, intent(inout) :: status       !< in the parent: the largest exit status
+      character(:), allocatable, intent(inout) :: message   !< in the parent: of an error that no child has printed
       integer :: children(processes), started, k
       integer(c_int) :: ended(processes), ignored
 
@@ -59,6 +63,7 @@ contains
          s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
          if (count < processes*s%length) s%length = (count - 1)/processes + 1
 
+         ! The children.
          started = 0
          s%taken = memfd_create('taken'//c_null_char, 0_c_int)
          if (s%taken >= 0) s%done = memfd_create('done'//c_null_char, 0_c_int)
@@ -75,12 +80,14 @@ contains
             if (children(k) < 0) started = k - 1
             if (children(k) < 0) exit
          end do
+
          if (started < processes) then
             status = status_system
             message = ' *** CANNOT START A PROCESS FOR'//text_of(s, started + 1)//' (' &
                //capitals(reason_of(last_error()))//')'
             call interrupt_child(children(:started))
          end if
+
          ended = 0
          do k = 1, started
             do while (waitpid(int(children(k), c_int), ended(k), no_hang) == 0)
@@ -88,6 +95,7 @@ contains
                if (signal_received() > 0) call interrupt_child(children(k:started))
             end do
          end do
+
          do k = 1, started
             if (iand(ended(k), 127) == signal_pipe) then
                status = status_signal + signal_pipe
@@ -107,8 +115,8 @@ contains
       end associate
    end subroutine run_shares
 
-   !> Ends the part at hand, if there is one, and begins the next, of which outputs%own_first to outputs%own_last are
-   !> the sets or variants. False where there is none, or the job is over; then all is written.
+   !> Ends the part at hand, if there is one, and begins the next: its sets or variants are outputs%own_first to
+   !> outputs%own_last. False if there is no further part or the job is over; then all is written.
    logical function next_part(outputs)
       class(outputs_t), intent(inout) :: outputs
       integer :: k
@@ -120,10 +128,10 @@ contains
                   [size(files), size(s%waiting) + 1])
                s%waiting = [s%waiting, s%part]
                s%held = .false.
-               call write_what_may_be(outputs, max_ahead)
+               call write_in_order(outputs, max_ahead)
             else
                ! What is not complete is written in its turn, and no part after it.
-               call write_what_may_be(outputs, -1)
+               call write_in_order(outputs, -1)
             end if
          end if
 
@@ -143,31 +151,32 @@ contains
                   ! What the first part has emptied is not emptied again.
                   if (allocated(files(k)%buffer)) files(k)%emptied = s%part > 1 .or. len(files(k)%path) == 0
                end do
-               call write_what_may_be(outputs, max_held)
+               call write_in_order(outputs, max_held_length)
             end if
          end if
+
          next_part = next_part .and. s%part <= part_count(s)
          outputs%own_first = first_of(s, s%part)
          outputs%own_last = first_of(s, s%part + 1) - 1
 
-         if (s%is_child .and. .not. next_part) call write_what_may_be(outputs, -1)
+         if (s%is_child .and. .not. next_part) call write_in_order(outputs, -1)
       end associate
    end function next_part
 
-   !> Writes what may be written, if there is much; waits where an output holds too much.
+   !> Writes the text whose turn has come, if there is much. It waits if an output holds too much.
    subroutine write_in_turn(outputs)
       class(outputs_t), intent(inout) :: outputs
 
       if (.not. outputs%share%held) return
-      if (maxval(held_length(outputs%files(:out_shared))) >= outputs%share%look) call write_what_may_be(outputs, &
-         max_held)
+      if (maxval(held_length(outputs%files(:out_shared))) >= outputs%share%look) call write_in_order(outputs, &
+         max_held_length)
    end subroutine write_in_turn
 
-   !> Writes the parts whose turn has come; waits for it as long as an output holds more than `most` characters. An
-   !> error, or a turn that never comes, is that of the shared files, and what is held is dropped.
-   subroutine write_what_may_be(outputs, most)
+   !> Writes the parts whose turn has come, and waits for the turn if an output holds too much. If a write fails or the
+   !> turn never comes, the shared files have the error, and the held text is dropped.
+   subroutine write_in_order(outputs, most)
       class(outputs_t), intent(inout) :: outputs
-      integer, intent(in) :: most
+      integer, intent(in) :: most            !< characters that an output may hold without its turn; -1: none
       integer(c_long) :: done
       integer :: part, k
 
@@ -204,43 +213,43 @@ contains
          files%written = 0
          files%used = 0
       end associate
-   end subroutine write_what_may_be
+   end subroutine write_in_order
 
-   !> The run has not ended before its time, and no write has failed.
+   !> Tells whether the job goes on: the run has not ended before its time, and no write has failed.
    logical function goes_on(outputs)
       class(outputs_t), intent(in) :: outputs
 
       goes_on = .not. (outputs%ended .or. allocated(outputs%failure) .or. any(outputs%files%error /= 0))
    end function goes_on
 
-   !> How many parts there are; one where there is nothing to compute.
+   !> Counts the parts; 1 if there is nothing to compute.
    pure integer function part_count(share)
       type(share_of_job_t), intent(in) :: share
 
       part_count = max(1, (share%last - share%first)/share%length + 1)
    end function part_count
 
-   !> The first set or variant of `part`, of those beyond the last one the number after the last.
+   !> Gives the first set or variant of a part; for a part after the last one, the number after the last of all.
    pure integer function first_of(share, part)
       type(share_of_job_t), intent(in) :: share
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< counted from 1
 
       first_of = share%last + 1
       if (part <= part_count(share)) first_of = share%first + (part - 1)*share%length
    end function first_of
 
-   !> SETS 5 TO 8, or VARIANTS 5 TO 8: `part`.
+   !> Names a part, after a blank: SETS 5 TO 8, or VARIANTS 5 TO 8.
    pure function text_of(share, part) result(text)
       type(share_of_job_t), intent(in) :: share
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< counted from 1
       character(:), allocatable :: text
 
       text = ' '//share%kind//' '//whole(first_of(share, part))//' TO '//whole(first_of(share, part + 1) - 1)
    end function text_of
 
-   !> How often a part was taken, by all processes, or is done: the position in the file `descriptor`; 0 without it.
+   !> Counts the parts that all processes have taken or done: the position in a shared file; 0 without the file.
    integer function count_of(descriptor)
-      integer(c_int), intent(in) :: descriptor
+      integer(c_int), intent(in) :: descriptor   !< share%taken or share%done
 
       count_of = max(0, int(lseek(descriptor, 0_c_long, from_here)))
    end function count_of

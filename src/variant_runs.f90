@@ -1,6 +1,6 @@
-!> The variants of a set with VARY cards: each is made when its turn comes, starts from the deck's own estimate and
-!> leaves a row. So the row is the same whatever the others are, and memory does not grow with them. Where rows alone
-!> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
+!> The variants of a set with VARY cards. Each is made when its turn comes, starts from the deck's own estimate and
+!> leaves a row. Its row does not depend on the other variants, and memory does not grow with their number. If only rows
+!> are asked for, several variants are solved together. The row of a variant that cannot be computed tells why.
 module variant_runs
    use failures, only: status_flagged
    use mechanism, only: settings_t, mechanism_t
@@ -31,10 +31,10 @@ module variant_runs
 
 contains
 
-   !> Solves and writes the variants `first` to `last` of `variation`, those of the `set`.
+   !> Solves and writes variants of a set.
    subroutine run_variants(set, first, last, variation, writers)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: first, last     !< numbers of variants
+      class(set_t), intent(in) :: set        !< with the numbers of the deck
+      integer, intent(in) :: first, last     !< numbers of the first and the last variant, from 1
       type(variation_t), intent(inout) :: variation
       type(writers_t), intent(inout) :: writers
       type(layout_t) :: layout
@@ -42,7 +42,7 @@ contains
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
       logical :: full, has_more              ! tables; ratios or cylinders
-      integer :: n, k
+      integer :: n, k                        ! n: the first variant that is not written
 
       n = first
       full = any([(any(set%parts(k)%requests%every > 0), k=1, set%count)])
@@ -53,6 +53,7 @@ contains
       if (writers%asked(out_listing) .and. first == 1 .and. .not. full) then
          call put_variant_heads(writers%files(out_listing), summary)
       end if
+
       if (are_together(set, full .or. has_more, writers)) then
          call run_together()
       else
@@ -72,8 +73,8 @@ contains
 
    contains
 
-      !> Solves and writes rows alone of the variants `n` to `last` of `variation`, as many at a time as there are
-      !> lanes; `n`: the first that is not written.
+      !> Solves the variants `n` to `last`, as many at a time as there are lanes, and writes their rows. Afterwards `n`
+      !> is the first variant that is not written.
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
@@ -89,6 +90,7 @@ contains
                call start(runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
+
             do k = 1, count
                if (is_over(writers)) return
                if (rows(k)%rejected == '') then
@@ -103,9 +105,9 @@ contains
          end do
       end subroutine run_together
 
-      !> Makes the variant of `variation` whose `row` this is, unless it is refused.
+      !> Makes the variant of a row ready for the lanes. A variant that is rejected is over, and its row has the reason.
       subroutine start(run, row)
-         type(lane_run_t), intent(inout) :: run
+         type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
          type(variant_row_t), intent(inout) :: row
          type(structure_report_t) :: findings
          logical :: is_done
@@ -124,7 +126,7 @@ contains
          call begin_run(run)
       end subroutine start
 
-      !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
+      !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
       subroutine check_variant(variant, findings, row)
          type(mechanism_t), intent(in) :: variant
          type(structure_report_t), intent(out) :: findings
@@ -136,10 +138,9 @@ contains
          row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
       end subroutine check_variant
 
-      !> Solves and writes the variant of `variation` whose `row` this is: it is `variant` now. `full`: its
-      !> tables are asked for.
+      !> Makes the variant of a row, solves it and fills the row. If it is rejected, the row has the reason.
       subroutine run_variant(variant, row)
-         type(mechanism_t), intent(inout) :: variant
+         type(mechanism_t), intent(inout) :: variant   !< becomes the variant
          type(variant_row_t), intent(inout) :: row
          type(structure_report_t) :: findings
          type(set_analysis_t) :: a
@@ -158,7 +159,7 @@ contains
          end if
       end subroutine run_variant
 
-      !> Writes the `row` of a variant.
+      !> Writes the row of a variant.
       subroutine write_row(row)
          type(variant_row_t), intent(in) :: row
 
@@ -169,10 +170,9 @@ contains
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of the set `settings`, which has what lanes do `not_have`, tables,
-   !> ratios or cylinders, or not: then as many are solved together as there are lanes.
+   !> Tells whether the variants of a set are solved together, as many as there are lanes: only rows are asked for.
    pure logical function are_together(settings, not_have, outputs)
-      class(settings_t), intent(in) :: settings
+      class(settings_t), intent(in) :: settings   !< of the set
       logical, intent(in) :: not_have        !< the set has tables, ratios or cylinders, which lanes do not have
       class(outputs_t), intent(in) :: outputs
 

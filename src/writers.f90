@@ -1,5 +1,5 @@
-!> The outputs of a job, and what is written of a motion: at its beginning, at its instants and at its end. The order of
-!> the outputs is that of this module; `motion_run` and `variant_runs` know only these procedures.
+!> The outputs of a job, and the text of a motion: at its beginning, at its instants and at its end. This module alone
+!> knows the order of the outputs; `motion_run` and `variant_runs` know only its procedures.
 module writers
    use kinds, only: wp
    use failures, only: status_solved
@@ -47,12 +47,12 @@ module writers
 
 contains
 
-   !> Begins what is printed of the motion of `set`. `full`: its tables are in the listing, too.
+   !> Finds which outputs and which instants of the motion of a set are printed.
    subroutine begin_printing(printing, writers, set, full)
       type(printing_t), intent(out) :: printing
       type(writers_t), intent(in) :: writers
       type(set_analysis_t), intent(in) :: set
-      logical, intent(in) :: full
+      logical, intent(in) :: full            !< its tables are in the listing, too
       integer :: i
 
       printing%lists = full .and. writers%asked(out_listing)
@@ -66,24 +66,24 @@ contains
       printing%next = merge(0, huge(printing%next), size(printing%every) > 0)
    end subroutine begin_printing
 
-   !> Tells whether rows are printed at instant `k`, counted from 0, and finds the next such instant. The instants are
-   !> passed in their order. Reason: a division for each request at every instant takes longer than all else here.
+   !> Tells whether rows are printed at an instant, and finds the next such instant. Reason: a division for each request
+   !> at every instant takes longer than all else here.
    logical function is_next(printing, k)
       type(printing_t), intent(inout) :: printing
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< the instant, counted from 0; one call for each, in their order
 
       is_next = k == printing%next .or. (k == printing%last .and. size(printing%every) > 0)
       if (k == printing%next) printing%next = k + minval(printing%every - mod(k, printing%every))
    end function is_next
 
-   !> Prints instant `k`, counted from 0, to which `set` has advanced, in each output that has something of it. If rows
-   !> are not printed at it, an instant without remarks has nothing to print, unless printing%each. Errors are estimated
-   !> only for what is shown.
+   !> Prints the instant to which a set has advanced, in each output that takes something of it. Errors are estimated
+   !> only for numbers that are printed. An instant without rows and without remarks has nothing to print, unless
+   !> printing%each.
    subroutine print_instant(printing, writers, set, k, due)
       type(printing_t), intent(inout) :: printing
       type(writers_t), intent(inout) :: writers
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< the instant, counted from 0
       logical, intent(in) :: due             !< rows are printed at it
       logical :: lists, has_csv
       integer :: i
@@ -105,6 +105,7 @@ contains
       end if
       if (allocated(printing%columns%columns)) call note_columns(printing%columns, writers%layout, set%now, &
          printing%rows)
+
       if (has_csv) call csv_instant(writers%files(out_csv), set%now, printing%rows, k, writers%varies)
       if (writers%asked(out_table)) call table_instant(writers%files(out_table), writers%table, set%now, printing%rows)
       if (writers%asked(out_log)) then
@@ -115,7 +116,7 @@ contains
       end if
    end subroutine print_instant
 
-   !> Ends the tables over the instants, after the last one or where the run is broken off.
+   !> Ends the tables over the instants, after the last one or when the run is broken off.
    subroutine end_tables(printing, writers, set)
       type(printing_t), intent(inout) :: printing
       type(writers_t), intent(inout) :: writers
@@ -130,7 +131,7 @@ contains
       call put_columns(writers%files(out_listing), printing%columns, set%now)
    end subroutine end_tables
 
-   !> Prints how the motion of `set` ended, with the counts of its instants: the end of its part of the listing.
+   !> Prints the end of the listing of a set: how its motion ended, with the counts of its instants.
    subroutine print_end(printing, writers, set, counts)
       type(printing_t), intent(in) :: printing
       type(writers_t), intent(inout) :: writers
@@ -144,13 +145,13 @@ contains
          maxval([(set%estimators(i)%closure, i=1, size(set%list))]), set_closing_diagnostics(set))
    end subroutine print_end
 
-   !> Ends the run before its time. The last line of the listing of `settings` has the `words` and the `number` of the
-   !> last instant, variant or set; nothing follows it.
+   !> Ends the run before its time. The last line of the listing tells after which instant, variant or set; nothing
+   !> follows it.
    subroutine break_off(writers, settings, words, number)
       type(writers_t), intent(inout) :: writers
-      class(settings_t), intent(in) :: settings
-      type(phrase_t), intent(in) :: words
-      integer, intent(in) :: number          !< from 1; of an instant from 0
+      class(settings_t), intent(in) :: settings   !< of the set at hand: the language
+      type(phrase_t), intent(in) :: words    !< the sentence before the number
+      integer, intent(in) :: number          !< of the last instant, from 0, or of the last variant or set, from 1
 
       if (writers%ended) return
       writers%ended = .true.

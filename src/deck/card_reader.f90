@@ -1,5 +1,5 @@
 !> Reads a card to its labels, whole number and reals. Every field is checked; deck_... and card_sets give it a meaning.
-!> What is harmless is a remark, all else an error.
+!> Harmless faults are remarks, all others errors.
 module card_reader
    use kinds, only: wp, label_length
    use mechanism, only: remark_title_long, remark_title_letters, remark_touching
@@ -16,7 +16,7 @@ module card_reader
    type :: parsed_card_t
       type(card_t) :: card
       type(card_t), allocatable :: star         !< the `*` card below it
-      integer :: form = form_unknown            !< its place in `forms`
+      integer :: form = form_unknown            !< its place in `card_forms`
       logical :: valid = .true.                 !< it and its `*` card have no error of their own
       logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
       character(label_length) :: label(label_a:label_c) = ''
@@ -32,13 +32,14 @@ module card_reader
       integer :: below = 0                      !< the number of the card above it, TOLER and VARY left out; 0: none
    end type parsed_card_t
 
-   !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of
-   !> reals.
-   real(wp), parameter :: max_real = 10.0_wp**max_power, min_real = 10.0_wp**(-max_power)
+   !> The largest length, angle or time: larger numbers have no use, and their squares would leave the range of reals.
+   real(wp), parameter :: max_real = 10.0_wp**max_power
+   !> The smallest length, angle or time above zero, for the same reason.
+   real(wp), parameter :: min_real = 10.0_wp**(-max_power)
 
 contains
 
-   !> Reads `card`, which is not a `*` card, to `parsed`. Errors are added to `errors`, in the order of the columns.
+   !> Reads a card that is not a `*` card. Errors are added in the order of the columns.
    subroutine read_card(card, parsed, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(out) :: parsed
@@ -60,10 +61,11 @@ contains
       if (parsed%form == form_title) call read_title(parsed%card, errors)
       call check_characters(parsed%card, parsed%names_certain, errors)
       parsed%label = capitals(parsed%label)
+
       if (errors%count == before .and. parsed%form == form_unknown) then
          name = field_text(card, card_fields(card_name))
          parsed%form = find_form(name)
-         near = nearest_word(capitals(name), forms%layout(:label_length))
+         near = nearest_word(capitals(name), card_forms%layout(:label_length))
          if (name == '') then
             call add_field_error(errors, field_blank, card, card_fields(card_name))
          else if (parsed%form /= form_unknown) then
@@ -80,11 +82,12 @@ contains
       else if (errors%count == before .and. is_free(parsed, errors%is_free)) then
          call refuse_free(card, parsed%form, errors)
       end if
+
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = errors%count == before .and. parsed%form /= form_unknown
       if (.not. parsed%valid .or. parsed%form == form_title) return
       ! The reals, and the labels that the card does not take, may hold the beginning of a number.
-      call find_cuts(card, card_fields, 'L'//forms(parsed%form)%labels//'---', cut, errors)
+      call find_cuts(card, card_fields, 'L'//card_forms(parsed%form)%labels//'---', cut, errors)
       parsed%names_certain = .not. any(cut(label_a:label_c))
       call read_labels(parsed, cut(label_a:label_c), errors)
       do i = 1, 3
@@ -94,11 +97,11 @@ contains
       parsed%valid = errors%count == before
    end subroutine read_card
 
-   !> Whether `parsed`, whose name is right, has single blanks in place of columns, and a label with a blank. If no card
-   !> was so before (`in_free_deck`), only after a name that fills its field.
+   !> Tells whether a card is in free format: it has single blanks in place of columns, and a label with a blank. The
+   !> first such card of a deck must have a name that fills its field.
    pure logical function is_free(parsed, in_free_deck)
-      type(parsed_card_t), intent(in) :: parsed
-      logical, intent(in) :: in_free_deck
+      type(parsed_card_t), intent(in) :: parsed   !< its name is right
+      logical, intent(in) :: in_free_deck    !< an earlier card of the deck was in free format
       integer :: i
 
       is_free = .false.
@@ -109,11 +112,11 @@ contains
       end associate
    end function is_free
 
-   !> Adds the error of the first `card` of the deck in free format: about its second word. Further such cards have no
-   !> error. The `form` of all is unknown.
+   !> Adds the error of the first card of the deck in free format, about its second word. Further such cards have no
+   !> error.
    subroutine refuse_free(card, form, errors)
-      type(card_t), intent(in) :: card
-      integer, intent(out) :: form
+      type(card_t), intent(in) :: card       !< in free format
+      integer, intent(out) :: form           !< form_unknown
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       integer :: first, finish
@@ -131,10 +134,10 @@ contains
          first, card%text(first:finish))
    end subroutine refuse_free
 
-   !> Makes the text of the TITLE card `card` printable: with ? for a letter that is not ASCII, cut at the last column.
-   !> Both are remarks.
+   !> Makes the text of a TITLE card printable: with ? for a letter that is not ASCII, cut at the last column. Both
+   !> changes are remarks.
    subroutine read_title(card, errors)
-      type(card_t), intent(inout) :: card
+      type(card_t), intent(inout) :: card    !< a TITLE card
       type(input_errors_t), intent(inout) :: errors
       character(:), allocatable :: title
       integer :: i, first
@@ -155,10 +158,10 @@ contains
       card%overrun = 0
    end subroutine read_title
 
-   !> Reads the `*` card `card` to `above`, the card above it, whose reals it gives. Errors are added to `errors`.
+   !> Reads a `*` card, and gives its reals to the card above it. Errors are added.
    subroutine read_star(card, above, errors)
-      type(card_t), intent(in) :: card
-      type(parsed_card_t), intent(inout) :: above
+      type(card_t), intent(in) :: card       !< the `*` card
+      type(parsed_card_t), intent(inout) :: above   !< the card above it
       type(input_errors_t), intent(inout) :: errors
       integer :: before, i
       logical :: clean, cut(3)
@@ -183,16 +186,16 @@ contains
             end if
          end do
       end if
+
       if (allocated(above%star)) return
       above%star = card
       above%valid = above%valid .and. errors%count == before
    end subroutine read_star
 
-   !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
-   !> printable ASCII.
+   !> Checks the characters of a card: the first one that is not printable ASCII or is past column 80 is an error.
    subroutine check_characters(card, clean, errors)
       type(card_t), intent(in) :: card
-      logical, intent(out) :: clean
+      logical, intent(out) :: clean          !< columns 1 to 80 are printable ASCII
       type(input_errors_t), intent(inout) :: errors
       type(field_t) :: field
       integer :: column, last
@@ -212,9 +215,9 @@ contains
          field, column, field_text(card, field))
    end subroutine check_characters
 
-   !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
-   !> cut by a border, and adds an error for each border. `taken(i:i)` is - if field i takes no label, and may hold a
-   !> number or its beginning. Text on both sides of a border is in one of these cases:
+   !> Finds the fields whose text is cut by a border, and adds an error for each border. Text on both sides of a border
+   !> is in one of these cases:
+   !>
    !> - a label fills its field: not cut;
    !> - a number fills its field, and is one number with the text after the border: cut;
    !> - a number fills its field with an exponent of three digits or a sign and two, or the second has a sign: not cut;
@@ -224,9 +227,9 @@ contains
    !> - any other text that does not fill its field: cut.
    subroutine find_cuts(card, fields, taken, cut, errors)
       type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: fields(:)
-      character(*), intent(in) :: taken
-      logical, intent(out) :: cut(:)
+      type(field_t), intent(in) :: fields(:) !< in the order of their columns, each ending where the next one begins
+      character(*), intent(in) :: taken      !< for each field - if it takes no label: it may hold a number or its begin
+      logical, intent(out) :: cut(:)         !< (fields) its text is cut
       type(input_errors_t), intent(inout) :: errors
       integer :: i, start, finish, border
       logical :: numeric, fills
@@ -242,6 +245,7 @@ contains
          fills = start <= fields(i)%first + merge(1, 0, numeric)
          if (fills .and. .not. numeric) cycle
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
+
          if (fills .and. .not. is_real(card%text(start:finish))) then
             ! Text that is no number has an error of its own.
             if (scan(card%text(border + 1:border + 1), '+-') == 1 .or. .not. is_real(card%text(start:border)) .or. &
@@ -264,6 +268,7 @@ contains
                cycle
             end if
          end if
+
          cut(i:i + 1) = .true.
          if (.not. numeric .and. finish - start >= label_length) then
             call add_error(errors, label_long, card, fields(i), start, card%text(start:finish))
@@ -274,10 +279,10 @@ contains
       end do
    end subroutine find_cuts
 
-   !> The two numbers `first` and `second`, which touch at a border, and the two that they are if the border was missed
-   !> by one column.
+   !> Gives the readings of two numbers that touch at a border: as they stand, and the two numbers that they are if the
+   !> border was missed by one column.
    pure function readings(first, second) result(text)
-      character(*), intent(in) :: first, second
+      character(*), intent(in) :: first, second   !< the texts before and after the border
       character(:), allocatable :: text
       integer :: n
 
@@ -290,9 +295,9 @@ contains
       end if
    end function readings
 
-   !> Whether `text` is a real number without an error.
+   !> Tells whether a text is a real number without an error.
    pure logical function is_real(text)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text       !< without blanks around it, not empty
       type(error_code_t) :: error
       real(wp) :: value
       integer :: place
@@ -301,10 +306,10 @@ contains
       is_real = error%number == 0
    end function is_real
 
-   !> Reads the labels and the whole number of `parsed`. `cut`: label fields that have an error already.
+   !> Reads the labels and the whole number of a card. Errors are added in the order of the columns.
    subroutine read_labels(parsed, cut, errors)
       type(parsed_card_t), intent(inout) :: parsed
-      logical, intent(in) :: cut(label_a:label_c)
+      logical, intent(in) :: cut(label_a:label_c)   !< the label field has an error already
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
       character(1) :: taken
@@ -314,7 +319,7 @@ contains
       do i = label_a, label_c
          if (cut(i)) parsed%label(i) = ''
          if (cut(i)) cycle
-         taken = forms(parsed%form)%labels(i - card_name:i - card_name)
+         taken = card_forms(parsed%form)%labels(i - card_name:i - card_name)
          associate (label => parsed%label(i), field => card_fields(i))
             last = len_trim(label)
             if (last == 0) then
@@ -338,10 +343,10 @@ contains
       end do
    end subroutine read_labels
 
-   !> Adds the error of text in field number `i`, which the card `parsed` does not take.
+   !> Adds the error of text in a field that the card does not take.
    subroutine refuse_field(parsed, i, errors)
       type(parsed_card_t), intent(inout) :: parsed
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the field: label_a, ..., real_3
       type(input_errors_t), intent(inout) :: errors
       logical :: is_found
 
@@ -349,13 +354,13 @@ contains
       if (.not. is_found) call add_field_error(errors, field_unused, parsed%card, card_fields(i))
    end subroutine refuse_field
 
-   !> Adds the error of the number in field `i` of `parsed`, which is `field` of `card`; number `place` of its
-   !> characters is the first wrong one.
+   !> Adds the error of the number in a field.
    subroutine refuse_number(parsed, card, i, field, error, place, errors)
       type(parsed_card_t), intent(inout) :: parsed
-      type(card_t), intent(in) :: card
-      integer, intent(in) :: i, place
-      type(field_t), intent(in) :: field
+      type(card_t), intent(in) :: card       !< on which the number stands: its own card or the `*` card below it
+      integer, intent(in) :: i               !< the field of `parsed`: label_a, ..., real_3
+      integer, intent(in) :: place           !< number of the first wrong character of the number, from 1
+      type(field_t), intent(in) :: field     !< the field of `card` in which the number stands
       type(error_code_t), intent(in) :: error
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
@@ -376,13 +381,13 @@ contains
       call add_field_error(errors, code, card, field, place=place)
    end subroutine refuse_number
 
-   !> Adds the error of a label that is longer than its field, if there is one before field `i` of `parsed`: its end is
-   !> in the next field, or has moved the labels after it.
+   !> Adds the error of a label that is longer than its field, if there is one before a field: its end is in the next
+   !> field, or has moved the labels after it.
    subroutine refuse_long_label(parsed, i, errors, is_found)
       type(parsed_card_t), intent(inout) :: parsed
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the field: label_a, ..., real_3
       type(input_errors_t), intent(inout) :: errors
-      logical, intent(out) :: is_found
+      logical, intent(out) :: is_found       !< there is such a label
       character(:), allocatable :: word
       integer :: first, border
 
@@ -397,13 +402,12 @@ contains
       call add_error(errors, label_long, parsed%card, card_fields(border - 1), first, word)
    end subroutine refuse_long_label
 
-   !> The `word` of `card` that begins at column `first`, in the label field before field `i`, and goes on in field `i`;
-   !> '' if there is none.
+   !> Finds the word that begins in a label field and goes on in the next field.
    pure subroutine find_long_label(card, i, first, word)
       type(card_t), intent(in) :: card
-      integer, intent(in) :: i
-      integer, intent(out) :: first
-      character(:), allocatable, intent(out) :: word
+      integer, intent(in) :: i               !< the field in which it goes on: label_b, ..., real_1
+      integer, intent(out) :: first          !< its first column
+      character(:), allocatable, intent(out) :: word   !< '' if there is none
 
       word = ''
       first = 0
@@ -415,12 +419,12 @@ contains
       end associate
    end subroutine find_long_label
 
-   !> Reads real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below it.
+   !> Reads a real number of a card from its field. A number that is wrong or out of bounds is an error.
    subroutine read_real_field(parsed, card, field, i, errors)
       type(parsed_card_t), intent(inout) :: parsed
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
-      integer, intent(in) :: i
+      type(card_t), intent(in) :: card       !< on which the number stands: its own card or the `*` card below it
+      type(field_t), intent(in) :: field     !< of `card`
+      integer, intent(in) :: i               !< number of the real, 1 to 3
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
       integer :: last, place

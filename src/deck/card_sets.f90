@@ -24,6 +24,7 @@ module card_sets
       type(name_table_t) :: table                   !< from their names to their places in `card`
    end type named_t
 
+   !> The open set of computations.
    type :: card_set_t
       integer :: count = 0                          !< cards so far
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
@@ -59,10 +60,10 @@ module card_sets
 
 contains
 
-   !> Makes `set` empty for the set of computations `number`; the errors of the deck stay.
+   !> Empties a set for the next set of computations; the errors of the deck stay.
    subroutine begin_set(set, number)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: number
+      integer, intent(in) :: number          !< of the set in the deck, from 1
 
       if (.not. allocated(set%cards)) allocate (set%cards(64))
       set%count = 0
@@ -71,10 +72,10 @@ contains
       call begin_mechanism(set, number)
    end subroutine begin_set
 
-   !> Makes `set`, the set of computations `number`, ready to build its mechanism from its cards, or to build it again.
+   !> Makes a set ready to build its mechanism from its cards, or to build it again.
    subroutine begin_mechanism(set, number)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: number
+      integer, intent(in) :: number          !< of the set in the deck, from 1
       integer :: kind
 
       if (set%count > 0) set%cards(:set%count)%subject = 0
@@ -85,15 +86,15 @@ contains
       if (allocated(set%drawing)) deallocate (set%drawing)
    end subroutine begin_mechanism
 
-   !> The label field of a card of `form` that holds the name of what the card defines.
+   !> Finds the label field (label_a to label_c) in which the cards of a form have the name that they define.
    pure integer function name_field(form)
-      integer, intent(in) :: form
+      integer, intent(in) :: form            !< of cards that define a name: form_ground, ...
 
       name_field = definers(findloc(definers%form, form, dim=1))%label
    end function name_field
 
-   !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards, and after them the
-   !> block of each SLOT card, a point of it, and its revolute pair. Repeated and unknown names are errors, and so are
+   !> Builds the links, points and pairs of a mechanism, each kind in the order of its cards. After them come the block
+   !> of each SLOT card, a point of the block, and its revolute pair. Repeated and unknown names are errors, and so are
    !> pairs that do not join two links.
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
@@ -111,6 +112,7 @@ contains
          allocate (set%mechanism%points(size(set%named(request_point)%card) + blocks))
          allocate (set%mechanism%pairs(size(set%named(request_pair)%card) + blocks))
       end associate
+
       do n = 1, size(set%named(request_link)%card)
          associate (card => set%cards(set%named(request_link)%card(n)))
             set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
@@ -127,6 +129,7 @@ contains
       associate (m => set%mechanism)
          call put_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
       end associate
+
       slots = 0
       do n = 1, size(set%named(request_pair)%card)
          call build_pair()
@@ -134,9 +137,9 @@ contains
 
    contains
 
-      !> Point number `n`, of a POINT card, or one of the two of a JOINT card, which gives their place in the drawing.
-      !> Both have the name of the card; it stands for the point of the first link that is not ground. The links are
-      !> there.
+      !> Builds point number `n`, of a POINT card, or one of the two points of a JOINT card, which gives their place in
+      !> the drawing. Both points have the name of the card, which stands for the point of the first link that is not
+      !> ground. The links are there.
       subroutine build_point()
          integer :: k, link
          logical :: is_first, is_ground
@@ -160,8 +163,8 @@ contains
          if (is_first .neqv. is_ground) call define_name(set, request_point, n)
       end subroutine build_point
 
-      !> Finds the joints of link number `n` at which its axes begin and to which they point; numbers on its card hold.
-      !> The points are there.
+      !> Finds the joints of link number `n` at which its axes begin and to which they point; numbers on its card come
+      !> first. The points are there.
       subroutine find_bar()
          integer :: ends(2), k, label, one, i
 
@@ -199,8 +202,8 @@ contains
          end associate
       end subroutine find_bar
 
-      !> Pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. It must join two
-      !> links, not both of them ground.
+      !> Builds pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. A pair that
+      !> does not join two links, or joins two ground links, is an error.
       subroutine build_pair()
          real(wp) :: numbers(3)
          integer :: k, i, j
@@ -213,6 +216,7 @@ contains
             call look_up(set, request_point, k, label_a, i)
             call look_up(set, request_point, k, label_b, j)
          end if
+
          associate (card => set%cards(k), pair => set%mechanism%pairs(n))
             pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
             if (any(card%form == [form_prism, form_slot])) then
@@ -232,10 +236,12 @@ contains
                end if
             end if
          end associate
+
          if (set%cards(k)%form == form_slot) call build_block(n, j)
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
             call add_card_error(set, cylinder_drawing, k, card_name)
          call define_name(set, request_pair, n)
+
          if (i == 0 .or. j == 0) return
          i = set%mechanism%points(i)%link
          j = set%mechanism%points(j)%link
@@ -268,7 +274,7 @@ contains
       end subroutine build_block
    end subroutine build_bodies
 
-   !> Finds the points of the card of a point: of a JOINT card both, otherwise the point itself.
+   !> Finds the points of the card of a point: of a JOINT card both points, otherwise the point itself.
    pure function joint_points(set, n) result(points)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: n               !< the number of the point
@@ -280,8 +286,9 @@ contains
       end associate
    end function joint_points
 
-   !> Enters the name on the card of a link, point, pair or measure. A name that is there already is an error, and so is
-   !> the name of a pair for a measure. Of two JOINT cards the error of their points stands for both.
+   !> Puts the name on the card of a link, point, pair or measure into the table of names. A name that is there already
+   !> is an error, and so is the name of a pair for a measure. Two JOINT cards of one name have one error: the error of
+   !> their points.
    subroutine define_name(set, kind, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind            !< request_link, ..., request_measure
@@ -306,27 +313,28 @@ contains
       call add_card_error(set, name_repeated, k, name_field(set%cards(k)%form), whole(set%cards(other)%card%number))
    end subroutine define_name
 
-   !> Whether `set` has the coordinates of a drawing, in which a blank number is as drawn.
+   !> Tells whether a set has the coordinates of a drawing, in which a blank number is as drawn.
    pure logical function has_drawing(set)
       type(card_set_t), intent(in) :: set
 
       has_drawing = set%number_of(form_joint) > 0
    end function has_drawing
 
-   !> The number `n` of the link, point, pair or measure (`kind`) that label `i` (label_a to label_c) of card `k` names.
-   !> 0: the label is blank, which is an error of its own, or unknown, an error unless a card that could define it was
-   !> not understood.
+   !> Finds the link, point, pair or measure that a label of a card names. An unknown name is an error, unless a card
+   !> that could define it was not understood; a blank label is an error of its own.
    subroutine look_up(set, kind, k, i, n)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: kind, k, i
-      integer, intent(out) :: n
+      integer, intent(in) :: kind            !< request_link, ..., request_measure
+      integer, intent(in) :: k               !< number of the card
+      integer, intent(in) :: i               !< of the label: label_a to label_c
+      integer, intent(out) :: n              !< number of the link, point, pair or measure; 0: none is found
       integer :: found
 
       call look_up_kinds(set, [kind], unknown(kind), k, i, found, n)
    end subroutine look_up
 
-   !> Finds what a label of a card names, which may be of several kinds. A name that none of them has is an error,
-   !> unless a card that could define it was not understood; a blank label is an error of its own.
+   !> Finds the link, point, pair or measure of one of several kinds that a label of a card names. A name that no kind
+   !> has is an error, unless a card that could define it was not understood; a blank label is an error of its own.
    subroutine look_up_kinds(set, kinds, code, k, i, kind, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kinds(:)        !< request_link, ..., request_measure: the first that has the name counts
@@ -381,9 +389,9 @@ contains
 
    contains
 
-      !> Whether `label` of card `k` is the name of another card, or the word of a drive.
+      !> Tells whether a label of card `k` is the name of another card, or the word of a drive.
       pure logical function is_name(label)
-         integer, intent(in) :: label
+         integer, intent(in) :: label        !< label_a to label_c
 
          is_name = .false.
          if (any(definers%form == set%cards(k)%form .and. definers%label == label)) return
@@ -394,12 +402,12 @@ contains
       end function is_name
    end subroutine look_up_kinds
 
-   !> The place in `words` of label A of card `k`; 0 if it is none of them, an error of a card without others.
+   !> Finds label A of a card among words. A label that is none of them is an error, if the card has no other error.
    subroutine match_word(set, k, words, place)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      character(*), intent(in) :: words(:)
-      integer, intent(out) :: place
+      integer, intent(in) :: k               !< number of the card
+      character(*), intent(in) :: words(:)   !< (1 or more) the words of which it must be one
+      integer, intent(out) :: place          !< its place in `words`; 0: none
       character(:), allocatable :: list
       integer :: i
 
@@ -412,11 +420,13 @@ contains
       call add_card_error(set, word_unknown, k, label_a, list)
    end subroutine match_word
 
-   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`. `value` ends the sentence.
+   !> Adds a remark about a field of a card.
    subroutine add_card_remark(set, kind, k, field, value)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: kind, k, field
-      character(*), intent(in), optional :: value
+      integer, intent(in) :: kind            !< remark_title_long, ...
+      integer, intent(in) :: k               !< number of the card
+      integer, intent(in) :: field           !< card_name, label_a, ..., real_3
+      character(*), intent(in), optional :: value   !< the end of the sentence
       type(card_t) :: on
       type(field_t) :: at
 
@@ -424,12 +434,13 @@ contains
       call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at), value)
    end subroutine add_card_remark
 
-   !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`. `more` ends the sentence.
+   !> Adds an error about a field of a card.
    subroutine add_card_error(set, code, k, field, more)
       type(card_set_t), intent(inout) :: set
       type(error_code_t), intent(in) :: code
-      integer, intent(in) :: k, field
-      character(*), intent(in), optional :: more
+      integer, intent(in) :: k               !< number of the card
+      integer, intent(in) :: field           !< card_name, label_a, ..., real_3
+      character(*), intent(in), optional :: more   !< the end of the sentence
       type(card_t) :: on
       type(field_t) :: at
 
@@ -437,10 +448,10 @@ contains
       call add_field_error(set%errors, code, on, at, more)
    end subroutine add_card_error
 
-   !> The text of real number `i` of `card`.
+   !> Gives the text of a real number of a card, as it stands there.
    pure function real_text(card, i) result(text)
       type(parsed_card_t), intent(in) :: card
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the real, 1 to 3
       character(real_length) :: text
       type(card_t) :: on
       type(field_t) :: at
@@ -449,12 +460,12 @@ contains
       text = on%text(first_column(on, at):at%last)
    end function real_text
 
-   !> Where `field` of `card` stands: `on` the card itself or, a real, on the `*` card below it, `at` these columns.
+   !> Finds the place of a field of a card.
    pure subroutine find_field(card, field, on, at)
       type(parsed_card_t), intent(in) :: card
-      integer, intent(in) :: field
-      type(card_t), intent(out) :: on
-      type(field_t), intent(out) :: at
+      integer, intent(in) :: field           !< card_name, label_a, ..., real_3
+      type(card_t), intent(out) :: on        !< the card itself or, for a real, the `*` card below it
+      type(field_t), intent(out) :: at       !< its columns there
 
       on = card%card
       at = card_fields(field)

@@ -1,5 +1,5 @@
 !> One card: its 80 columns, its fields by column, and the forms of cards, that is which fields each card takes. Fields
-!> and forms are declared here and nowhere else: a new card is one enumerator and one line of `forms`.
+!> and forms are declared only here: a new card is one enumerator and one line of `card_forms`.
 module cards
    use kinds, only: label_length
    use failures, only: capitals
@@ -9,6 +9,7 @@ module cards
    !> Columns of a card.
    integer, parameter :: card_columns = 80
 
+   !> One line of the deck.
    type :: card_t
       integer :: number = 0                 !< number of its line in the deck, from 1
       integer :: overrun = 0                !< first column past 80 that is not blank; 0: none
@@ -16,6 +17,7 @@ module cards
       character(24) :: beyond = ''          !< the beginning of the text from column `overrun` on
    end type card_t
 
+   !> Some columns of a card.
    type :: field_t
       character(8) :: name = ''             !< as messages and the ruler show it
       integer :: first = 1, last = 0        !< columns
@@ -39,15 +41,15 @@ module cards
 
    !> The fields that a card takes.
    type :: form_t
-      !> A letter for each label field: L for a label, W for a whole number, a small letter where the field may be
-      !> blank, - where it must be.
+      !> A letter for each label field: L for a label, W for a whole number, a small letter if the field may be blank, -
+      !> if it must be blank.
       character(3) :: labels = '---'
       integer :: reals = 0           !< number of real fields, from REAL-1 on
       logical :: once = .false.      !< at most one such card in a set
       character(78) :: layout = ''   !< the name of the card, then what each field holds, in its columns
    end type form_t
 
-   !> The form of a card is its place in `forms`.
+   !> The form of a card is its place in `card_forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_slot, form_cylinder, form_joint, form_drive, form_add, form_rise
@@ -58,7 +60,7 @@ module cards
    end enum
 
    !> The text of TITLE is not a label.
-   type(form_t), parameter :: forms(form_end) = [ &
+   type(form_t), parameter :: card_forms(form_end) = [ &
       form_t('---', 0, .true.,  'TITLE   TEXT, COLUMNS 9 TO 80'), &
       form_t('lll', 0, .true.,  'UNITS   LENGTH  RAD/DEG TIME'), &
       form_t('L--', 0, .true.,  'LANG    EN/PL'), &
@@ -101,7 +103,7 @@ module cards
 
 contains
 
-   !> The text of `card` in `field`, without the blanks around it.
+   !> Gives the text of a card in a field, without the blanks around it.
    pure function field_text(card, field) result(text)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: field
@@ -110,7 +112,7 @@ contains
       text = trim(adjustl(card%text(field%first:field%last)))
    end function field_text
 
-   !> The column of the first character of `field` that is not blank; its first column if all are.
+   !> Finds the column of the first character of a field that is not blank; the first column of a blank field.
    pure integer function first_column(card, field) result(column)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: field
@@ -118,7 +120,7 @@ contains
       column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
    end function first_column
 
-   !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.
+   !> Tells whether a card is a comment ($, # or ! before all else) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
       type(card_t), intent(in) :: card
       integer :: first
@@ -127,41 +129,41 @@ contains
       is_passed_over = scan(card%text(first:first), '$#!') > 0 .or. (card%text == '' .and. card%overrun == 0)
    end function is_passed_over
 
-   !> The ruler and, below it, the layout of the cards of the name `name`; of '', those of all cards, the `*` card last.
+   !> Gives the ruler and, below it, the layout of a card, or the layouts of all cards, the `*` card last.
    pure function layout_of(name) result(text)
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name       !< of the card, in capitals or small letters; '': all cards
       character(:), allocatable :: text
       integer :: form
 
       text = ruler_card
-      do form = 1, size(forms)
-         if (name == '' .or. form == find_form(name)) text = text//new_line('a')//trim(forms(form)%layout)
+      do form = 1, size(card_forms)
+         if (name == '' .or. form == find_form(name)) text = text//new_line('a')//trim(card_forms(form)%layout)
       end do
       if (name == '') text = text//new_line('a')//star_layout
    end function layout_of
 
-   !> How many real fields a card of `form` takes whose label A is `word`; form_unknown: none.
+   !> Counts the real fields that a card takes, from REAL-1 on.
    pure integer function reals_of(form, word) result(taken)
-      integer, intent(in) :: form
-      character(label_length), intent(in) :: word
+      integer, intent(in) :: form            !< of the card: form_title, ...; form_unknown: it takes none
+      character(label_length), intent(in) :: word   !< its label A
 
       taken = 0
-      if (form /= form_unknown) taken = forms(form)%reals
+      if (form /= form_unknown) taken = card_forms(form)%reals
       if (form /= form_add) return
       if (any(word == ['POWER', 'TABLE'])) taken = 2
    end function reals_of
 
-   !> The card name of a form.
+   !> Gives the name of the cards of a form.
    pure character(label_length) function form_name(form)
-      integer, intent(in) :: form
+      integer, intent(in) :: form            !< form_title, ..., form_end
 
-      form_name = forms(form)%layout(:label_length)
+      form_name = card_forms(form)%layout(:label_length)
    end function form_name
 
-   !> The place in `words` of the first that becomes `name` if one letter is changed, left out or added, or if two
-   !> neighbours change places; 0: none.
+   !> Finds the place of the first word that is near to a name; 0 if there is none.
    pure integer function nearest_word(name, words) result(place)
-      character(*), intent(in) :: name, words(:)
+      character(*), intent(in) :: name       !< the name for which a word is sought
+      character(*), intent(in) :: words(:)   !< (any number) the words
 
       do place = 1, size(words)
          if (is_near(name, words(place))) return
@@ -169,10 +171,10 @@ contains
       place = 0
    end function nearest_word
 
-   !> Whether `word` becomes `other` if one letter is changed, left out or added, or if two neighbours change places.
-   !> Two names of one letter have nothing in common.
+   !> Tells whether a word becomes another one if one letter is changed, left out or added, or if two neighbours change
+   !> places. Two names of one letter have nothing in common.
    pure logical function is_near(word, other)
-      character(*), intent(in) :: word, other
+      character(*), intent(in) :: word, other   !< the two words
       character(max(len(word), len(other)) + 2) :: x, y
       integer :: i
 
@@ -186,10 +188,10 @@ contains
       is_near = is_near .and. max(len_trim(word), len_trim(other)) > 1
    end function is_near
 
-   !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
+   !> Finds the form of the cards of a name; form_unknown if no card has the name.
    pure integer function find_form(name) result(form)
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name       !< in capitals or small letters
 
-      form = findloc(forms%layout(:label_length), capitals(name), dim=1)
+      form = findloc(card_forms%layout(:label_length), capitals(name), dim=1)
    end function find_form
 end module cards

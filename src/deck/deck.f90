@@ -28,7 +28,7 @@ module deck
       type(variation_t) :: variation              !< empty of a set without VARY cards
    end type closed_t
 
-   !> What has been read so far.
+   !> The sets read so far.
    type :: reading_t
       type(closed_t), allocatable :: sets(:)      !< (closed) and room for more
       integer :: closed = 0                       !< number of those that have their END
@@ -38,15 +38,13 @@ module deck
 
 contains
 
-   !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
-   !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
-   !> (`report` says why) or status_system. `variations` (as `sets`): their VARY cards; empty if a set has none.
+   !> Reads the deck in a file. Errors: status_rejected (`report` has the reasons) or status_system.
    subroutine read_deck(path, sets, report, failure, variations)
-      character(*), intent(in) :: path
-      type(mechanism_t), allocatable, intent(out) :: sets(:)
-      character(:), allocatable, intent(out) :: report
+      character(*), intent(in) :: path       !< of the file; '' or '-': standard input
+      type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
+      character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(out) :: failure
-      type(variation_t), allocatable, intent(out), optional :: variations(:)
+      type(variation_t), allocatable, intent(out), optional :: variations(:)   !< (sets) empty without VARY cards
       type(reading_t) :: progress
       type(source_t) :: source
 
@@ -55,11 +53,11 @@ contains
       if (present(variations)) variations = progress%sets(:progress%closed)%variation
    end subroutine read_deck
 
-   !> Reads the deck `text`, as `read_deck` reads a file.
+   !> Reads a deck from a text. Errors: status_rejected (`report` has the reasons).
    subroutine read_deck_text(text, sets, report, failure)
       character(*), intent(in) :: text       !< lines that end in LF or CR-LF
       type(mechanism_t), allocatable, intent(out) :: sets(:)   !< of size 0 on any failure
-      character(:), allocatable, intent(out) :: report         !< all error messages, '' if there are none
+      character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(out) :: failure     !< status_rejected
       type(reading_t) :: progress
       type(source_t) :: source
@@ -68,12 +66,12 @@ contains
       call read_sets(source, progress, sets, report, failure)
    end subroutine read_deck_text
 
-   !> Reads all sets of an open deck. With a `failure`, which opening it may have left, it has none.
+   !> Reads all sets of an open deck. If there is a failure, of opening the deck or of reading it, there are no sets.
    subroutine read_sets(source, progress, sets, report, failure)
       type(source_t), intent(inout) :: source
       type(reading_t), intent(inout) :: progress
       type(mechanism_t), allocatable, intent(out) :: sets(:)
-      character(:), allocatable, intent(out) :: report   !< all error messages, '' if there are none
+      character(:), allocatable, intent(out) :: report   !< all error messages, joined by new_line('a'); '': none
       type(failure_t), allocatable, intent(inout) :: failure
 
       allocate (progress%sets(4))
@@ -86,7 +84,8 @@ contains
       sets = progress%sets(:progress%closed)%mechanism
    end subroutine read_sets
 
-   !> Reads all cards of the deck. Errors: status_system.
+   !> Reads all cards of the deck, and closes its sets. Errors: status_system, and status_rejected for lines that are no
+   !> cards.
    subroutine read_cards(source, progress, failure)
       type(source_t), intent(inout) :: source
       type(reading_t), intent(inout) :: progress
@@ -115,7 +114,7 @@ contains
       end if
    end subroutine read_cards
 
-   !> Adds `card` to the open set, or closes the set.
+   !> Adds a card to the open set; an END card closes the set.
    subroutine take_card(card, progress)
       type(card_t), intent(in) :: card
       type(reading_t), intent(inout) :: progress
@@ -131,6 +130,7 @@ contains
             end if
             return
          end if
+
          n = set%count + 1
          if (n > size(set%cards)) then
             allocate (larger(2*set%count))
@@ -158,7 +158,7 @@ contains
    end subroutine take_card
 
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
-   !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
+   !> for unused parts and for numbers that look wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(reading_t), intent(inout) :: progress
       type(closed_t), allocatable :: larger(:)
@@ -170,6 +170,7 @@ contains
          call move_alloc(larger, progress%sets)
       end if
       progress%closed = progress%closed + 1
+
       associate (set => progress%set)
          call build_mechanism(set)
          call build_variation(set, progress%sets(progress%closed)%variation)
@@ -188,11 +189,12 @@ contains
          set%errors%remarked = 0
          progress%errors_before = set%errors%count
       end associate
+
       progress%sets(progress%closed)%mechanism = progress%set%mechanism
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 
-   !> Builds the mechanism of `set` from its cards.
+   !> Builds the mechanism of a set from its cards.
    subroutine build_mechanism(set)
       type(card_set_t), intent(inout) :: set
 
@@ -207,14 +209,12 @@ contains
       call build_tolerances(set)
    end subroutine build_mechanism
 
-   !> Builds variant number `n` (1 to variation%total) of `variation` as the mechanism `m`, like a deck in which its
-   !> numbers are typed. `m` is new, or the last variant built of `variation` that it holds. `message`: its first error,
-   !> '' if there is none.
+   !> Builds a variant, like a deck in which its numbers are typed.
    subroutine build_variant(variation, n, m, message)
       type(variation_t), intent(inout) :: variation
-      integer, intent(in) :: n
-      type(mechanism_t), intent(inout) :: m
-      character(:), allocatable, intent(out) :: message
+      integer, intent(in) :: n               !< number of the variant, 1 to variation%total
+      type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant; becomes the variant
+      character(:), allocatable, intent(out) :: message   !< its first error; '': none
       logical :: is_done
 
       message = ''

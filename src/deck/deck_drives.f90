@@ -20,8 +20,8 @@ module deck_drives
 
 contains
 
-   !> Builds the drives of `set`%mechanism from the cards; its links, points and pairs are there. Drives of what cannot
-   !> be driven, ADD and RISE cards without a drive, and wrong tables and rises are errors.
+   !> Builds the drives of a mechanism from the cards; its links, points and pairs are there. Drives of a coordinate
+   !> that cannot be driven, ADD and RISE cards without a drive, and wrong tables and rises are errors.
    subroutine build_drives(set)
       type(card_set_t), intent(inout) :: set
       integer :: k
@@ -53,7 +53,7 @@ contains
 
    contains
 
-      !> Numbers the drives, the terms of each, which follow its card, and the rows of tables; room for all of them.
+      !> Counts the drives, the terms of each, which follow its card, and the rows of tables, and makes room for all.
       subroutine number_cards()
          integer :: n
 
@@ -89,15 +89,15 @@ contains
          end do
       end subroutine number_cards
 
-      !> The form of the card above card `k`; form_end if it is the first of its set.
+      !> Gives the form of the card above a card; form_end if the card is the first of its set.
       pure integer function form_above(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< number of the card
 
          form_above = form_end
          if (set%cards(k)%below > 0) form_above = set%cards(set%cards(k)%below)%form
       end function form_above
 
-      !> Builds the drive of the DRIVE card `k`: its kind, what it drives, and its polynomial.
+      !> Builds the drive of the DRIVE card `k`: its kind, its coordinate, and its polynomial.
       subroutine build_drive()
          real(wp) :: minute
          integer :: kind, links(3), label, before
@@ -139,7 +139,7 @@ contains
          end associate
       end subroutine build_drive
 
-      !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
+      !> Gives the unit of the coordinate of a drive: the deck's unit of angles in radians, or 1 for lengths.
       pure real(wp) function unit_of(drive) result(unit)
          type(drive_t), intent(in) :: drive
 
@@ -183,7 +183,7 @@ contains
    end subroutine build_drives
 
    !> Puts the last instant of a TIME card that counts turns: the drive of constant rate has then turned so often. Other
-   !> drives rest, and a drive of another kind or law is an error.
+   !> drives must rest; a drive of another kind or law is an error.
    subroutine put_turns(set)
       type(card_set_t), intent(inout) :: set
       integer :: k
@@ -204,26 +204,27 @@ contains
       end associate
    end subroutine put_turns
 
-   !> Whether `card` gives a term of the drive above it.
+   !> Tells whether a card gives a term of the drive above it.
    pure logical function is_term(card)
       type(parsed_card_t), intent(in) :: card
 
       is_term = any(card%form == [form_add, form_rise])
    end function is_term
 
-   !> Whether `card` is a row of a table.
+   !> Tells whether a card is a row of a table.
    pure logical function is_row(card)
       type(parsed_card_t), intent(in) :: card
 
       is_row = card%form == form_add .and. card%label(label_a) == term_kinds(term_table)%word
    end function is_row
 
-   !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
-   !> other error.
+   !> Checks the terms of all drives, in a set without errors. A term that does not exist at all instants, with its
+   !> first two derivatives, is an error.
    subroutine check_terms(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: first, last, times(2)
-      real(wp), parameter :: max_order = 120.0_wp
+      !> The largest decimal logarithm of a power and its derivatives: far from the end of the range of reals.
+      real(wp), parameter :: max_power_logarithm = 120.0_wp
       integer :: k
 
       call find_instants(set%mechanism, first, last)
@@ -251,8 +252,8 @@ contains
                associate (r => max(abs(term%r), [tiny(1.0_wp), 1.0_wp, 1.0_wp]))
                   times = log10(r(1)) + 2.0_wp*log10(r(2)) + (abs(term%r(2)) + 2.0_wp)*abs(log10(times))
                end associate
-               if (any(times > max_order)) &
-                  call add_instant_error(power_large, merge(first, last, times(1) > max_order))
+               if (any(times > max_power_logarithm)) &
+                  call add_instant_error(power_large, merge(first, last, times(1) > max_power_logarithm))
             end if
          end associate
       end do
@@ -263,10 +264,10 @@ contains
 
    contains
 
-      !> Adds the error `code` of card `k` about the instant `t`.
+      !> Adds an error of card `k` about an instant.
       subroutine add_instant_error(code, t)
          type(error_code_t), intent(in) :: code
-         real(wp), intent(in) :: t
+         real(wp), intent(in) :: t           !< time
          character(24) :: text
 
          write (text, '(es13.5e3)') t
@@ -274,10 +275,10 @@ contains
       end subroutine add_instant_error
    end subroutine check_terms
 
-   !> Checks that the cylinder that the DRIVE card `k` drives, if it does, has a length above 0 at the first instant.
+   !> Checks that the cylinder that a drive moves, if it moves one, has a length above 0 at the first instant.
    subroutine check_cylinder(set, k)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the DRIVE card
       real(wp) :: f(3)
 
       associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))

@@ -15,8 +15,8 @@ module deck_measures
 
 contains
 
-   !> Builds `set`%mechanism%measures in the order of their cards; links, points and pairs are there. Unknown names and
-   !> sums of a length and an angle, or of themselves, are errors.
+   !> Builds the measures of a mechanism in the order of their cards; links, points and pairs are there. Unknown names
+   !> and sums of a length and an angle, or of themselves, are errors.
    subroutine build_measures(set)
       type(card_set_t), intent(inout) :: set
       integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 to do, 1 begun, 2 done
@@ -58,7 +58,7 @@ contains
 
    contains
 
-      !> Takes the two subjects of measure number `n`.
+      !> Finds the two subjects of measure number `n`.
       subroutine take_subjects(kinds)
          integer, intent(in) :: kinds(2)     !< request_link, ...
          type(subject_t) :: subjects(2)
@@ -71,7 +71,7 @@ contains
          set%mechanism%measures(n)%subjects = subjects
       end subroutine take_subjects
 
-      !> Takes the lines or links of ANGLE, measure number `n`.
+      !> Finds the lines or links of ANGLE, measure number `n`.
       subroutine take_sides()
          type(subject_t) :: sides(2)
          integer :: i, k, link
@@ -91,6 +91,7 @@ contains
                end if
             end associate
          end do
+
          if (all(sides%number > 0) .and. set%cards(k)%label(label_a) == set%cards(k)%label(label_b)) &
             call add_card_error(set, drive_one_link, k, label_b)
          associate (measure => set%mechanism%measures(n))
@@ -99,7 +100,7 @@ contains
          end associate
       end subroutine take_sides
 
-      !> Takes the summands of SUM, measure number `n`, one or two, as its card names them.
+      !> Finds the summands of SUM, measure number `n`, one or two, as its card names them.
       subroutine take_summands()
          type(subject_t) :: summands(2)
          integer :: i, k
@@ -116,9 +117,10 @@ contains
          end associate
       end subroutine take_summands
 
-      !> Puts the terms of other sums in their place in SUM, measure number `i`.
+      !> Puts the terms of other sums in their place in a sum. A sum that contains itself, or adds a length and an
+      !> angle, is an error.
       recursive subroutine add_up(i)
-         integer, intent(in) :: i            !< its number
+         integer, intent(in) :: i            !< number of the measure
          type(subject_t), allocatable :: own(:), terms(:)
          logical :: is_angle(2)
          integer :: j, k
@@ -133,6 +135,7 @@ contains
                states(i) = 2
                return
             end if
+
             states(i) = 1
             own = measure%subjects
             allocate (terms(0))
@@ -149,6 +152,7 @@ contains
                   end associate
                end if
             end do
+
             if (states(i) == 2) return
             states(i) = 2
             if (size(own) == 2) then
@@ -161,7 +165,7 @@ contains
          end associate
       end subroutine add_up
 
-      !> Adds a summand to the terms of a sum: itself or, of a sum, the terms of that. Each subject has one term.
+      !> Adds a summand to the terms of a sum; of a summand that is a sum, its terms. Each subject has one term.
       recursive subroutine add_term(one, terms)
          type(subject_t), intent(in) :: one
          type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number)

@@ -1,12 +1,11 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and
-!> CURVE.
+!> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, PROVE, BRANCH, POLE and CURVE.
 module deck_options
    use kinds, only: wp
    use card_numbers, only: angle_in_radians
    use mechanism
    use card_sets, only: card_set_t, has_drawing, look_up, look_up_kinds, match_word, add_card_error
-   use columns, only: columns_of_rows, form_of, quantity_of, row_forms => forms
+   use columns, only: columns_of_rows, form_of, quantity_of, forms
    use cards
    use input_errors
    use name_table, only: name_table_t, put_name, find_name
@@ -18,12 +17,15 @@ module deck_options
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
-   !> Bounds of the relative tolerance: below, rounding prevents convergence; above, the result is no solution.
+   !> A relative tolerance is above this: below, rounding prevents convergence.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
+   !> The largest relative tolerance: above, the result is no solution.
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
-   !> Bounds of the closing tolerance (characteristic lengths, rad): equations that agree to the first need none.
-   real(wp), parameter :: min_closing = 1.0e-10_wp, max_closing = 1.0e-2_wp
-   !> TIME counts turns of a drive.
+   !> The smallest closing tolerance (characteristic lengths, rad): equations that agree so well need none.
+   real(wp), parameter :: min_closing = 1.0e-10_wp
+   !> The largest closing tolerance (characteristic lengths, rad): above, the result is no solution.
+   real(wp), parameter :: max_closing = 1.0e-2_wp
+   !> The word of a TIME card that counts turns of a drive.
    character(*), parameter :: turns_word = 'TURNS'
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
@@ -33,16 +35,17 @@ module deck_options
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
    !> The word after these: ratios of pairs or measures.
    character(*), parameter :: ratio_word = 'RATIOS'
+   !> The number of this word.
    integer, parameter :: word_ratio = request_measure + 1
 
 contains
 
-   !> Sets the options and instants of `set`%mechanism from the cards. Repeated cards, unknown words and values out of
-   !> range are errors.
+   !> Sets the options and instants of a mechanism from the cards. Repeated cards, unknown words and values out of range
+   !> are errors.
    subroutine build_options(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: instants(3*set%number_of(form_at))
-      integer :: first(size(forms)), k, i, n, place
+      integer :: first(size(card_forms)), k, i, n, place
 
       first = 0
       n = 0
@@ -50,8 +53,9 @@ contains
          associate (card => set%cards(k), label => set%cards(k)%label, m => set%mechanism)
             if (card%form == form_unknown) cycle
             if (first(card%form) == 0) first(card%form) = k
-            if (forms(card%form)%once .and. first(card%form) < k) &
+            if (card_forms(card%form)%once .and. first(card%form) < k) &
                call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(card%form))%card%number))
+
             select case (card%form)
             case (form_title)
                m%title = card%card%text(title_field%first:title_field%last)
@@ -66,9 +70,11 @@ contains
                end do
                if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) &
                   call add_card_error(set, word_unknown, k, label_b, 'RAD, DEG')
+
             case (form_lang)
                call match_word(set, k, ['EN', 'PL'], place)
                m%polish = place == 2
+
             case (form_method)
                if (.not. card%valid) cycle
                call match_word(set, k, method_words, place)
@@ -83,6 +89,7 @@ contains
                else if (m%closing > 0.0_wp .and. m%method /= method_newton) then
                   call add_card_error(set, newton_needed, k, real_2)
                end if
+
             case (form_time)
                if (.not. card%valid) cycle
                if (card%whole < 1 .or. card%whole > max_steps) then
@@ -103,6 +110,7 @@ contains
                   m%t0 = card%real(1)
                   m%t1 = card%real(2)
                end if
+
             case (form_at)
                if (card%valid .and. .not. any(card%given)) call add_card_error(set, field_blank, k, real_1)
                instants(n + 1:n + count(card%given)) = pack(card%real, card%given)
@@ -110,6 +118,7 @@ contains
             end select
          end associate
       end do
+
       set%mechanism%at = instants(:n)
       set%mechanism%ranges = set%number_of(form_range) > 0
       set%mechanism%assemblies = set%number_of(form_assembly) > 0
@@ -121,11 +130,12 @@ contains
       end do
    end subroutine build_options
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards, and
-   !> from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the first
-   !> one counts. Without a PRINT or COLUMN card, all links that are not ground and all measures are printed; in the
-   !> listing of a drawing its points as well, and of links without axes of their own the angle alone. Unknown words and
-   !> names and repeated cards are errors.
+   !> Builds the requests of a mechanism from the PRINT cards, in their order, from the COLUMN and the EXTREMES cards,
+   !> and from the POLE and then the CURVE cards. For a subject of several PRINT cards or several EXTREMES cards the
+   !> first card counts. Unknown words and names and repeated cards are errors.
+   !>
+   !> Without a PRINT or COLUMN card, all links that are not ground and all measures are printed. The listing of a
+   !> drawing then has its points as well, and of links without axes of their own only the angle.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
       type(name_table_t) :: seen(0:word_ratio)      ! for each word, the names on earlier cards of the same form
@@ -140,6 +150,7 @@ contains
          allocate (requests(sum(sizes) + sum(set%number_of([form_pole, form_curve]))))
          allocate (number(maxval(sizes), request_link:request_measure), source=0)
       end associate
+
       n = 0
       allocate (columns(0), column_cards(0))
       ! In a set of variants a COLUMN card alone prints nothing.
@@ -155,6 +166,7 @@ contains
          end if
          call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
+
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
          call read_subjects(k, request_t(every=every(k)))
@@ -163,6 +175,7 @@ contains
          if (set%cards(k)%form == form_column .and. set%cards(k)%valid) call read_column(k)
       end do
       if (size(columns) > 0) set%mechanism%columns = columns
+
       seen = name_table_t()
       do k = 1, set%count
          if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
@@ -176,6 +189,7 @@ contains
                dwell=dwell*[1.0_wp, angle_in_radians(set%mechanism)]))
          end associate
       end do
+
       do form = form_pole, form_curve
          do k = 1, set%count
             if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
@@ -198,18 +212,19 @@ contains
 
    contains
 
-      !> At which instants the PRINT, POLE or CURVE card `k` asks for rows: at every such one.
+      !> Gives the number of instants from one row to the next that a PRINT, POLE or CURVE card asks for. A number below
+      !> 1 is an error.
       integer function every(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< number of the card
 
          every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
          if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
       end function every
 
-      !> Asks what `request` does about the subjects of card `k`.
+      !> Adds a request for each subject of a PRINT or EXTREMES card.
       subroutine read_subjects(k, request)
-         integer, intent(in) :: k
-         type(request_t), intent(in) :: request
+         integer, intent(in) :: k            !< number of the card
+         type(request_t), intent(in) :: request   !< kind and subject do not count
          type(request_t) :: one
          integer, allocatable :: links(:), ratios(:)
          integer :: earlier, place
@@ -218,6 +233,7 @@ contains
          if (place == 0) return
          one = request
          one%kind = place - 1
+
          associate (name => set%cards(k)%label(label_b))
             call put_name(seen(one%kind), name, k, earlier)
             if (earlier > 0) then
@@ -233,6 +249,7 @@ contains
                   one%kind = place
                   call request_all(one)
                end do
+
             else if (one%kind == word_ratio) then
                call read_ratios(k, one, ratios)
             else if (name == '') then
@@ -255,9 +272,9 @@ contains
          end associate
       end subroutine read_subjects
 
-      !> Asks what `request` does about all links, points or pairs (its kind), but no ground links.
+      !> Adds a request for each link, point, pair or measure of a kind, but not for ground links.
       subroutine request_all(request)
-         type(request_t), intent(in) :: request
+         type(request_t), intent(in) :: request   !< of this kind; its subject does not count
          type(request_t) :: one
          integer :: i
 
@@ -277,8 +294,8 @@ contains
          end do
       end subroutine request_all
 
-      !> Adds `request`; to that of its subject, if it has one already, the extremes of the numbers that it seeks and of
-      !> those that COLUMN cards name.
+      !> Adds a request. If its subject has a request already, that request gets its extremes: of the numbers that it
+      !> seeks, and of the numbers that COLUMN cards name.
       subroutine add_request(request)
          type(request_t), intent(in) :: request
 
@@ -299,15 +316,15 @@ contains
          end associate
       end subroutine add_request
 
-      !> Tells whether the card of link `i` says where its axes are.
+      !> Tells whether the card of a link gives the place of its axes.
       pure logical function has_axes(i)
          integer, intent(in) :: i            !< the number of the link
 
          has_axes = any(set%cards(set%named(request_link)%card(i))%given) .or. set%mechanism%links(i)%from > 0
       end function has_axes
 
-      !> Reads the COLUMN card `k`: one number of a row, or its coordinates if the card names no quantity. Of a link
-      !> whose axes are those of a drawing the only coordinate is its angle.
+      !> Reads a COLUMN card: one number of a row, or its coordinates if the card names no quantity. If the axes of a
+      !> link are the axes of the drawing, its only coordinate is its angle.
       subroutine read_column(k)
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t) :: request
@@ -329,7 +346,7 @@ contains
 
          first = size(columns)
          words = ''
-         associate (form => row_forms(form_of(set%mechanism, request)), quantity => set%cards(k)%label(label_c))
+         associate (form => forms(form_of(set%mechanism, request)), quantity => set%cards(k)%label(label_c))
             do j = form%first, form%last
                associate (column => columns_of_rows(j), word => quantity_of(form_of(set%mechanism, request), j))
                   if (j > form%first) words = words//', '
@@ -347,7 +364,7 @@ contains
             call add_card_error(set, word_unknown, k, label_c, words)
       end subroutine read_column
 
-      !> Asks what `request` does about the ratios that card `k` names: of a pair or measure, or of all.
+      !> Adds a request for each ratio that a card names: of a pair or measure, or of all pairs and measures.
       subroutine read_ratios(k, request, list)
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t), intent(in) :: request   !< kind and subject do not count
@@ -367,17 +384,18 @@ contains
          end if
       end subroutine read_ratios
 
-      !> Asks what `request` does about the ratios of a pair or measure by each drive of its independent mechanism.
-      !> Which of these drives can move it, the structure says later.
+      !> Adds a request for the ratio of a pair or measure by each drive of its independent mechanism. The structure
+      !> shows later which of these drives can move it.
       subroutine add_ratios(k, request, kind, subject, list)
          integer, intent(in) :: k            !< the number of the card in the set
          type(request_t), intent(in) :: request   !< kind and subject do not count
-         integer, intent(in) :: kind, subject   !< request_pair or request_measure, and the number
-         integer, allocatable, intent(inout) :: list(:)   !< gets the numbers of the requests
+         integer, intent(in) :: kind         !< request_pair or request_measure
+         integer, intent(in) :: subject      !< number of the pair or measure
+         integer, allocatable, intent(inout) :: list(:)   !< (any number) gets the numbers of the requests
          type(request_t) :: one
          integer :: i
 
-         ! What the quantity is about is sure in a deck without errors.
+         ! The links of the quantity are sure in a deck without errors.
          if (set%errors%count > 0) return
          one = request
          one%kind = kind
@@ -409,10 +427,10 @@ contains
          end associate
       end function drives_of
 
-      !> Adds a request for a ratio, or what it asks to the one that has been there already.
+      !> Adds a request for a ratio. If the ratio has a request already, that request gets its extremes.
       subroutine add_ratio(request, list)
          type(request_t), intent(in) :: request
-         integer, allocatable, intent(inout) :: list(:)   !< gets its number
+         integer, allocatable, intent(inout) :: list(:)   !< (any number) gets the number of the request
          integer :: i
 
          i = findloc(requests(:n)%drive == request%drive .and. requests(:n)%kind == request%kind .and. &
@@ -430,7 +448,7 @@ contains
          list = [list, i]
       end subroutine add_ratio
 
-      !> Reads the COLUMN card `k`, of ratios: VALUE, or the derivative DERIV, by each drive.
+      !> Reads a COLUMN card of ratios: VALUE, or the derivative DERIV, by each drive.
       subroutine read_ratio_columns(k)
          integer, intent(in) :: k            !< the number of the card in the set
          integer, allocatable :: list(:)
@@ -449,7 +467,7 @@ contains
          end do
       end subroutine read_ratio_columns
 
-      !> Adds a `column` of the COLUMN card `k`. One that is there already is an error.
+      !> Adds a column of a COLUMN card. A column that is there already is an error.
       subroutine add_column(k, column)
          integer, intent(in) :: k            !< the number of the card in the set
          type(column_request_t), intent(in) :: column
@@ -462,10 +480,10 @@ contains
          column_cards = [column_cards, k]
       end subroutine add_column
 
-      !> Tells which numbers (coordinates, 0:2) of request `i` COLUMN cards name.
+      !> Tells of each number (coordinates, 0:2) of a request whether a COLUMN card names it.
       pure function numbers_in_columns(i, coordinates) result(named)
          integer, intent(in) :: i            !< the number of the request
-         integer, intent(in) :: coordinates  !< the first ones of its row
+         integer, intent(in) :: coordinates  !< so many coordinates of its row, from the first on
          logical :: named(coordinates, 0:2)
          integer :: c, j
 
@@ -476,8 +494,8 @@ contains
          end do
       end function numbers_in_columns
 
-      !> Asks for the extremes of the numbers that COLUMN cards name, as `request` does, unless a card that names their
-      !> subject has asked for those of all its numbers.
+      !> Adds the extremes of all numbers that COLUMN cards name to their requests. A subject whose extremes an earlier
+      !> card has requested keeps its request.
       subroutine seek_columns(request)
          type(request_t), intent(in) :: request   !< kind and subject do not count
          integer :: i
@@ -495,8 +513,8 @@ contains
       end subroutine seek_columns
    end subroutine build_requests
 
-   !> Builds `set`%mechanism%branch_requests from the BRANCH cards, in their order; links and options are there. A card
-   !> with the link and time of an earlier one is an error: it may be meant for the next change point.
+   !> Builds the branch requests of a mechanism from the BRANCH cards, in their order; links and options are there. A
+   !> card with the link and time of an earlier card is an error: it may be meant for the next change point.
    subroutine build_branches(set)
       type(card_set_t), intent(inout) :: set
       type(branch_request_t) :: requests(set%number_of(form_branch))
@@ -523,8 +541,8 @@ contains
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
 
-   !> Checks, in a set without errors, that each pole and curve is of two links that move relative to one another,
-   !> in one independent mechanism. A link that nothing uses is ground by now.
+   !> Checks, in a set without errors, that each pole and curve is of two links of one independent mechanism that move
+   !> relative to one another; otherwise it is an error. A link that nothing uses is ground by now.
    subroutine check_centres(set)
       type(card_set_t), intent(inout) :: set
       type(request_t) :: one

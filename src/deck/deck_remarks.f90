@@ -1,6 +1,6 @@
-!> What the listing has of a set without errors: its echo, the cards as they were understood with the values in use; and
-!> remarks on what is harmless or likely not what was meant: names that nothing uses, degrees for radians. Of a deck
-!> with JOINT cards, whose drawing is the mechanism: numbers that contradict the drawing.
+!> The echo of a set without errors in the listing, and remarks about its cards. The echo has the cards as they were
+!> understood, with the values in use. Remarks are about faults that are harmless or probably not meant: names that
+!> nothing uses, degrees for radians, and in a deck with JOINT cards numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
    use plane_vectors, only: pi, in_degrees, wrap_angle
@@ -20,27 +20,32 @@ module deck_remarks
    private
    public :: check_unused, check_angles, check_drives, check_drawing, build_echo, drawn_text
 
-   !> The echo: its characters in a line, and in a real.
-   integer, parameter :: line_length = 119, real_width = 25
-   !> Column of the first real.
+   !> Characters of a line of the echo.
+   integer, parameter :: echo_length = 119
+   !> Characters of a real in it.
+   integer, parameter :: real_width = 25
+   !> Column of the first real in it.
    integer, parameter :: real_column = 37
+   !> The end of the line of a default.
    character(*), parameter :: default_mark = '(DEFAULT)'
-   !> What follows a number that is as drawn, in English and in Polish ("according to the drawing").
+   !> The words after a number that is as drawn, in English and in Polish ("according to the drawing").
    character(*), parameter :: drawn_marks(2) = ['(AS DRAWN)', '(WG RYS.) ']
-   !> What follows a number of axes along a bar.
+   !> The words after a number of axes along a bar, in English and in Polish.
    character(*), parameter :: bar_marks(2) = ['(FROM TO)', '(OD DO)  ']
-   !> What precedes the places to which a length has moved a point.
+   !> The words before the coordinates to which a length has moved a point.
    character(*), parameter :: axis_words(2) = ['X = ', 'Y = ']
-   !> What the listing has of links whose axes are those of a drawing.
-   character(*), parameter :: angles = 'PHI, VPHI, APHI', of_some = ' OF THOSE WITHOUT NUMBERS'
+   !> The numbers of links whose axes are the axes of the drawing, in the listing.
+   character(*), parameter :: angles = 'PHI, VPHI, APHI'
+   !> The words after these, if only some links are such.
+   character(*), parameter :: of_some = ' OF THOSE WITHOUT NUMBERS'
 
    !> Angles beyond this are no degrees that someone has read from a drawing.
    real(wp), parameter :: max_degrees = 720.0_wp
    !> Digits of a number as drawn, as far as its kind has them.
    integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
 
-   !> So often is TIME halved to find the greatest rate of a law.
-   integer, parameter :: halvings = 16
+   !> TIME is halved at most so often to find the greatest rate of a law.
+   integer, parameter :: rate_halvings = 16
 
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
@@ -50,8 +55,8 @@ module deck_remarks
 
 contains
 
-   !> Remarks on each link without a pair or a drive, which rests then, and on each point without a pair, a drive, a
-   !> measure or a PRINT card. An error, if no link is left that moves.
+   !> Adds a remark on each link without a pair or a drive, which then rests, and on each point without a pair, a drive,
+   !> a measure or a PRINT card. If no link is left that moves, this is an error.
    subroutine check_unused(set)
       type(card_set_t), intent(inout) :: set
       logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
@@ -63,6 +68,7 @@ contains
       do i = 1, size(set%mechanism%drives)
          link(drive_links(set%mechanism, set%mechanism%drives(i))) = .true.
       end do
+
       associate (m => set%mechanism, card_of_link => set%named(request_link)%card)
          if (.not. any(link .and. .not. m%links%ground)) &
             call add_card_error(set, link_unused, card_of_link(findloc(m%links%ground, .false., dim=1)), label_a)
@@ -84,8 +90,8 @@ contains
       end do
    end subroutine check_unused
 
-   !> A remark on the first angle in radians that looks like degrees: beyond a turn, up to two turns of degrees, a whole
-   !> number or a half. The numbers of ADD cards are none that someone has read from a drawing.
+   !> Adds a remark on the first angle in radians that looks like degrees: it is beyond a turn, at most `max_degrees`,
+   !> and a whole number or a half. The numbers of ADD cards are not read from drawings, and do not count.
    subroutine check_angles(set)
       type(card_set_t), intent(inout) :: set
       type(card_number_t) :: number
@@ -108,11 +114,11 @@ contains
       end do
    end subroutine check_angles
 
-   !> A remark on all drives if none moves within TIME, and on the first that turns an angle once or more in a step of
-   !> TIME. If VARY cards change a drive or TIME, drives may rest.
+   !> Adds a remark on all drives if none moves within TIME, and on the first drive that turns an angle once or more in
+   !> a step of TIME. If VARY cards change a drive or TIME, drives may rest.
    subroutine check_drives(set)
       type(card_set_t), intent(inout) :: set
-      real(wp), parameter :: turn = 2.0_wp*pi
+      real(wp), parameter :: full_turn = 2.0_wp*pi
       !> One turn but for roundings.
       real(wp), parameter :: about_one = 1.0_wp - 1.0e3_wp*epsilon(1.0_wp)
       real(wp) :: step, rate
@@ -125,6 +131,7 @@ contains
          if (set%cards(k)%form == form_vary) varies = varies .or. &
             any(set%cards(set%cards(k)%below)%form == [form_drive, form_add, form_rise, form_time])
       end do
+
       associate (m => set%mechanism, drives => set%mechanism%drives)
          if (all([(rests(drives(k)), k=1, size(drives))]) .and. .not. varies) &
             call add_drive_remark(remark_rest, [(drive_name(m, drives(k)), k=1, size(drives))], '')
@@ -132,17 +139,19 @@ contains
          do k = 1, size(drives)
             if (driven_kinds(drives(k)%kind) /= request_link) cycle
             rate = 0.0_wp
-            call find_fastest(drives(k), min(m%t0, m%t1), max(m%t0, m%t1), halvings, about_one*turn/step, rate)
-            if (rate*step < about_one*turn) cycle
+            call find_fastest(drives(k), min(m%t0, m%t1), max(m%t0, m%t1), rate_halvings, about_one*full_turn/step, &
+               rate)
+            if (rate*step < about_one*full_turn) cycle
             call add_drive_remark(remark_turns, [drive_name(m, drives(k))], &
-               rounded(rate*step/turn, 3, 1.0_wp, 1.0e8_wp))
+               rounded(rate*step/full_turn, 3, 1.0_wp, 1.0e8_wp))
             return
          end do
       end associate
 
    contains
 
-      !> Whether `drive` does not move within TIME. Bounds of the rate of a table include roundings of its values.
+      !> Tells whether a drive does not move within TIME. Bounds of the rate of a table include roundings of its values:
+      !> a table of equal values counts as zero.
       pure logical function rests(drive)
          type(drive_t), intent(in) :: drive
          type(drive_t) :: law
@@ -160,10 +169,11 @@ contains
          rests = is_at_rest(law, set%mechanism%t0, set%mechanism%t1)
       end function rests
 
-      !> Adds the remark `kind` about the drives with these `names`, at the card of the first of them. `value` ends it.
+      !> Adds a remark about drives, at the card of the first of them.
       subroutine add_drive_remark(kind, names, value)
-         integer, intent(in) :: kind
-         character(*), intent(in) :: names(:), value
+         integer, intent(in) :: kind         !< remark_rest or remark_turns
+         character(*), intent(in) :: names(:)   !< (1 or more) of the drives
+         character(*), intent(in) :: value   !< the end of the sentence
          integer :: card
 
          do card = 1, set%count
@@ -174,13 +184,14 @@ contains
       end subroutine add_drive_remark
    end subroutine check_drives
 
-   !> Raises `rate` to the greatest |rate| of `law` between the times `from` and `to`, if it is above `least`, within a
-   !> thousandth: true bounds exclude parts of the time, which is halved up to `depth` times. Units as of `law`.
+   !> Finds the greatest |rate| of a law between two times within a thousandth, if it is above a bound. The time is
+   !> halved, and true bounds exclude parts of it.
    pure recursive subroutine find_fastest(law, from, to, depth, least, rate)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: from, to, least
-      integer, intent(in) :: depth
-      real(wp), intent(inout) :: rate
+      real(wp), intent(in) :: from, to       !< times, in their order
+      real(wp), intent(in) :: least          !< rates below do not count; length or rad over the unit of time
+      integer, intent(in) :: depth           !< the time is halved at most so often
+      real(wp), intent(inout) :: rate        !< the greatest |rate| so far, in the unit of `least`
       type(bounds_t) :: b
       real(wp) :: f(3), most
 
@@ -194,8 +205,8 @@ contains
       call find_fastest(law, middle_of(from, to), to, depth - 1, least, rate)
    end subroutine find_fastest
 
-   !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
-   !> TITLE, and one for each default that no card replaces.
+   !> Builds the echo of a set, the cards as they were understood with the values in use. It has a line for each card
+   !> but TITLE, and a line for each default that no card replaces.
    subroutine build_echo(set)
       type(card_set_t), intent(inout) :: set
       integer :: k, n
@@ -222,9 +233,10 @@ contains
 
    contains
 
-      !> Adds the line of card `k`. A blank real is as drawn or 0.0, its value; a blank field of AT or VARY has none.
+      !> Adds the line of a card. A blank real is as drawn or has its value 0.0; a blank field of AT or VARY stays
+      !> blank.
       subroutine add_card(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< number of the card
          type(card_number_t) :: number
          type(unit_t) :: unit
          character(label_length) :: labels(3)
@@ -240,6 +252,7 @@ contains
                labels = [m%length_unit, labels(2), m%time_unit]
             end if
             call add_head(card%form, labels)
+
             do i = 1, reals_of(card%form, card%label(label_a))
                number = number_on_card(set, k, i)
                if (is_as_drawn(m, number)) then
@@ -254,6 +267,7 @@ contains
                      card%form /= form_cylinder .and. (card%form /= form_method .or. i == 1))
                   if (card%form == form_sum .and. i < 3) text = merge('1.0', '   ', card%label(label_a + i - 1) /= '')
                end if
+
                if (card%form == form_link) then
                   if (m%links(card%subject)%along(i)) then
                      x = m%links(card%subject)%position(i)
@@ -263,6 +277,7 @@ contains
                end if
                call put_real(i, text)
             end do
+
             if (card%form == form_length) then
                place = drawn_place(m, m%lengths(card%subject)%point(2))
                do i = 1, 2
@@ -272,39 +287,39 @@ contains
          end associate
       end subroutine add_card
 
-      !> Puts a text into field `i` of the reals of the last line.
+      !> Puts a text into the field of a real in the last line.
       subroutine put_real(i, text)
-         integer, intent(in) :: i
-         character(*), intent(in) :: text
+         integer, intent(in) :: i            !< number of the real, 1 to 3
+         character(*), intent(in) :: text    !< at most `real_width` characters
          integer :: column
 
          column = real_column + (i - 1)*real_width
          set%mechanism%echo(n)(column:column + real_width - 1) = text
       end subroutine put_real
 
-      !> Adds the line of a form that has no card in the set: its defaults.
+      !> Adds the line of the defaults of a form, if no card of the set has this form.
       subroutine add_default(form, labels)
-         integer, intent(in) :: form
-         character(label_length), intent(in) :: labels(3)
+         integer, intent(in) :: form         !< form_units, ...
+         character(label_length), intent(in) :: labels(3)   !< the values in use
 
          if (set%number_of(form) > 0) return
          call add_head(form, labels)
-         set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
+         set%mechanism%echo(n)(echo_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
 
       !> Adds a line with the name and the labels of a card.
       subroutine add_head(form, labels)
-         integer, intent(in) :: form
-         character(label_length), intent(in) :: labels(3)
+         integer, intent(in) :: form         !< of the card
+         character(label_length), intent(in) :: labels(3)   !< of the card
 
          n = n + 1
          set%mechanism%echo(n) = form_name(form)//' '//labels(1)//' '//labels(2)//' '//labels(3)
       end subroutine add_head
    end subroutine build_echo
 
-   !> Remarks on each pair of `set`, if it is a drawing, whose numbers or points contradict it, and on each guide whose
-   !> alpha is no direction of the drawing, unless it counts from a bar. What lengths have moved contradicts nothing.
-   !> The set has no errors.
+   !> Adds remarks on the pairs of a drawing, in a set without errors: on each pair whose numbers or points contradict
+   !> the drawing, and on each guide whose alpha is no direction of the drawing, unless it counts from a bar. Points
+   !> that lengths have moved contradict nothing.
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
       type(mechanism_t) :: m                        ! as it is drawn
@@ -328,6 +343,7 @@ contains
                   turn = wrap_angle(phi(2) - phi(1) - pair%beta)
                end associate
                if (abs(turn) > drawn_digits .and. .not. pair%drawn(3)) text = angle_text(turn)
+
                turn = wrap_angle(link%position(3))
                if (abs(turn) > same_direction .and. set%cards(k)%form /= form_cylinder .and. .not. link%along(3)) &
                   call add_remark(set%errors, remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
@@ -345,9 +361,9 @@ contains
 
    contains
 
-      !> The angle `value` (rad) in the deck's unit.
+      !> Gives an angle as text, with the deck's unit.
       function angle_text(value) result(text)
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value       !< rad
          character(:), allocatable :: text
 
          if (set%mechanism%degrees) text = drawn_text(in_degrees(value))//' DEG'
@@ -355,18 +371,22 @@ contains
       end function angle_text
    end subroutine check_drawing
 
-   !> `value` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
-   !> exponent, and two digits fewer.
+   !> Gives a number as text. Zeros at its end are left out, but for one after the point. A very small or large number
+   !> has an exponent and two digits fewer.
    pure function drawn_text(value) result(text)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< in the deck's unit
       character(:), allocatable :: text
-      real(wp), parameter :: small = 1.0e-3_wp, smallest = 1.0e-2_wp, largest = 1.0e8_wp
+      !> Numbers below this, but 0, have an exponent.
+      real(wp), parameter :: least_plain = 1.0e-3_wp
+      !> Numbers from this on have an exponent.
+      real(wp), parameter :: most_plain = 1.0e8_wp
+      !> Numbers below this have a digit less, so that they have at most ten decimals.
+      real(wp), parameter :: ten_decimals = 1.0e-2_wp
 
-      if (abs(value) > 0.0_wp .and. (abs(value) < small .or. abs(value) >= largest)) then
-         text = rounded(value, drawn_text_digits - 2, small, largest)
+      if (abs(value) > 0.0_wp .and. (abs(value) < least_plain .or. abs(value) >= most_plain)) then
+         text = rounded(value, drawn_text_digits - 2, least_plain, most_plain)
       else
-         ! At most ten decimals.
-         text = rounded(value, drawn_text_digits - merge(1, 0, abs(value) < smallest), small, largest)
+         text = rounded(value, drawn_text_digits - merge(1, 0, abs(value) < ten_decimals), least_plain, most_plain)
          text = text(:verify(text, '0', back=.true.))
          if (text(len(text):) == '.') text = text//'0'
       end if

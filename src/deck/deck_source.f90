@@ -11,14 +11,19 @@ module deck_source
    private
    public :: source_t, open_source, source_of, next_card
 
+   !> The descriptor of standard input.
    integer(c_int), parameter :: standard_input = 0
-   integer, parameter :: block_length = 2**20
-   !> A longer line is no card: what is read without an end, such as /dev/zero, is rejected there.
+   !> Bytes that are read at once.
+   integer, parameter :: read_length = 2**20
+   !> The largest number of columns of a line. A longer line is no card: a source without an end, such as /dev/zero, is
+   !> rejected there.
    integer, parameter :: max_columns = 10000000
    !> The mark that some editors put at the beginning of a file.
    character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+   !> The ends of lines.
    character(1), parameter :: line_feed = achar(10), carriage_return = achar(13)
 
+   !> An open deck.
    type :: source_t
       private
       character(:), allocatable :: name      !< for messages
@@ -32,10 +37,10 @@ module deck_source
 
 contains
 
-   !> Opens the file `path`; '' or '-' is standard input. Errors: status_system.
+   !> Opens a deck. Errors: status_system.
    subroutine open_source(source, path, failure)
       type(source_t), intent(out) :: source
-      character(*), intent(in) :: path
+      character(*), intent(in) :: path       !< of the file; '' or '-': standard input
       type(failure_t), allocatable, intent(out) :: failure
       integer :: error
 
@@ -47,7 +52,7 @@ contains
       error = last_error()
       if (source%descriptor >= 0) then
          source%buffer = ''
-         allocate (character(block_length) :: source%block)
+         allocate (character(read_length) :: source%block)
          do while (.not. source%ended .and. len(source%buffer) < len(byte_order_mark))
             call read_on(source, failure)
          end do
@@ -57,9 +62,9 @@ contains
       end if
    end subroutine open_source
 
-   !> Makes a source of the deck `text`.
+   !> Makes a source of a text.
    function source_of(text) result(source)
-      character(*), intent(in) :: text       !< its lines
+      character(*), intent(in) :: text       !< lines of a deck that end in LF or CR-LF
       type(source_t) :: source
 
       source%name = 'THE TEXT'
@@ -68,20 +73,20 @@ contains
       call pass_byte_order_mark(source)
    end function source_of
 
-   !> Begins after the mark of some editors.
+   !> Puts the next byte after the mark that some editors put at the beginning of a file.
    subroutine pass_byte_order_mark(source)
       type(source_t), intent(inout) :: source
 
       if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
    end subroutine pass_byte_order_mark
 
-   !> Reads the next `card`; `found` is false at the end. A line ends in LF or CR-LF. Errors: status_system;
-   !> status_rejected for a line of more than `max_columns`, and for one with a carriage return inside: a comment in a
-   !> file whose lines end in CR would hide the cards after it.
+   !> Reads the next card, a line that ends in LF or CR-LF. Errors: status_system; status_rejected for a line of more
+   !> than `max_columns`, and for a line with a carriage return inside: a comment in a file whose lines end in CR would
+   !> hide the cards after it.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
-      logical, intent(out) :: found
+      logical, intent(out) :: found          !< false at the end of the deck
       type(failure_t), allocatable, intent(out) :: failure
       integer :: length, next, i
       logical :: is_whole
@@ -100,6 +105,7 @@ contains
          call read_on(source, failure)
          if (allocated(failure)) return
       end do
+
       found = is_whole .or. length > 0
       if (.not. found) return
       source%lines = source%lines + 1
@@ -108,6 +114,7 @@ contains
       if (length > 0) then
          if (source%buffer(next - 2:next - 2) == carriage_return) length = length - 1
       end if
+
       associate (line => source%buffer(source%at:source%at + length - 1))
          found = index(line, carriage_return) == 0
          if (.not. found) then
@@ -124,8 +131,8 @@ contains
       source%at = next
    end subroutine next_card
 
-   !> Reads a block to the end of the buffer, of which only what is not used yet is kept. At the end the file
-   !> is closed. Errors: status_system.
+   !> Reads a block to the end of the buffer, and drops the bytes of the buffer that are used. At its end the file is
+   !> closed. Errors: status_system.
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure

@@ -1,7 +1,7 @@
 !> The TOLER and VARY cards of a set: each gives tolerances, or a range or a list of values, to numbers of the card
-!> above it. A variant is the set's cards with other numbers, built like those of any set: so the pairs of a drawing,
-!> turns a minute, degrees and all checks are right by themselves. Numbers that do not run together make a grid; the
-!> last runs fastest.
+!> above it. A variant is the cards of the set with other numbers, built like the cards of any set: therefore the pairs
+!> of a drawing, turns a minute, degrees and all checks need no code of their own. Numbers that do not run together make
+!> a grid; the last runs fastest.
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
@@ -21,10 +21,12 @@ module deck_variants
 
    !> The largest number of variants of a set.
    integer, parameter :: max_variants = 9999999
+   !> The word of a VARY card with a list of values.
    character(*), parameter :: list_word = 'LIST'
    !> The word of a TOLER card for both holes of a joint together.
    character(*), parameter :: both_word = 'BOTH'
-   character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
+   !> The words of a VARY card for the reals of the card above it.
+   character(2), parameter :: real_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
       form_drive, form_add, form_rise, form_time, form_length]
@@ -40,7 +42,7 @@ module deck_variants
       real(wp) :: first = 0.0_wp, last = 0.0_wp     !< of a range, in the deck's units
       real(wp), allocatable :: list(:)              !< (count) of a list
       character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
-      character(2*label_length) :: word = ''        !< what the card calls the number: XI, AMPLITUDE
+      character(2*label_length) :: word = ''        !< the word of the card for the number: XI, AMPLITUDE
       character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
       type(card_number_t) :: number                 !< its address in the mechanism
       real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`
@@ -58,9 +60,10 @@ module deck_variants
 
 contains
 
-   !> Builds `set`%mechanism%tolerances from the TOLER cards, in their order; the bodies and drives are there. Those of
-   !> a JOINT card are of the hole of each of its links, of one link, or of both together. A card that stands below no
-   !> card with numbers, a number that takes no tolerance, and a tolerance below zero are errors.
+   !> Builds the tolerances of a mechanism from the TOLER cards, in their order; the bodies and drives are there. A
+   !> JOINT card has tolerances of the hole of each of its links, of the hole of one link, or of both holes together. A
+   !> card that stands below no card with numbers, a number that takes no tolerance, and a tolerance below zero are
+   !> errors.
    subroutine build_tolerances(set)
       type(card_set_t), intent(inout) :: set
       type(tolerance_t) :: list(6*set%number_of(form_toler))
@@ -75,7 +78,8 @@ contains
             form = form_end
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) cycle
-            if (forms(form)%reals == 0) then
+
+            if (card_forms(form)%reals == 0) then
                call add_card_error(set, card_alone, k, card_name)
             else if (is_second(k, above)) then
                call add_card_error(set, card_second, k, card_name)
@@ -83,6 +87,7 @@ contains
                call add_card_error(set, field_unused, k, label_a)
             else
                call find_holes(k, above, holes)
+
                do i = 1, 3
                   if (.not. card%given(i)) cycle
                   number = number_on_card(set, above, i)
@@ -100,13 +105,15 @@ contains
             end if
          end associate
       end do
+
       if (n > 0) set%mechanism%tolerances = list(:n)
 
    contains
 
-      !> Tells whether card `k` is a second TOLER card of the card `above`: of a JOINT card each link may have its own.
+      !> Tells whether a TOLER card is a second one of the card above it: of a JOINT card each link may have its own.
       logical function is_second(k, above)
-         integer, intent(in) :: k, above
+         integer, intent(in) :: k            !< number of the TOLER card
+         integer, intent(in) :: above        !< number of the card above it
          integer :: i
 
          is_second = .false.
@@ -119,11 +126,12 @@ contains
          end do
       end function is_second
 
-      !> Finds the points of the JOINT card `above` whose holes have the tolerances of card `k`, and all points of these
-      !> holes; none of another card, or if both holes move together.
+      !> Finds the points of a JOINT card whose holes have the tolerances of a TOLER card, and marks all points of the
+      !> holes of the joint. A name that is no link of the joint is an error.
       subroutine find_holes(k, above, holes)
-         integer, intent(in) :: k, above
-         integer, allocatable, intent(out) :: holes(:)
+         integer, intent(in) :: k            !< number of the TOLER card
+         integer, intent(in) :: above        !< number of the card above it
+         integer, allocatable, intent(out) :: holes(:)   !< (0 to 2) points; 0: no JOINT, or both holes move together
          integer :: i, link
 
          allocate (holes(0))
@@ -148,7 +156,7 @@ contains
       subroutine add_tolerance(number, size_of, text)
          type(card_number_t), intent(in) :: number
          real(wp), intent(in) :: size_of     !< in the unit of the number on its card
-         character(*), intent(in) :: text    !< likewise
+         character(*), intent(in) :: text    !< the tolerance as it stands on its card
          type(unit_t) :: unit
 
          n = n + 1
@@ -158,10 +166,11 @@ contains
       end subroutine add_tolerance
    end subroutine build_tolerances
 
-   !> Number `i` of card `k` of any form; its kind is 0 if no number of the mechanism is there.
+   !> Finds the address of a real of a card; its kind is 0 if no number of the mechanism is there.
    pure function number_on_card(set, k, i) result(number)
       type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k, i
+      integer, intent(in) :: k               !< number of the card, of any form
+      integer, intent(in) :: i               !< number of the real, 1 to 3
       type(card_number_t) :: number
       integer :: n
 
@@ -178,8 +187,8 @@ contains
       end associate
    end function number_on_card
 
-   !> Builds `variation` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants;
-   !> nothing without such cards. Errors: those of the cards. Where the set has an error, `variation` is of no use.
+   !> Builds the variants of a set from its VARY cards, and counts them in its mechanism, which is there. Without such
+   !> cards nothing is built. Wrong cards are errors. If the set has an error, `variation` is of no use.
    subroutine build_variation(set, variation)
       type(card_set_t), intent(inout) :: set
       type(variation_t), intent(out) :: variation
@@ -226,7 +235,7 @@ contains
 
          one = varied_t(card=set%cards(i)%below, vary=i)
          associate (card => set%cards(i), above => set%cards(i)%below)
-            one%place = findloc(number_words, card%label(label_a), dim=1)
+            one%place = findloc(real_words, card%label(label_a), dim=1)
             form = form_vary
             if (above > 0) form = set%cards(above)%form
             if (form == form_unknown) return
@@ -275,9 +284,9 @@ contains
          end associate
       end subroutine take_card
 
-      !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
+      !> Gives `one` the values on a VARY card. If there is an error, its count stays 0.
       subroutine read_values(card)
-         type(parsed_card_t), intent(in) :: card
+         type(parsed_card_t), intent(in) :: card   !< a VARY card
          type(error_code_t) :: error
          integer :: count_given, place
 
@@ -287,6 +296,7 @@ contains
             if (one%count == 0) call add_card_error(set, field_blank, i, real_1)
             return
          end if
+
          call read_whole(trim(card%label(label_b)), count_given, error, place)
          if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_card_error(set, vary_count, i, label_b, whole(max_variants))
@@ -304,13 +314,16 @@ contains
       end subroutine read_values
    end subroutine build_variation
 
-   !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT
-   !> cards depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term
-   !> of a drive is defined depends on those of TIME; the last instant depends on the rate, if TIME counts turns. The
-   !> block of a slot is where the cards put the point in it. Whether a law begins with a length above 0 depends on it.
+   !> Tells whether nothing else in the mechanism depends on a number of a card. Other parts can depend on it:
+   !>
+   !> - in a drawing, points of JOINT cards depend on the places of links, and numbers as drawn on points and guides;
+   !> - the place of the block of a slot depends on the point in the slot;
+   !> - whether a term of a drive is defined depends on the times of TIME;
+   !> - if TIME counts turns, the last instant depends on the rate;
+   !> - whether a cylinder begins with a length above 0 depends on the law of its drive.
    pure logical function stands_alone(set, form)
       type(card_set_t), intent(in) :: set
-      integer, intent(in) :: form
+      integer, intent(in) :: form            !< of the card: form_ground, ...
 
       select case (form)
       case (form_ground, form_link, form_point, form_prism, form_slot)
@@ -324,14 +337,13 @@ contains
       end select
    end function stands_alone
 
-   !> Gives `m`, a variant of `variation` without errors, the numbers of variant `n`. `is_done`: `m` is now that
-   !> variant. If not, because `m` is new or more may depend on these numbers, the cards of `variation` have them: build
-   !> `m` of these cards.
+   !> Gives a mechanism the numbers of a variant. If the mechanism is new, or if other parts may depend on these
+   !> numbers, the cards of the variation get them instead: then the mechanism must be built from these cards.
    subroutine take_values(variation, n, m, is_done)
       type(variation_t), intent(inout) :: variation
-      integer, intent(in) :: n
-      type(mechanism_t), intent(inout) :: m
-      logical, intent(out) :: is_done
+      integer, intent(in) :: n               !< number of the variant, 1 to variation%total
+      type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant
+      logical, intent(out) :: is_done        !< `m` is the variant now
       type(input_errors_t) :: none
       real(wp) :: values(size(variation%numbers))
       integer :: i
@@ -357,10 +369,10 @@ contains
       call begin_mechanism(variation%set, variation%set%mechanism%set_number)
    end subroutine take_values
 
-   !> The values (numbers) of variant `n` (1 to variation%total), in the deck's units. The last of a range is exact.
+   !> Gives the values (numbers that vary) of a variant, in the deck's units. The last value of a range is exact.
    pure function values_of_variant(variation, n) result(values)
       type(variation_t), intent(in) :: variation
-      integer, intent(in) :: n
+      integer, intent(in) :: n               !< number of the variant, 1 to variation%total
       real(wp) :: values(size(variation%numbers))
       integer :: place(size(variation%counts)), rest, i, k
 

@@ -1,6 +1,6 @@
 !> All errors of decks, by number and sentence, and the errors found in one deck, each with a picture of its card, a
 !> mark under the column and, where it helps, the layout of the card. A message is `"text" SENTENCE`, or the sentence
-!> alone. Remarks are collected beside the errors; they reject nothing.
+!> alone. Remarks are collected in addition to the errors; they reject nothing.
 module input_errors
    use kinds, only: wp, label_length
    use mechanism, only: remark_t, remark_more
@@ -12,7 +12,7 @@ module input_errors
 
    !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
    integer, parameter, public :: max_printed = 50
-   !> Below a card, for its columns and one ten more.
+   !> The ruler below a card, for its columns and one ten more.
    character(*), parameter :: ruler = &
       '....+....1....+....2....+....3....+....4....+....5....+....6....+....7....+....8....+....9'
    !> The layout of an error's own card.
@@ -147,17 +147,16 @@ module input_errors
 
 contains
 
-   !> Adds the error `code` about `text` (may be ''), which begins at `column` in `field` of `card`; card%number = 0:
-   !> about the deck as a whole. `more` ends the sentence. Above it stand the card, a ruler in tens up to the end of the
-   !> card or to the mark, and the mark.
+   !> Adds an error. Above its sentence stand the card, a ruler in tens up to the end of the card or to the mark, and
+   !> the mark under the column.
    subroutine add_error(errors, code, card, field, column, text, more)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
-      integer, intent(in) :: column
-      character(*), intent(in) :: text
-      character(*), intent(in), optional :: more
+      type(card_t), intent(in) :: card       !< its number is 0 if the error is about the deck as a whole
+      type(field_t), intent(in) :: field     !< in which the text begins
+      integer, intent(in) :: column          !< at which the text begins
+      character(*), intent(in) :: text       !< the wrong text; '': none
+      character(*), intent(in), optional :: more   !< the end of the sentence
       character(1), parameter :: next = new_line('a')
       character(:), allocatable :: lines, head, shown, margin, place
       character(3) :: number
@@ -192,19 +191,18 @@ contains
       write (number, '(i3.3)') code%number
       lines = lines//' *** E'//number//'  '//place//trim(code%sentence)
       if (present(more)) lines = trim(lines//' '//more)
-      if (form /= form_unknown) lines = lines//next//' LAYOUT    |'//trim(forms(form)%layout)
+      if (form /= form_unknown) lines = lines//next//' LAYOUT    |'//trim(card_forms(form)%layout)
       call move_alloc(lines, errors%lines)
    end subroutine add_error
 
-   !> Adds the error `code` about the whole text in `field` of `card`. `more` ends the sentence. `place`: the number of
-   !> the character in that text under which the mark is put, if not the first.
+   !> Adds an error about the whole text in a field of a card.
    subroutine add_field_error(errors, code, card, field, more, place)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: field
-      character(*), intent(in), optional :: more
-      integer, intent(in), optional :: place
+      character(*), intent(in), optional :: more   !< the end of the sentence
+      integer, intent(in), optional :: place   !< number of the character of the text under which the mark is; else 1
       integer :: column
 
       column = first_column(card, field)
@@ -212,13 +210,14 @@ contains
       call add_error(errors, code, card, field, column, field_text(card, field), more)
    end subroutine add_field_error
 
-   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`. `value` ends the sentence.
+   !> Adds a remark.
    subroutine add_remark(errors, kind, card, column, text, value)
       type(input_errors_t), intent(inout) :: errors
-      integer, intent(in) :: kind, column
+      integer, intent(in) :: kind            !< remark_title_long, ...
+      integer, intent(in) :: column          !< of the card at which the text begins
       type(card_t), intent(in) :: card
-      character(*), intent(in) :: text
-      character(*), intent(in), optional :: value
+      character(*), intent(in) :: text       !< of the card, or names of drives; '': none
+      character(*), intent(in), optional :: value   !< the end of the sentence
       integer :: n
 
       errors%remarked = errors%remarked + 1
@@ -228,15 +227,15 @@ contains
       if (n > max_printed) errors%remarks(n) = remark_t(remark_more, text=whole(errors%remarked - max_printed))
    end subroutine add_remark
 
-   !> The end of the error of a name that does not exist: the nearest one.
+   !> Gives the end of the error of a name that does not exist: the nearest name.
    pure function near_name(name) result(text)
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name       !< the nearest name
       character(:), allocatable :: text
 
       text = '(NEAREST NAME: '//trim(name)//')'
    end function near_name
 
-   !> All messages, lines joined by new_line('a'); '' if there is no error.
+   !> Gives all messages, lines joined by new_line('a'); '' if there is no error.
    pure function error_report(errors) result(report)
       type(input_errors_t), intent(in) :: errors
       character(:), allocatable :: report
@@ -247,9 +246,9 @@ contains
          report = report//new_line('a')//' *** AND '//whole(errors%count - max_printed)//' MORE'
    end function error_report
 
-   !> `text` with ? for each byte that is not printable ASCII, so that every column stays one character wide.
+   !> Puts ? for each byte of a text that is not printable ASCII, so that every column stays one character wide.
    pure function printable(text) result(shown)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text       !< of a card
       character(len(text)) :: shown
       integer :: i
 

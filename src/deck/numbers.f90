@@ -1,4 +1,4 @@
-!> The strict grammar of numbers. A READ statement alone accepts `1 2` as 12, a lone `-` as 0, `NaN`, and 1e400 as
+!> The strict grammar of numbers. A READ statement by itself accepts `1 2` as 12, a lone `-` as 0, `NaN`, and 1e400 as
 !> infinity. Here a text is scanned first, and every error has its code and its place.
 !>
 !>     real  = [sign] digits-and-one-point [E|D [sign] digits]     with a point or an exponent, or both
@@ -19,14 +19,12 @@ module numbers
 
 contains
 
-   !> Reads the real `value` from `text` (no blanks around it, not empty, at most 80 characters). If it is none, `error`
-   !> is a number_... error, `value` is 0 and `place` is the number of the first wrong character of `text`; of a number
-   !> without a point, or out of range, the first.
+   !> Reads a real number.
    pure subroutine read_real(text, value, error, place)
-      character(*), intent(in) :: text
-      real(wp), intent(out) :: value
-      type(error_code_t), intent(out) :: error
-      integer, intent(out) :: place
+      character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
+      real(wp), intent(out) :: value         !< 0 if there is an error
+      type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
+      integer, intent(out) :: place          !< of the first wrong character; without a point or out of range 1
       integer :: first, n, power, point, letter, exponent
       real(dp) :: double
 
@@ -84,12 +82,12 @@ contains
       end if
    end subroutine read_real
 
-   !> Reads the whole number `value` from `text`; the other arguments are those of `read_real`.
+   !> Reads a whole number.
    pure subroutine read_whole(text, value, error, place)
-      character(*), intent(in) :: text
-      integer, intent(out) :: value
-      type(error_code_t), intent(out) :: error
-      integer, intent(out) :: place
+      character(*), intent(in) :: text       !< no blanks around it, not empty, at most 80 characters
+      integer, intent(out) :: value          !< 0 if there is an error
+      type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
+      integer, intent(out) :: place          !< of the first wrong character; out of range 1
       integer :: first, wrong, status
 
       value = 0

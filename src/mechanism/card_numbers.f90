@@ -26,18 +26,20 @@ module card_numbers
       character(2*label_length + 5) :: name = '' !< '' of a number without a unit
    end type unit_t
 
-   !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
+   !> The word for turns a minute on a DRIVE card.
    character(label_length), parameter :: turns_a_minute = 'RPM'
+   !> The units of time that are known.
    character(3), parameter :: time_words(4) = ['S  ', 'MS ', 'MIN', 'H  ']
+   !> A minute in each of these units.
    real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
 
-   !> What the cards call their numbers R1 to R3, by the kind of the number.
+   !> The words of the cards for their numbers R1 to R3, by the kind of the number.
    character(12), parameter :: number_words(3, number_link:number_drive) = reshape([character(12) :: &
       'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
 
 contains
 
-   !> Whether `number` of `m` is blank on its card: it is the one of the drawing.
+   !> Tells whether a number is blank on its card: the drawing gives its value.
    pure logical function is_as_drawn(m, number)
       type(mechanism_t), intent(in) :: m
       type(card_number_t), intent(in) :: number
@@ -48,7 +50,7 @@ contains
          m%drives(number%subject)%drawn
    end function is_as_drawn
 
-   !> Whether `number` of `m` can have a tolerance. These have none: the estimates of moving links; the axes of a
+   !> Tells whether a number can have a tolerance. These numbers have none: the estimates of moving links; the axes of a
    !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
    pure logical function takes_tolerance(m, number)
       type(mechanism_t), intent(in) :: m
@@ -70,7 +72,8 @@ contains
       end select
    end function takes_tolerance
 
-   !> The name of `number` of `m` in tables and messages: its card, what that defines, and what the card calls it.
+   !> Names a number in tables and messages: its card, the name that the card defines, and the word of the card for the
+   !> number.
    pure function number_name(m, number) result(name)
       type(mechanism_t), intent(in) :: m
       type(card_number_t), intent(in) :: number
@@ -84,12 +87,14 @@ contains
             name = 'POINT '//trim(m%points(k)%name)
          case (number_joint)
             name = 'JOINT '//trim(m%points(k)%name)
+
          case (number_pair)
             name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
          case (number_hole)
             name = trim(m%points(k)%name)//' IN '//trim(m%links(m%points(k)%link)%name)//' ' &
                //trim(number_words(number%place, number_joint))
             return
+
          case (number_length)
             associate (one => m%lengths(k))
                name = trim('LENGTH '//trim(m%points(one%point(1))%name)//' '//trim(m%points(one%point(2))%name)//' ' &
@@ -103,12 +108,14 @@ contains
          case default
             name = trim(drive_name(m, m%drives(k)))
          end select
+
          if (number%term == 0) then
             name = name//' '//trim(number_words(number%place, number%kind))
             return
          end if
       end associate
-      ! The word and the number of the term, and what its card calls the number.
+
+      ! The word and the number of the term, and the word of its card for the number.
       associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
          name = name//' '//trim(kind%word)//' '//whole(number%term)//' '
          if (kind%has_rows) then
@@ -119,7 +126,7 @@ contains
       end associate
    end function number_name
 
-   !> The unit of `number` of `m`.
+   !> Finds the unit of a number on a card.
    function number_unit(m, number) result(unit)
       type(mechanism_t), intent(in) :: m
       type(card_number_t), intent(in) :: number
@@ -140,6 +147,7 @@ contains
                unit = unit_t(2.0_wp*pi/minute_in(m%time_unit), unit%powers, turns_a_minute)
             return
          end if
+
          associate (term => m%drives(number%subject)%terms(number%term))
             select case (term%kind)
             case (term_harmonic)
@@ -161,25 +169,26 @@ contains
 
    contains
 
-      !> The unit of angles, or of lengths.
+      !> Gives the unit of angles, or of lengths.
       pure type(unit_t) function unit_of(is_angle) result(one)
-         logical, intent(in) :: is_angle
+         logical, intent(in) :: is_angle     !< of angles; otherwise of lengths
 
          one = unit_t(name=m%length_unit)
          if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
       end function unit_of
 
-      !> Divides `unit` by the `power` of the unit of time; `end_of_name`: the exponent, as text.
+      !> Divides `unit` by a power of the unit of time.
       subroutine divide(power, end_of_name)
-         real(wp), intent(in) :: power
-         character(*), intent(in) :: end_of_name
+         real(wp), intent(in) :: power       !< the exponent
+         character(*), intent(in) :: end_of_name   !< the exponent as text: '**2'; '' for 1
 
          unit%powers(2) = -power
          unit%name = trim(unit%name)//'/'//trim(m%time_unit)//end_of_name
       end subroutine divide
    end function number_unit
 
-   !> The value of `number` of `m`, in the units of `mechanism_t`. A JOINT card's is a place in the drawing.
+   !> Gives the value of a number, in the units of `mechanism_t`. The value of a number of a JOINT card, or of a hole,
+   !> is a coordinate in the drawing.
    real(wp) function number_value(m, number) result(value)
       type(mechanism_t), intent(in), target :: m
       type(card_number_t), intent(in) :: number
@@ -193,7 +202,7 @@ contains
       value = place(number%place)
    end function number_value
 
-   !> Where `number` is in `m`; of a JOINT card the offset of its first point.
+   !> Points to the component of a mechanism that has a number; of a JOINT card, to the offset of its first point.
    function number_in(m, number) result(x)
       type(mechanism_t), intent(in), target :: m
       type(card_number_t), intent(in) :: number
@@ -209,6 +218,7 @@ contains
             x => m%pairs(k)%alpha
             if (i == 2) x => m%pairs(k)%offset
             if (i == 3) x => m%pairs(k)%beta
+
          case (number_length)
             x => m%lengths(k)%length
          case (number_knot)
@@ -229,13 +239,12 @@ contains
       end associate
    end function number_in
 
-   !> Gives `number` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
-   !> the links of `m` are where the cards put them. Points follow a length; numbers as drawn follow neither a length
-   !> nor the hole of one link.
+   !> Gives a number a value. All other numbers that are as drawn follow. Points follow a length; numbers as drawn
+   !> follow neither a length nor the hole of one link.
    subroutine set_number(m, number, value)
-      type(mechanism_t), intent(inout) :: m
+      type(mechanism_t), intent(inout) :: m  !< its links are where the cards put them
       type(card_number_t), intent(in) :: number
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       type(mechanism_t), allocatable :: before
 
       if (allocated(m%lengths)) before = m
@@ -248,13 +257,13 @@ contains
       if (number%kind == number_pair) call put_number(m, number, value)
    end subroutine set_number
 
-   !> Gives `number` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
-   !> points, or one of them, with all points of its hole. Of a table, `put_table` has to follow once all its numbers
-   !> are put.
+   !> Gives a number a value, and leaves all other numbers as they are. A coordinate of a JOINT card moves both of its
+   !> points, the coordinate of a hole one of them; all points of their holes move with them. After all numbers of a
+   !> table are put, `put_table` must follow.
    subroutine put_number(m, number, value)
       type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: number
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       real(wp), pointer :: x
       real(wp) :: way(2)
       integer :: i, j
@@ -274,10 +283,10 @@ contains
       end do
    end subroutine put_number
 
-   !> Solves the spline of term `term` of `drive` for its rows, if it is a table.
+   !> Solves the spline of a term for its rows, if the term is a table.
    subroutine put_table(drive, term)
       type(drive_t), intent(inout) :: drive
-      integer, intent(in) :: term
+      integer, intent(in) :: term            !< number of the term; 0: none
 
       if (term == 0) return
       associate (one => drive%terms(term))
@@ -285,16 +294,16 @@ contains
       end associate
    end subroutine put_table
 
-   !> The unit of angles of `m`'s cards in radians.
+   !> Gives the unit of angles on the cards, in radians.
    pure real(wp) function angle_in_radians(m)
       type(mechanism_t), intent(in) :: m
 
       angle_in_radians = merge(degree, 1.0_wp, m%degrees)
    end function angle_in_radians
 
-   !> A minute in the unit of time `time_unit`; 0: that is not known.
+   !> Gives a minute in a unit of time; 0 if the unit is not known.
    pure real(wp) function minute_in(time_unit)
-      character(label_length), intent(in) :: time_unit
+      character(label_length), intent(in) :: time_unit   !< of the deck; S, MS, MIN and H are known
       integer :: i
 
       i = findloc(time_words, time_unit, dim=1)

@@ -1,5 +1,5 @@
-!> Columns, forms and kinds of rows as data: who prints, searches or sums up the numbers of rows asks here. No other
-!> module says which numbers a row of a kind has, what they are called, or whether one exists.
+!> Columns, forms and kinds of rows as data, for all modules that print, search or sum up the numbers of rows. No other
+!> module knows which numbers a row of a kind has, their names, or whether a number exists.
 module columns
    use kinds, only: wp, label_length
    use plane_vectors, only: degree
@@ -17,9 +17,10 @@ module columns
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2
-   !> Those of ratios of the first two to the first two: in the deck's units, whatever their angles are in.
+   !> The dimensions of ratios: a length or an angle by a length or an angle, in the deck's units of both.
    integer, parameter :: length_by_length = 3, length_by_angle = 4, angle_by_length = 5, angle_by_angle = 6, &
       last_dimension = 6
+   !> Of each dimension of a ratio, the dimensions of its quantity and of its drive.
    integer, parameter :: quantities(length_by_length:last_dimension) = [of_length, of_length, of_angle, of_angle], &
       drives(length_by_length:last_dimension) = [of_length, of_angle, of_length, of_angle]
 
@@ -208,7 +209,7 @@ contains
       is_ratio = forms(form)%kind == request_ratio
    end function is_ratio
 
-   !> Gives the size of a usual number of a dimension. That of a ratio is in the deck's units, otherwise in rad.
+   !> Gives the size of a usual number of a dimension. A ratio is in the deck's units; any other angle is in rad.
    pure real(wp) function usual_size(dimension, order, length, rate, degrees) result(size_of)
       integer, intent(in) :: dimension       !< of_length, ...
       integer, intent(in) :: order           !< of the derivative, from 0: by the time, of a ratio by the drive
@@ -227,8 +228,9 @@ contains
 
    !> Finds the column that has one number of the values of rows; 0: no column has it.
    pure integer function column_at(form, coordinate, k) result(j)
-      integer, intent(in) :: form            !< of the rows
-      integer, intent(in) :: coordinate, k            !< coordinate (1 to 3), and derivative or axes (0 to 2)
+      integer, intent(in) :: form            !< of the rows: row_link, ...
+      integer, intent(in) :: coordinate      !< 1 to 3
+      integer, intent(in) :: k               !< derivative or axes, 0 to 2
 
       do j = forms(form)%first, forms(form)%last
          if (all(columns_of_rows(j)%at == [coordinate, k])) return
@@ -238,7 +240,7 @@ contains
 
    !> Gives the word of a column on COLUMN cards.
    pure character(8) function quantity_of(form, j) result(word)
-      integer, intent(in) :: form            !< of the rows
+      integer, intent(in) :: form            !< of the rows: row_link, ...
       integer, intent(in) :: j               !< the column, in `columns_of_rows`
 
       word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)

@@ -20,10 +20,10 @@ module cylinders
 
 contains
 
-   !> Finds the cylinders of `m`. `by_stroke`: their strokes bound their lengths; otherwise lengths are above 0.
+   !> Finds the cylinders of a mechanism.
    pure function cylinders_of(m, by_stroke) result(list)
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: by_stroke
+      logical, intent(in) :: by_stroke       !< strokes bound the lengths; otherwise lengths are only above 0
       type(cylinder_t), allocatable :: list(:)
       integer :: k
 
@@ -60,12 +60,12 @@ contains
       length = matmul(one%along, r)
    end function cylinder_motion
 
-   !> Tells whether a length stays within `bounds` from the motion `first` (0:1) to the motion `last`, so much time
-   !> later: its cubic does, which has their values and rates.
+   !> Tells whether a length stays within bounds between two instants. Its motion is taken as the cubic that has the
+   !> values and rates of both instants.
    pure logical function stays_within(bounds, first, last, time) result(stays)
-      real(wp), intent(in) :: bounds(2)      !< length
-      real(wp), intent(in) :: first(0:1), last(0:1)   !< length, length a unit of time
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: bounds(2)      !< least and greatest length
+      real(wp), intent(in) :: first(0:1), last(0:1)   !< length and its rate at the first and at the last instant
+      real(wp), intent(in) :: time           !< from the first to the last instant, in the deck's unit
       real(wp) :: c(0:3), u(2), discriminant
       integer :: k
 
@@ -91,7 +91,7 @@ contains
    !> Tells whether a length is beyond a stroke by more than rounding.
    pure logical function is_out_of_stroke(stroke, length) result(is)
       real(wp), intent(in) :: stroke(2)      !< least and greatest length
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length         !< of the cylinder, in the deck's unit
       !> A length that a card gives is known to some roundings.
       real(wp), parameter :: rounded = 64.0_wp*epsilon(1.0_wp)
 

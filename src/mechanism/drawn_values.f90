@@ -1,5 +1,5 @@
-!> What a drawing shows: the numbers of pairs and the values of drives where the cards put the links. With JOINT cards a
-!> blank number means "as drawn".
+!> The values of a drawing: the numbers of pairs and the values of drives, with the links where the cards put them. With
+!> JOINT cards a blank number means "as drawn".
 module drawn_values
    use kinds, only: wp
    use plane_vectors, only: point_of, pi
@@ -9,19 +9,21 @@ module drawn_values
    private
    public :: take_drawn, follow_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
 
-   !> A coordinate passes through about ten operations, each with an error of half a rounding of the places involved;
-   !> coordinates that another program has printed are off by one or two more. A difference below this is zero.
-   real(wp), parameter :: roundings = 32.0_wp*epsilon(1.0_wp)
+   !> A relative difference below this is zero. A coordinate passes through about ten operations, each with an error of
+   !> half a rounding of the places involved; coordinates that another program has printed are off by one or two more.
+   real(wp), parameter :: drawing_error = 32.0_wp*epsilon(1.0_wp)
 
 contains
 
-   !> Gives prismatic pair number `i` of `m` those of its numbers alpha, h and beta (length, rad) that are as drawn.
-   !> Along a guide that is drawn from P to Q the direction is that of PQ, in (-pi, pi], less the angle of link i, and h
-   !> is 0. Differences that rounding alone makes are exactly 0. The block of a slot is where the point in the slot is
-   !> drawn, and turned as link i.
+   !> Gives a prismatic pair those of its numbers alpha (rad), h (length) and beta (rad) that are as drawn.
+   !>
+   !> - Along a guide that is drawn from P to Q, alpha is the direction of PQ, in (-pi, pi], less the angle of link i; h
+   !>   is 0.
+   !> - Differences due to rounding only become exactly 0.
+   !> - The block of a slot is put at the place of the pin in the drawing, with the angle of link i.
    pure subroutine take_drawn(m, i)
       type(mechanism_t), intent(inout) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the pair
       type(pair_t) :: pair
       real(wp) :: d(2), phi(2), theta
 
@@ -43,11 +45,11 @@ contains
       m%pairs(i) = pair
    end subroutine take_drawn
 
-   !> Gives all numbers of `m` that are as drawn the values of the drawing of `m`. Lengths have moved points since these
-   !> numbers were taken: they change by as much as in the drawing since `before`, which has no room without lengths.
+   !> Gives all numbers that are as drawn the values of the drawing. If the mechanism has lengths, these have moved
+   !> points since the numbers were taken: then the numbers change as much as the drawing has changed since `before`.
    pure recursive subroutine follow_drawing(m, before)
       type(mechanism_t), intent(inout) :: m
-      type(mechanism_t), allocatable, intent(in) :: before
+      type(mechanism_t), allocatable, intent(in) :: before   !< the mechanism earlier; without lengths not allocated
       type(mechanism_t), allocatable :: taken, none
       integer :: i
 
@@ -67,7 +69,7 @@ contains
          + (m%drives%polynomial(1) - taken%drives%polynomial(1))
    end subroutine follow_drawing
 
-   !> By how much h of the prismatic `pair` is greater in the drawing of `m` than on its card: (P - Q) . n - h.
+   !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (length).
    pure real(wp) function drawn_opening(m, pair) result(opening)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -78,7 +80,7 @@ contains
       opening = without_rounding(opening, size_of_pair(m, pair) + abs(pair%offset))
    end function drawn_opening
 
-   !> The value (length, rad) of the coordinate of `drive` in the drawing of `m`.
+   !> Finds the value (length or rad) of the coordinate of a drive in the drawing.
    pure real(wp) function drawn_drive(m, drive) result(value)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: drive
@@ -103,7 +105,7 @@ contains
       end associate
    end function drawn_drive
 
-   !> The vector (2) from P to Q of `pair` in the drawing of `m`.
+   !> Finds the vector (2) from P to Q of a pair in the drawing, in the deck's unit of length.
    pure function drawn_way(m, pair) result(d)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -114,7 +116,7 @@ contains
       end associate
    end function drawn_way
 
-   !> Whether P and Q of `pair` are at one place in the drawing of `m`.
+   !> Tells whether P and Q of a pair are at one place in the drawing.
    pure logical function coincides(m, pair)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -122,26 +124,27 @@ contains
       coincides = .not. abs(without_rounding(norm2(drawn_way(m, pair)), size_of_pair(m, pair))) > 0.0_wp
    end function coincides
 
-   !> The place (2) of point number `k` in the drawing of `m`.
+   !> Finds the place (2) of a point in the drawing, in the deck's unit of length.
    pure function drawn_place(m, k) result(p)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the point
       real(wp) :: p(2)
 
       p = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
    end function drawn_place
 
-   !> The length by which the roundings of the place of point number `k` go.
+   !> Gives the length to which the rounding error of the place of a point is relative.
    pure real(wp) function size_of_point(m, k) result(length)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the point
 
       associate (link => m%links(m%points(k)%link))
          length = norm2(link%position(:2)) + norm2(m%points(k)%offset)*(1.0_wp + abs(link%position(3)))
       end associate
    end function size_of_point
 
-   !> Tells the size of what is added up to the way from P to Q of `pair`, along and across its guide.
+   !> Gives the length to which the rounding error of the vector from P to Q of a pair is relative, along and across its
+   !> guide.
    pure real(wp) function size_of_pair(m, pair) result(length)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -151,10 +154,11 @@ contains
          *(abs(pair%alpha) + abs(m%links(m%points(pair%point_i)%link)%position(3)))
    end function size_of_pair
 
-   !> `value`; 0 where the roundings of numbers of the size `size_of` are larger.
+   !> Gives a value, or 0 if the value is within the rounding error of the numbers from which it was found.
    pure real(wp) function without_rounding(value, size_of) result(rest)
-      real(wp), intent(in) :: value, size_of
+      real(wp), intent(in) :: value          !< length or rad
+      real(wp), intent(in) :: size_of        !< sum of the sizes of these numbers, in the unit of the value
 
-      rest = merge(0.0_wp, value, abs(value) <= roundings*size_of)
+      rest = merge(0.0_wp, value, abs(value) <= drawing_error*size_of)
    end function without_rounding
 end module drawn_values

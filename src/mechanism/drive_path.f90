@@ -1,7 +1,8 @@
 !> The path of the drives: value, rate and acceleration of each at a parameter of the motion. The parameter is the time.
-!> On a leg it stands for the value of one drive, the leader, which goes evenly from one value to another; the other
-!> drives are held. A position is a function of the values alone: a motion that comes to a standstill in time can go on
-!> by value. The parameter of a leg runs through the times between which the leader has the values of its ends.
+!> On a leg the parameter stands for the value of one drive, the leader, which goes evenly from one value to another;
+!> the other drives are held. A position depends only on the values of the drives: a motion that comes to rest in time
+!> can go on by value. The parameter of a leg runs through the times between which the leader has the values of its
+!> ends.
 module drive_path
    use kinds, only: wp
    use mechanism, only: drive_t
@@ -11,9 +12,9 @@ module drive_path
    public :: drive_path_t, drive_at, drive_bounds, value_at, moving_drives, slow_drive, next_turn, time_beside, &
       time_at_part, lead
 
-   !> A drive stops or turns where its rate is below this part of its largest; its values on the way are those at so
-   !> many equal steps of time.
+   !> A drive is about to stop or to turn back if its rate is below this part of its largest rate.
    real(wp), parameter :: almost_at_rest = 0.1_wp
+   !> Equal steps of time on the way of a drive, at whose ends it is looked whether the drive has turned back.
    integer, parameter :: value_steps = 64
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
@@ -28,12 +29,12 @@ module drive_path
 
 contains
 
-   !> Value, rate and acceleration (3) of drive number `i` at the `parameter`, in the drive's unit (length or rad) and
-   !> that of the parameter.
+   !> Gives value, rate and acceleration (3) of a drive at a parameter, in the drive's unit (length or rad) and the unit
+   !> of the parameter.
    pure function drive_at(path, i, parameter) result(f)
       type(drive_path_t), intent(in) :: path
-      integer, intent(in) :: i
-      real(wp), intent(in) :: parameter
+      integer, intent(in) :: i               !< number of the drive
+      real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp) :: f(3)
 
       if (allocated(path%leg)) then
@@ -43,10 +44,10 @@ contains
       end if
    end function drive_at
 
-   !> The values (drives) at the `parameter`, in the drives' units (length or rad).
+   !> Gives the values (drives) of all drives at a parameter, in the drives' units (length or rad).
    pure function values_at(path, parameter) result(values)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: parameter
+      real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp) :: values(size(path%laws)), f(3)
       integer :: i
 
@@ -56,11 +57,11 @@ contains
       end do
    end function values_at
 
-   !> The bounds of drive number `i` between the parameters `p1` and `p2`, in either order.
+   !> Finds the bounds of value, rate and acceleration of a drive between two parameters.
    pure type(bounds_t) function drive_bounds(path, i, p1, p2) result(b)
       type(drive_path_t), intent(in) :: path
-      integer, intent(in) :: i
-      real(wp), intent(in) :: p1, p2
+      integer, intent(in) :: i               !< number of the drive
+      real(wp), intent(in) :: p1, p2         !< parameters of the path in either order, in the deck's unit of time
 
       if (allocated(path%leg)) then
          b = bounds_of(drive_t(polynomial=[path%leg(:, i), 0.0_wp]), p1, p2)
@@ -69,21 +70,21 @@ contains
       end if
    end function drive_bounds
 
-   !> The value (length or rad) that drive number `i` has at the time `t`, on a leg or not.
+   !> Gives the value (length or rad) of a drive at a time by its law, whether the path is on a leg or not.
    pure real(wp) function value_at(path, i, t)
       type(drive_path_t), intent(in) :: path
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
+      integer, intent(in) :: i               !< number of the drive
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
 
       f = drive_motion(path%laws(i), t)
       value_at = f(1)
    end function value_at
 
-   !> (drives) Those that move between the parameters `p1` and `p2`, see `is_at_rest`.
+   !> Tells of each drive (drives) whether it moves between two parameters, by `is_at_rest`.
    pure function moving_drives(path, p1, p2) result(moves)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: p1, p2
+      real(wp), intent(in) :: p1, p2         !< parameters of the path in either order, in the deck's unit of time
       logical :: moves(size(path%laws))
 
       if (allocated(path%leg)) then
@@ -93,11 +94,13 @@ contains
       end if
    end function moving_drives
 
-   !> The number of the only drive that moves between the times `t1` and `t2`, if it is almost at rest at the time
-   !> `near` by its rates in the times of `span`; otherwise 0.
+   !> Finds the number of the only drive that moves in an interval, if that drive is almost at rest at a time; otherwise
+   !> 0. Its rate is compared with its largest rate in a wider interval.
    pure integer function slow_drive(path, t1, t2, near, span) result(drive)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2, near, span(2)
+      real(wp), intent(in) :: t1, t2         !< times: the ends of the interval, in either order
+      real(wp), intent(in) :: near           !< the time at which the drive may be almost at rest
+      real(wp), intent(in) :: span(2)        !< times: the ends of the wider interval, increasing
       type(bounds_t) :: b
       real(wp) :: f(3)
       logical :: moves(size(path%laws))
@@ -111,12 +114,14 @@ contains
       if (abs(f(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) drive = 0
    end function slow_drive
 
-   !> Begins a leg over the times of `span`, on which drive number `leader` has this `rate` (of its value, by the time)
-   !> from its value at the `parameter` on; the others keep their values there.
+   !> Begins a leg. The leader starts at its value at a parameter of the path, with a constant rate. The other drives
+   !> keep their values there.
    subroutine lead(path, leader, parameter, rate, span)
       type(drive_path_t), intent(inout) :: path
-      integer, intent(in) :: leader
-      real(wp), intent(in) :: parameter, rate, span(2)
+      integer, intent(in) :: leader          !< number of the drive
+      real(wp), intent(in) :: parameter      !< of the path before, in the deck's unit of time
+      real(wp), intent(in) :: rate           !< of the leader, length or rad by the unit of time
+      real(wp), intent(in) :: span(2)        !< times of the beginning and the end of the leg
       real(wp) :: leg(2, size(path%laws))
 
       leg(1, :) = values_at(path, parameter)
@@ -126,11 +131,11 @@ contains
       path%span = span
    end subroutine lead
 
-   !> The first time after `from`, up to `t`, at which drive number `i` turns back, or rests before it does; else `t`.
+   !> Finds the first time at which a drive turns back, or comes to rest before it turns back; without one, `t`.
    pure real(wp) function next_turn(path, i, from, t) result(turn)
       type(drive_path_t), intent(in) :: path
-      integer, intent(in) :: i
-      real(wp), intent(in) :: from, t
+      integer, intent(in) :: i               !< number of the drive
+      real(wp), intent(in) :: from, t        !< times between which it is sought: after `from`, up to `t`
       real(wp) :: f(3), low, way
       integer :: k
 
@@ -152,11 +157,12 @@ contains
       end do
    end function next_turn
 
-   !> The time on the way from `last` to `t` at which some drive has gone `distance` from its value at `last`, in the
-   !> solver's units; `t` if none does. Bounds of the rate are too coarse for that.
+   !> Finds the time at which some drive has gone a distance from its value at `last`; `t` if no drive does. Bounds of
+   !> the rate are too coarse to find it.
    pure real(wp) function time_beside(path, last, t, distance) result(beside)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: last, t, distance
+      real(wp), intent(in) :: last, t        !< parameters of the path between which it is sought
+      real(wp), intent(in) :: distance       !< in the solver's units
       real(wp) :: high
       integer :: k
 
@@ -169,11 +175,12 @@ contains
       if (abs(t - high) <= 0.0_wp) beside = t
    end function time_beside
 
-   !> The time at which the fastest drive has made this `part` of its way between the parameters `p1` and `p2`, by its
-   !> law. If it is so slow there that its value does not give the time, it is the one until which it slows down.
+   !> Finds the time at which the fastest drive has made a part of its way between two parameters, by its law. If the
+   !> drive is so slow there that its value does not give the time, it is the time until which the drive slows down.
    pure real(wp) function time_at_part(path, p1, p2, part) result(at)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: p1, p2, part
+      real(wp), intent(in) :: p1, p2         !< parameters of the path, in the deck's unit of time
+      real(wp), intent(in) :: part           !< of the way, from 0 to 1
       real(wp), dimension(size(path%laws)) :: start, way
       real(wp) :: span(2), low, high
       integer :: i, k
@@ -183,6 +190,7 @@ contains
       i = maxloc(abs(path%unit*way), dim=1)
       span = [p1, p2]
       if (allocated(path%leg)) span = path%span
+
       at = time_of(part)
       low = time_of(part - not_told)
       high = time_of(part + not_told)
@@ -194,9 +202,9 @@ contains
 
    contains
 
-      !> The time at which the drive has made this `part` of its way.
+      !> Finds the time at which the drive has made a part of its way.
       pure real(wp) function time_of(part) result(t)
-         real(wp), intent(in) :: part
+         real(wp), intent(in) :: part        !< of the way, from about 0 to 1
          real(wp) :: before
          integer :: k
 
@@ -207,9 +215,9 @@ contains
          end do
       end function time_of
 
-      !> Whether the speed of the drive falls at the time `t`.
+      !> Tells whether the speed of the drive falls at a time.
       pure logical function slows_down(t)
-         real(wp), intent(in) :: t
+         real(wp), intent(in) :: t           !< time
          real(wp) :: f(3)
 
          f = drive_motion(path%laws(i), t)

@@ -12,7 +12,7 @@
 !> `growing_sizes` tells how large the numbers are that are added up to the law: its value and its rates may be small
 !> differences of large ones, and are known by so many fewer digits.
 !>
-!> All that is known of a kind of term stands together, kind by kind, below the laws.
+!> The procedures of each kind of term stand together, kind by kind, below the laws.
 module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
@@ -36,9 +36,9 @@ module drives
    !> quotients of TIME put it some roundings aside. Error estimates put both the instant and the duration off by 256
    !> roundings times a normal deviate: apart by 362 times such a deviate, which is below 2048 but once in a hundred
    !> million times. Instants of doubles are as far off in real128.
-   real(wp), parameter :: joint_part = 2048.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
+   real(wp), parameter :: joint_tolerance = 2048.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
    !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
-   real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: law_rounding = 16.0_wp*epsilon(1.0_wp)
    !> The largest derivatives 0 to 3 of a rise of the lift 1 and the duration 1, whatever its law.
    real(wp), parameter :: rise_most(0:3) = [1.0_wp, 2.0_wp, 6.3_wp, 60.0_wp]
    !> A drive may come to rest by so much before a joint or after, in parts of the joints' times.
@@ -46,7 +46,8 @@ module drives
 
 contains
 
-   !> Value, rate and acceleration (3) at the time `t`, in the drive's unit (length or rad) and the deck's unit of time.
+   !> Gives value, rate and acceleration (3) of a law at a time, in the drive's unit (length or rad) and the deck's unit
+   !> of time.
    pure function drive_motion(law, t) result(f)
       type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t              !< time
@@ -60,11 +61,11 @@ contains
       if (allocated(law%terms)) call add_terms(law%terms, t, f)
    end function drive_motion
 
-   !> Adds to a value, rate and acceleration those of terms at a time.
+   !> Adds the values, rates and accelerations of terms at a time.
    pure subroutine add_terms(terms, t, motion)
       type(term_t), intent(in) :: terms(:)
       real(wp), intent(in) :: t              !< time
-      real(wp), intent(inout) :: motion(3)        !< in the drive's unit (length or rad) and the deck's unit of time
+      real(wp), intent(inout) :: motion(3)   !< the sums, in the drive's unit (length or rad) and the unit of time
       integer :: i
 
       do i = 1, size(terms)
@@ -84,13 +85,12 @@ contains
       end do
    end subroutine add_terms
 
-   !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
-   !> last pieces; with a power that does not exist somewhere in the interval there are no bounds. `one_instant`: it is
-   !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
+   !> Finds the bounds of a law between two times. A table continues beyond its ends with its last pieces. If a power
+   !> does not exist somewhere in the interval, there are no bounds.
    pure function bounds_of(law, t1, t2, one_instant) result(b)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2         !< times
-      logical, intent(in), optional :: one_instant !< the interval is one instant
+      real(wp), intent(in) :: t1, t2         !< times in either order
+      logical, intent(in), optional :: one_instant   !< one instant and its roundings: jumps as in `drive_motion`
       type(bounds_t) :: b, of_term
       real(wp) :: from, to, times(3)
       integer :: i, k
@@ -108,6 +108,7 @@ contains
             end associate
          end do
       end associate
+
       if (.not. allocated(law%terms)) return
       do i = 1, size(law%terms)
          associate (term => law%terms(i))
@@ -122,6 +123,7 @@ contains
                of_term = rise_bounds(term, from, to, one_instant)
             end select
          end associate
+
          if (all(of_term%low <= -huge(1.0_wp))) then
             b = of_term
             return
@@ -131,25 +133,26 @@ contains
       end do
    end function bounds_of
 
-   !> Widens the `bounds` by a value and its derivatives `values` (0:2), whose terms have absolute values with the sums
-   !> `magnitudes` (0:2).
+   !> Widens bounds by a value and its derivatives, with their rounding errors.
    pure subroutine widen(bounds, values, magnitudes)
       type(bounds_t), intent(inout) :: bounds
-      real(wp), intent(in) :: values(0:2), magnitudes(0:2) !< in the units of the bounds
+      real(wp), intent(in) :: values(0:2)    !< value and derivatives, in the units of the bounds
+      real(wp), intent(in) :: magnitudes(0:2)   !< of each, the sum of the absolute values of its terms
 
-      bounds%low = min(bounds%low, values - margin*magnitudes)
-      bounds%high = max(bounds%high, values + margin*magnitudes)
+      bounds%low = min(bounds%low, values - law_rounding*magnitudes)
+      bounds%high = max(bounds%high, values + law_rounding*magnitudes)
    end subroutine widen
 
-   !> Finds the nearest to `t` of the times from `from` to `to`.
+   !> Finds the nearest time of an interval.
    elemental real(wp) function within(t, from, to)
-      real(wp), intent(in) :: t, from, to    !< times
+      real(wp), intent(in) :: t              !< the time that the result is nearest to
+      real(wp), intent(in) :: from, to       !< times: the ends of the interval, in their order
 
       within = min(max(t, from), to)
    end function within
 
-   !> An estimate of the largest |rate| of `drive` for |time| <= `t`, in the drive's unit (length or rad) and the deck's
-   !> unit of time; `bounds_of` has true bounds.
+   !> Estimates the largest |rate| of a drive for |time| <= `t`, in the drive's unit (length or rad) and the deck's unit
+   !> of time; `bounds_of` has true bounds.
    pure real(wp) function drive_rate(drive, t) result(rate)
       type(drive_t), intent(in) :: drive
       real(wp), intent(in) :: t              !< time, at least 0
@@ -173,7 +176,8 @@ contains
       end do
    end function drive_rate
 
-   !> The times at which some derivative of the law of `drive` jumps: the knots of its tables, the joints of its rises.
+   !> Finds the times (any number) at which some derivative of a law jumps: the knots of its tables, the joints of its
+   !> rises.
    pure function joints_of(drive) result(times)
       type(drive_t), intent(in) :: drive
       real(wp), allocatable :: times(:)
@@ -209,10 +213,11 @@ contains
       f = numbers(1)*[sin(u), numbers(2)*cos(u), -numbers(2)**2*sin(u)]
    end function harmonic_motion
 
-   !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
-   !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
+   !> Finds the bounds of r1 sin(r2 t + r3). Each derivative is again a sine, with its phase advanced by a quarter turn.
+   !> The extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
    pure function harmonic_bounds(numbers, from, to) result(b)
-      real(wp), intent(in) :: numbers(3), from, to !< amplitude, frequency, phase; times in their order
+      real(wp), intent(in) :: numbers(3)     !< amplitude, frequency (rad over the unit of time), phase (rad)
+      real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
          sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
@@ -225,31 +230,34 @@ contains
       amplitudes = numbers(1)*[1.0_wp, numbers(2), numbers(2)**2]
       call widen(b, amplitudes*sin(u1 + quarters), abs(amplitudes)*magnitude)
       call widen(b, amplitudes*sin(u2 + quarters), abs(amplitudes)*magnitude)
-      first = (u1 - margin*magnitude)/quarter
+      first = (u1 - law_rounding*magnitude)/quarter
       first = first + modulo(-first, 1.0_wp)
-      last = (u2 + margin*magnitude)/quarter
+      last = (u2 + law_rounding*magnitude)/quarter
       do i = 0, 3
          if (first + i > last) exit
          k = modulo(int(modulo(first, 4.0_wp)) + i, 4)
          call widen(b, amplitudes*sines(k:k + 2), abs(amplitudes)*magnitude)
       end do
       ! Rounding does not exceed the amplitude.
-      b%low = max(b%low, -(1.0_wp + margin)*abs(amplitudes))
-      b%high = min(b%high, (1.0_wp + margin)*abs(amplitudes))
+      b%low = max(b%low, -(1.0_wp + law_rounding)*abs(amplitudes))
+      b%high = min(b%high, (1.0_wp + law_rounding)*abs(amplitudes))
    end function harmonic_bounds
 
-   !> Finds the sizes (3) of a harmonic at the times -`t` and `t`, as `growing_sizes` takes them.
+   !> Finds the sizes (3) of a harmonic at the times -`t` and `t`, for `growing_sizes`.
    pure function harmonic_sizes(numbers, t) result(sizes)
-      real(wp), intent(in) :: numbers(3)           !< amplitude, frequency and phase without their signs
+      real(wp), intent(in) :: numbers(3)     !< amplitude, frequency and phase without their signs
       real(wp), intent(in) :: t              !< time
       real(wp) :: sizes(3)
 
       sizes = (1.0_wp + numbers(2)*t + numbers(3))*numbers(1)*[1.0_wp, numbers(2), numbers(2)**2]
    end function harmonic_sizes
 
-   !> factor t**exponent; a whole number is an integer exponent, so that t may be zero or negative.
+   !> Computes factor t**exponent. A whole number becomes an integer exponent, so that t may be zero or negative.
    pure real(wp) function monomial(factor, exponent, t)
-      real(wp), intent(in) :: factor, exponent, t        !< factor, exponent, time
+      real(wp), intent(in) :: factor         !< in the unit of the result, over the unit of time to the exponent
+      real(wp), intent(in) :: exponent       !< any number
+      real(wp), intent(in) :: t              !< time
+      !> Exponents below this are whole numbers of the default kind.
       real(wp), parameter :: largest_whole = 1.0e6_wp
 
       if (abs(factor) <= 0.0_wp) then
@@ -261,18 +269,20 @@ contains
       end if
    end function monomial
 
-   !> r1 t**r2 and its first two derivatives (3) at the time `t`.
+   !> Computes r1 t**r2 and its first two derivatives (3) at a time.
    pure function power_motion(numbers, t) result(f)
-      real(wp), intent(in) :: numbers(3), t        !< factor, exponent; time
+      real(wp), intent(in) :: numbers(3)     !< factor, exponent
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
 
       f = [monomial(numbers(1), numbers(2), t), monomial(numbers(1)*numbers(2), numbers(2) - 1.0_wp, t), &
          monomial(numbers(1)*numbers(2)*(numbers(2) - 1.0_wp), numbers(2) - 2.0_wp, t)]
    end function power_motion
 
-   !> Finds the bounds of r1 t**r2: on either side of t = 0 each derivative is monotonic. None where it does not exist.
+   !> Finds the bounds of r1 t**r2: on either side of t = 0 each derivative is monotonic. There are no bounds if it does
+   !> not exist somewhere in the interval.
    pure function power_bounds(numbers, from, to) result(b)
-      real(wp), intent(in) :: numbers(3)           !< factor, exponent
+      real(wp), intent(in) :: numbers(3)     !< factor, exponent
       real(wp), intent(in) :: from, to       !< times, in their order
       type(bounds_t) :: b
       real(wp) :: times(3), f(3)
@@ -289,10 +299,12 @@ contains
       end do
    end function power_bounds
 
-   !> Finds the sizes (3) of a power at the times -`t` and `t`; where it grows more slowly than the time, at `last`.
+   !> Finds the sizes (3) of a power, for `growing_sizes`. A derivative that grows more slowly than the time has its
+   !> size at `last`.
    pure function power_sizes(numbers, t, last) result(sizes)
-      real(wp), intent(in) :: numbers(3)           !< factor, exponent
-      real(wp), intent(in) :: t, last        !< times
+      real(wp), intent(in) :: numbers(3)     !< factor, exponent
+      real(wp), intent(in) :: t              !< time, at least 0: sizes at -t and t
+      real(wp), intent(in) :: last           !< largest |time|
       real(wp) :: sizes(3), c, power, time
       integer :: k
 
@@ -306,9 +318,10 @@ contains
       end do
    end function power_sizes
 
-   !> Whether t**exponent and its first two derivatives exist at the time `t`.
+   !> Tells whether t**exponent and its first two derivatives exist at a time.
    pure logical function exists(exponent, t)
-      real(wp), intent(in) :: exponent, t           !< exponent; time
+      real(wp), intent(in) :: exponent       !< any number
+      real(wp), intent(in) :: t              !< time
 
       exists = t > 0.0_wp .or. abs(exponent - anint(exponent)) <= 0.0_wp
       if (abs(t) <= 0.0_wp) exists = exponent >= 2.0_wp .or. abs(exponent*(exponent - 1.0_wp)) <= 0.0_wp
@@ -352,8 +365,8 @@ contains
       end associate
    end function table_sizes
 
-   !> Widens `bounds` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first
-   !> derivative is zero.
+   !> Widens bounds by a piece of a spline between two times: by its values at both ends, and at the times at which its
+   !> second or first derivative is zero.
    pure subroutine widen_by_piece(bounds, spline, i, t1, t2)
       type(bounds_t), intent(inout) :: bounds
       type(spline_t), intent(in) :: spline
@@ -387,8 +400,8 @@ contains
       end do
    end subroutine widen_by_piece
 
-   !> How far before a joint `term` has the acceleration from the right already, as a part of the rise's duration; 0
-   !> where its law has a continuous acceleration.
+   !> Finds how far before a joint a rise already has the acceleration from the right, as a part of its duration; 0 if
+   !> its acceleration is continuous.
    pure real(wp) function joint_width(term) result(width)
       type(term_t), intent(in) :: term
 
@@ -396,18 +409,20 @@ contains
       if (term_kinds(term%kind)%jumps) width = joint_distance(term)
    end function joint_width
 
-   !> How far from a joint of `term` an instant may be that is meant to be at it, as a part of the rise's duration.
+   !> Finds how far from a joint of a rise an instant may be that is meant to be at it, as a part of the rise's
+   !> duration.
    pure real(wp) function joint_distance(term) result(distance)
       type(term_t), intent(in) :: term
 
-      distance = joint_part*(1.0_wp + abs(term%r(1))/term%r(2))
+      distance = joint_tolerance*(1.0_wp + abs(term%r(1))/term%r(2))
    end function joint_distance
 
-   !> s(part) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before 0, and 1 from 1 on.
-   !> The second derivative is that of the piece in which `at` lies, continued to `part`.
+   !> Computes s(u) of a rise of the lift 1 and the duration 1, and its first two derivatives (3): 0 before u = 0, and 1
+   !> from u = 1 on (Norton, Cam Design and Manufacturing Handbook, ch. 2 and 3).
    pure function rise_shape(kind, part, at) result(s)
       integer, intent(in) :: kind            !< term_cycloid, ..., term_parabola
-      real(wp), intent(in) :: part, at          !< parts of the duration
+      real(wp), intent(in) :: part           !< u, a part of the duration
+      real(wp), intent(in) :: at             !< a part of the duration in the piece whose second derivative is taken
       real(wp) :: s(3), v, w
 
       v = min(max(part, 0.0_wp), 1.0_wp)
@@ -427,7 +442,7 @@ contains
       if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
    end function rise_shape
 
-   !> Computes the value, rate and acceleration (3) of the rise `term` at the time `t`.
+   !> Computes value, rate and acceleration (3) of a rise at a time, in the drive's unit and the deck's unit of time.
    pure function rise_motion(term, t) result(f)
       type(term_t), intent(in) :: term
       real(wp), intent(in) :: t              !< time
@@ -439,7 +454,7 @@ contains
       end associate
    end function rise_motion
 
-   !> Finds the largest rate of the rise `term`: that of its middle.
+   !> Finds the largest rate of a rise, which it has in its middle.
    pure real(wp) function rise_rate(term) result(rate)
       type(term_t), intent(in) :: term
       real(wp) :: s(3)
@@ -448,25 +463,27 @@ contains
       rate = abs(term%r(3)*s(2))/term%r(2)
    end function rise_rate
 
-   !> Finds the sizes (3) of a rise. Beyond its end the time changes nothing.
+   !> Finds the sizes (3) of a rise, for `growing_sizes`. Beyond its end the time changes nothing.
    pure function rise_sizes(numbers) result(sizes)
-      real(wp), intent(in) :: numbers(3)           !< start, duration and lift without their signs
+      real(wp), intent(in) :: numbers(3)     !< start, duration and lift without their signs
       real(wp) :: sizes(3)
 
       sizes = numbers(3)*(rise_most(:2) + (2.0_wp*numbers(1)/numbers(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, numbers(2), &
          numbers(2)**2]
    end function rise_sizes
 
-   !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
+   !> Finds the bounds of a rise: its values at both ends, and at the places in between at which any law has an extreme
    !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
    pure function rise_bounds(term, from, to, one_instant) result(b)
       type(term_t), intent(in) :: term
       real(wp), intent(in) :: from, to       !< times in their order
       logical, intent(in), optional :: one_instant !< the interval is one instant
       type(bounds_t) :: b
-      !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
+      !> The extremes of the acceleration of the 3-4-5 polynomial are as far from the middle: at (3 -+ sqrt(3))/6.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
-      real(wp), parameter :: places(7) = [0.0_wp, 0.5_wp - aside, 0.25_wp, 0.5_wp, 0.75_wp, 0.5_wp + aside, 1.0_wp]
+      !> Parts of the duration: these extremes, those of the other laws, and all joints.
+      real(wp), parameter :: extreme_places(7) = [0.0_wp, 0.5_wp - aside, 0.25_wp, 0.5_wp, 0.75_wp, 0.5_wp + aside, &
+         1.0_wp]
       real(wp) :: u1, u2, width
       integer :: i
 
@@ -476,46 +493,49 @@ contains
       call widen_by_rise(b, term, u1, u1 + width)
       call widen_by_rise(b, term, u2, u2 + width)
       if (present(one_instant)) return
-      do i = 1, size(places)
-         if (places(i) < u1 - width .or. places(i) > u2 + width) cycle
-         call widen_by_rise(b, term, places(i), places(i) - 0.1_wp)
-         call widen_by_rise(b, term, places(i), places(i) + 0.1_wp)
+      do i = 1, size(extreme_places)
+         if (extreme_places(i) < u1 - width .or. extreme_places(i) > u2 + width) cycle
+         call widen_by_rise(b, term, extreme_places(i), extreme_places(i) - 0.1_wp)
+         call widen_by_rise(b, term, extreme_places(i), extreme_places(i) + 0.1_wp)
       end do
    end function rise_bounds
 
-   !> Widens `bounds` by the rise `term` at the `part` of its duration, with the acceleration of the piece in which `at`
-   !> lies. Where a law is steepest, a rounding of `part` changes its second derivative by 60 roundings; in a dwell
-   !> zeros are exact.
+   !> Widens bounds by a rise at a part of its duration. Where a law is steepest, a rounding of `part` changes its
+   !> second derivative by 60 roundings; in a dwell zeros are exact.
    pure subroutine widen_by_rise(bounds, term, part, at)
       type(bounds_t), intent(inout) :: bounds
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: part, at          !< parts of the duration
+      real(wp), intent(in) :: part           !< the part of the duration
+      real(wp), intent(in) :: at             !< a part of the duration in the piece whose acceleration is taken
       real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
 
       s = rise_shape(term%kind, part, at)
       factors = term%r(3)/[1.0_wp, term%r(2), term%r(2)**2]
       magnitudes = abs(factors)*[1.0_wp, 8.0_wp, 64.0_wp]
-      if (part < -margin .or. part > 1.0_wp + margin) magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
+      if (part < -law_rounding .or. part > 1.0_wp + law_rounding) &
+         magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
       call widen(bounds, factors*s, magnitudes)
    end subroutine widen_by_rise
 
-   !> Bounds, as (:, 0) + |t| (:, 1), of what a change of each number of `law`, or of the time, changes of value, rate
-   !> and acceleration (3) at each time t from -`last` to `last`, over the relative change; in the drive's unit (length
-   !> or rad) and the deck's unit of time. Of a power with a negative exponent at the time `last` alone: before, the law
-   !> itself is as large.
+   !> Bounds how much value, rate and acceleration (3) of a law change with each of its numbers, or with the time. The
+   !> bounds are (:, 0) + |t| (:, 1) at each time t from -`last` to `last`: the changes divided by the relative change
+   !> of the number, in the drive's unit (length or rad) and the deck's unit of time. For a power with a negative
+   !> exponent they hold at the time `last` only: before, the law itself is as large.
    pure function growing_sizes(law, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: last           !< time, at least 0
+      real(wp), intent(in) :: last           !< largest |time|
       real(wp) :: sizes(3, 0:1)
 
       sizes(:, 0) = sizes_at(law, 0.0_wp, last)
       sizes(:, 1) = (sizes_at(law, last, last) - sizes(:, 0))/merge(last, 1.0_wp, last > 0.0_wp)
    end function growing_sizes
 
-   !> The sizes (3) at the times -`t` and `t`. Between t = 0 and `last` none of them is above its chord.
+   !> Finds the sizes (3) of a law at the times -`t` and `t`, for `growing_sizes`. Between t = 0 and `last` no size is
+   !> above its chord.
    pure function sizes_at(law, t, last) result(sizes)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t, last        !< times
+      real(wp), intent(in) :: t              !< time, from 0 to `last`
+      real(wp), intent(in) :: last           !< largest |time|
       real(wp) :: sizes(3)
       integer :: i
 
@@ -539,11 +559,12 @@ contains
       end do
    end function sizes_at
 
-   !> The drive of `law` does not move between the times `t1` and `t2`, by the bounds of its rate; or, if they are
-   !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
+   !> Tells whether a drive does not move between two times, by the bounds of its rate; if they are equal, whether it
+   !> does not move from that time on. A time near a joint counts as after the joint at the beginning of the interval,
+   !> and as before the joint at its end.
    elemental logical function is_at_rest(law, t1, t2)
       type(drive_t), intent(in) :: law
-      real(wp), intent(in) :: t1, t2         !< times
+      real(wp), intent(in) :: t1, t2         !< times in either order
       type(bounds_t) :: b
       real(wp) :: width, from
 
@@ -555,11 +576,11 @@ contains
       is_at_rest = b%low(1) >= 0.0_wp .and. b%high(1) <= 0.0_wp
    end function is_at_rest
 
-   !> Halves the interval from `low`, until which a condition holds, to `high`, from which it does not; `holds`: at the
-   !> middle of the two. In digits(1.0_wp) calls the interval becomes that of two neighbours.
+   !> Halves an interval at one end of which a condition holds. After digits(1.0_wp) calls its ends are neighbours.
    pure subroutine halve(holds, low, high)
-      logical, intent(in) :: holds           !< at the middle
-      real(wp), intent(inout) :: low, high   !< times
+      logical, intent(in) :: holds           !< the condition holds at the middle
+      real(wp), intent(inout) :: low         !< time up to which the condition holds
+      real(wp), intent(inout) :: high        !< time from which it does not hold
       real(wp) :: middle
 
       middle = middle_of(low, high)
@@ -567,9 +588,9 @@ contains
       if (.not. holds) high = middle
    end subroutine halve
 
-   !> The time halfway between `low` and `high`.
+   !> Gives the time halfway between two times.
    pure real(wp) function middle_of(low, high) result(middle)
-      real(wp), intent(in) :: low, high      !< times
+      real(wp), intent(in) :: low, high      !< times: the ends of an interval
 
       middle = low + 0.5_wp*(high - low)
    end function middle_of

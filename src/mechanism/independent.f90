@@ -1,6 +1,6 @@
 !> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
-!> on another: each is solved as a mechanism of its own, in its own numbers and its own lengths. What the set keeps are
-!> its settings, and where its rows and drives are, in the order of the cards.
+!> on another: each is solved as a mechanism of its own, in its own numbers and its own lengths. The set keeps its
+!> settings and the places of its rows and drives, in the order of the cards.
 module independent
    use disjoint_sets, only: sorted, sorted_numbers, sorted_t, members, once, joined
    use kinds, only: wp
@@ -19,12 +19,12 @@ module independent
       integer :: part = 1, number = 0
    end type member_t
 
-   !> The deck's numbers of what a part has of a kind, increasing: the place in the list is the number in the part. Or
-   !> for each number of the deck the number in the part.
+   !> The numbers in the deck of all members of a kind that a part has, increasing: the place in the list is the number
+   !> in the part. Or, for each number in the deck, the number in the part.
    type :: numbering_t
       integer, allocatable :: of(:)
    end type numbering_t
-   !> Kinds are links, points, pairs, measures and drives.
+   !> The kind of drives, after links, points, pairs and measures (request_link, ..., request_measure).
    integer, parameter :: of_drives = 5
    !> The kinds of the subjects of requests, and of numbers on cards.
    integer, parameter :: of_requests(request_link:request_curve) = &
@@ -44,8 +44,8 @@ module independent
 
 contains
 
-   !> Divides the set `m` into its parts: `set`. A part has the ground links, and their points, that its pairs, drives
-   !> and rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   !> Divides a set into its parts. A part has the ground links, and their points, that its pairs, drives and rows use.
+   !> A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
    subroutine divide(m, set)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: set
@@ -64,6 +64,7 @@ contains
          set%largest_tolerance = min(1.0_wp, max(epsilon(1.0_wp), maxval(m%tolerances%size_of*m%tolerances%unit &
             *rate**m%tolerances%powers(2)/length**m%tolerances%powers(1))))
       end if
+
       link_part = part_of_links(m)
       set%count = maxval([1, link_part])
       if (set%count == 1) link_part = 1
@@ -77,12 +78,14 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind == request_point) row_part(i) = max(row_part(i), point_part(m%requests(i)%subject))
       end do
+
       pairs = sorted(pair_part, set%count)
       drives = sorted(drive_part, set%count)
       rows = sorted(row_part, set%count)
       call find_measured()
       measures = sorted_numbers(pack(measured%number, measured%kind == request_measure), &
          pack(measuring, measured%kind == request_measure), set%count)
+
       ! Each point, and each link, with the part that it belongs to or that uses it.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
                                    m%requests%kind == request_point .or. m%requests%kind == request_curve), &
@@ -110,6 +113,7 @@ contains
             allocate (place(k)%of(0:n(k)), source=0)
          end do
       end associate
+
       do k = 1, set%count
          part(request_link)%of = once(members(links, k))
          part(request_point)%of = once(members(points, k))
@@ -129,14 +133,14 @@ contains
 
    contains
 
-      !> The part of what has these `links`.
+      !> Gives the part to which a pair, drive, row or measure with these links belongs.
       pure integer function part_of(links)
-         integer, intent(in) :: links(:)
+         integer, intent(in) :: links(:)     !< (any number) numbers of the links
 
          part_of = maxval([1, link_part(links)])
       end function part_of
 
-      !> Lets every part use the ground points of lengths, if a length has a tolerance: they move one another.
+      !> Lets every part use the ground points of lengths, if a length has a tolerance: these points move one another.
       subroutine add_lengths()
          integer :: i, k
 
@@ -149,8 +153,8 @@ contains
          end do
       end subroutine add_lengths
 
-      !> Finds each measure, with those of which it is made, and all their subjects. They belong to the part of its
-      !> links, those of the ground to several parts.
+      !> Finds each measure, with the measures of which it is made, and all their subjects: `measured` and `measuring`.
+      !> They belong to the part of the links of the measure; subjects of the ground belong to several parts.
       subroutine find_measured()
          integer, allocatable :: list(:)
          integer :: last, n, j, pass
@@ -173,7 +177,7 @@ contains
       end subroutine find_measured
    end subroutine divide
 
-   !> (links) The number of the part of each link, in the order of the deck; 0 of a ground link.
+   !> Finds the number of the part of each link (links), in the order of the deck; 0 for a ground link.
    pure function part_of_links(m) result(part)
       type(mechanism_t), intent(in) :: m
       integer :: part(size(m%links))
@@ -185,15 +189,16 @@ contains
       end associate
    end function part_of_links
 
-   !> Takes the `part` of `m`, with its requests `rows` and its BRANCH cards `branches`, as a mechanism of its own:
-   !> `own`. `place`: zeros, one for each link, point, pair and drive of `m` and for number 0, before and after. Reason:
-   !> of many parts each takes the time of its own size alone.
+   !> Makes a part of a set a mechanism of its own.
    subroutine take_mechanism(m, part, rows, branches, place, own)
-      type(mechanism_t), intent(in) :: m
-      type(numbering_t), intent(in) :: part(:)
-      integer, intent(in) :: rows(:), branches(:)
+      type(mechanism_t), intent(in) :: m     !< the set
+      type(numbering_t), intent(in) :: part(:)   !< (kinds) numbers in the set of the members of the part
+      integer, intent(in) :: rows(:)         !< (rows of the part) numbers of its requests in the set
+      integer, intent(in) :: branches(:)     !< (BRANCH cards of the part) their numbers in the set
+      !> (kinds) For each member of the set, and number 0, zeros before and after. Reason: of many parts each takes only
+      !> the time of its own size.
       type(numbering_t), intent(inout) :: place(:)
-      type(mechanism_t), intent(out) :: own
+      type(mechanism_t), intent(out) :: own  !< the part
       logical, allocatable :: kept(:)        ! (lengths) it belongs to the part
       integer :: i, k, kind
 
@@ -231,6 +236,7 @@ contains
       do i = 1, size(own%requests)
          own%requests(i)%subject = place(of_requests(own%requests(i)%kind))%of(own%requests(i)%subject)
       end do
+
       if (allocated(m%branch_requests)) then
          own%branch_requests = m%branch_requests(branches)
          own%branch_requests%card = branches
@@ -247,6 +253,7 @@ contains
       end if
       own%links%from = place(request_point)%of(own%links%from)
       own%links%to = place(request_point)%of(own%links%to)
+
       if (allocated(m%tolerances)) then
          own%tolerances = m%tolerances
          do i = 1, size(own%tolerances)
@@ -262,6 +269,7 @@ contains
          end do
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end if
+
       if (allocated(own%measures)) own%measures%length = characteristic_length(own)
       if (any(is_centre(own%requests%kind))) then
          own%requests%length = characteristic_length(own)
@@ -272,19 +280,19 @@ contains
       end do
    end subroutine take_mechanism
 
-   !> Tells what row number `i` of `set` is asked for.
+   !> Gives the request of a row of a set, in the numbers of its part.
    pure type(request_t) function request_of(set, i)
       class(set_t), intent(in) :: set
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the row among the rows of the set
 
       request_of = set%parts(set%rows(i)%part)%requests(set%rows(i)%number)
    end function request_of
 
-   !> The number among all drives of `set` of the first one of the mechanism that row number `i` is about; 0: it has
-   !> none.
+   !> Finds the first drive of the independent mechanism of a row: its number among all drives of the set; 0 if the
+   !> mechanism has no drive.
    pure integer function first_drive(set, i)
       class(set_t), intent(in) :: set
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the row among the rows of the set
 
       first_drive = findloc(set%drives%part, set%rows(i)%part, dim=1)
    end function first_drive

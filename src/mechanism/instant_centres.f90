@@ -1,6 +1,5 @@
 !> The instant centre of the motion of two links, and the centre of curvature of a point's path, from positions,
-!> velocities and accelerations. Either may be at infinity, or nothing may move: which of these it is depends on no
-!> unit.
+!> velocities and accelerations. Either may be at infinity, or nothing may move. This distinction depends on no unit.
 module instant_centres
    use kinds, only: wp
    use plane_vectors, only: pi, rotated, quarter_turn, cross
@@ -9,7 +8,7 @@ module instant_centres
    public :: centre_t, pole_of, curve_of, seen_from
    public :: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
 
-   !> What a centre is.
+   !> The states of a centre.
    enum, bind(c)
       enumerator :: centre_finite = 0
       enumerator :: centre_infinite   !< farther than any length of the mechanism: only its direction exists
@@ -18,15 +17,16 @@ module instant_centres
       enumerator :: points_coincide   !< of a measure: two points are at one place
    end enum
 
-   !> Half of the digits. A motion that is smaller by this part than the characteristic one is rest; a centre that is
-   !> farther than 1/negligible (6.7E7 in real64) characteristic lengths is at infinity. Reason: angular velocities are
-   !> known to a rounding or, where the mechanism is ill-conditioned, to many; so parallel cranks are told from nearly
-   !> parallel ones as long as half of the digits are left. A finite centre then has the other half.
-   real(wp), parameter :: negligible = sqrt(epsilon(1.0_wp))
-   !> A weight is at least this part of what it is compared with, so that places exist in any case.
-   real(wp), parameter :: least = epsilon(1.0_wp)**2
-   !> The larger one of two angles that are the same direction is printed: rounding must not choose.
-   real(wp), parameter :: margin = sqrt(epsilon(1.0_wp))
+   !> Half of the digits. A motion that is smaller by this part than the characteristic one is rest. A centre that is
+   !> farther than 1/negligible_motion (6.7E7 in real64) characteristic lengths is at infinity. Reason: angular
+   !> velocities are known to a rounding or, if the mechanism is ill-conditioned, to many. Parallel cranks then differ
+   !> from nearly parallel ones as long as half of the digits are left. A finite centre has the other half.
+   real(wp), parameter :: negligible_motion = sqrt(epsilon(1.0_wp))
+   !> A weight is at least this part of the velocity with which it is compared, so that places exist in any case.
+   real(wp), parameter :: least_weight = epsilon(1.0_wp)**2
+   !> Two angles of one direction that differ by rounding only are within this distance (rad) of the ends of the range.
+   !> The larger one of the two is printed: rounding must not choose.
+   real(wp), parameter :: end_of_range = sqrt(epsilon(1.0_wp))
 
    !> A centre. Its place times its `weight` is finite even at infinity. Of a pole, `value` has x, y and direction in
    !> the fixed plane (:, 0), in the axes of link I (:, 1) and of link J (:, 2). Of a curve: the point and the tangent
@@ -41,12 +41,13 @@ module instant_centres
 
 contains
 
-   !> The instant centre of the motion of link J relative to link I, which move as `link_j` and `link_i` (3, 0:2) say:
-   !> x, y, phi and their derivatives. `length`, `rate`: characteristic ones, > 0. With o the origin of link J, u its
-   !> velocity relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and
-   !> Roth, Theoretical Kinematics, 1979, ch. VIII). At infinity it is in the direction of R u.
+   !> Finds the instant centre of the motion of link J relative to link I. With o the origin of link J, u its velocity
+   !> relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and Roth,
+   !> Theoretical Kinematics, 1979, ch. VIII). At infinity the centre is in the direction of R u.
    pure function pole_of(link_i, link_j, length, rate) result(c)
-      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2), length, rate
+      real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2)   !< x, y (length), phi (rad); derivatives
+      real(wp), intent(in) :: length         !< characteristic length, above 0
+      real(wp), intent(in) :: rate           !< characteristic rate, above 0, 1 over the unit of time
       type(centre_t) :: c
       real(wp) :: d(2), u(2), w, arm(2), to_i(2), to_j(2)
 
@@ -55,12 +56,12 @@ contains
       d = link_j(:2, 0) - link_i(:2, 0)
       u = link_j(:2, 1) - link_i(:2, 1) - link_i(3, 1)*quarter_turn(d)
       w = link_j(3, 1) - link_i(3, 1)
-      if (max(norm2(u), abs(w)*length) <= negligible*length*rate) then
+      if (max(norm2(u), abs(w)*length) <= negligible_motion*length*rate) then
          c%state = centre_resting
          return
       end if
-      if (abs(w)*length <= negligible*norm2(u)) c%state = centre_infinite
-      c%weight = sign(max(abs(w), least*norm2(u)/length), w)
+      if (abs(w)*length <= negligible_motion*norm2(u)) c%state = centre_infinite
+      c%weight = sign(max(abs(w), least_weight*norm2(u)/length), w)
       arm = quarter_turn(u)/c%weight
       c%value(:2, 0) = link_j(:2, 0) + arm
       c%value(:2, 1) = rotated(d + arm, to_i)
@@ -69,10 +70,10 @@ contains
          line_angle(rotated(quarter_turn(u), to_j))]
    end function pole_of
 
-   !> The place, velocity and acceleration (2, 0:2) of a point in the axes of a link that moves as `frame` (3, 0:2);
-   !> `motion` (2, 0:2): those in the fixed plane, counted as those of the link.
+   !> Finds the place, velocity and acceleration (2, 0:2) of a point in the axes of a moving link.
    pure function seen_from(frame, motion) result(r)
-      real(wp), intent(in) :: frame(3, 0:2), motion(2, 0:2)
+      real(wp), intent(in) :: frame(3, 0:2)  !< of the link: x, y (length), phi (rad); derivatives
+      real(wp), intent(in) :: motion(2, 0:2) !< of the point: x, y (length) from the origin of the frame; derivatives
       real(wp) :: r(2, 0:2), back(2)
 
       r = motion - frame(:2, :)
@@ -85,11 +86,13 @@ contains
       r(:, 2) = rotated(r(:, 2), back)
    end function seen_from
 
-   !> The tangent, radius and centre of curvature of the path of a point with the place, velocity v and acceleration a
-   !> `motion` (2, 0:2):  radius |v|**3/|v x a|,  centre P + R v |v|**2/(v x a).  Where the point stands still its path
-   !> has the direction of a, and no curvature that v and a could tell. `length`, `rate`: characteristic ones, > 0.
+   !> Finds the tangent, radius and centre of curvature of the path of a point P with the velocity v and the
+   !> acceleration a:  radius |v|**3/|v x a|,  centre P + R v |v|**2/(v x a),  R a quarter turn. If the point stands
+   !> still its path has the direction of a, and its curvature does not follow from v and a.
    pure function curve_of(motion, length, rate) result(c)
-      real(wp), intent(in) :: motion(2, 0:2), length, rate
+      real(wp), intent(in) :: motion(2, 0:2) !< of the point: x, y (length); derivatives
+      real(wp), intent(in) :: length         !< characteristic length, above 0
+      real(wp), intent(in) :: rate           !< characteristic rate, above 0, 1 over the unit of time
       type(centre_t) :: c
       real(wp) :: v(2), a(2), speed
 
@@ -100,35 +103,35 @@ contains
       c%value(3, 1:) = [speed, norm2(a)]
       c%value(:2, 0) = motion(:, 0)
       c%value(3, 0) = arrow_angle(v)
-      if (speed <= negligible) then
+      if (speed <= negligible_motion) then
          c%state = centre_resting
-         if (norm2(a) > negligible) c%state = centre_starting
+         if (norm2(a) > negligible_motion) c%state = centre_starting
          c%value(3, 0) = arrow_angle(a)
          return
       end if
       c%weight = cross(v, a)
       ! Not in parts of |v| |a|: near its end of a stroke a point is slow, and its acceleration nearly all tangential.
-      if (abs(c%weight) <= negligible*speed**3) c%state = centre_infinite
-      c%weight = sign(max(abs(c%weight), least*speed**3), c%weight)
+      if (abs(c%weight) <= negligible_motion*speed**3) c%state = centre_infinite
+      c%weight = sign(max(abs(c%weight), least_weight*speed**3), c%weight)
       c%value(:2, 1) = motion(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
       c%value(1, 2) = length*speed**3/abs(c%weight)
    end function curve_of
 
-   !> The direction of `vector` (2), from -pi (excluded) to pi (rad).
+   !> Gives the direction of a vector, from -pi (excluded) to pi (rad); 0 for a vector of length 0.
    pure real(wp) function arrow_angle(vector)
-      real(wp), intent(in) :: vector(2)
+      real(wp), intent(in) :: vector(2)      !< in any unit
 
       arrow_angle = 0.0_wp
       if (any(abs(vector) > 0.0_wp)) arrow_angle = atan2(vector(2), vector(1))
-      if (arrow_angle <= margin - pi) arrow_angle = arrow_angle + 2.0_wp*pi
+      if (arrow_angle <= end_of_range - pi) arrow_angle = arrow_angle + 2.0_wp*pi
    end function arrow_angle
 
-   !> The direction of the line along `vector` (2), from -pi/2 (excluded) to pi/2 (rad).
+   !> Gives the direction of the line along a vector, from -pi/2 (excluded) to pi/2 (rad).
    pure real(wp) function line_angle(vector)
-      real(wp), intent(in) :: vector(2)
+      real(wp), intent(in) :: vector(2)      !< in any unit
 
       line_angle = arrow_angle(vector)
-      if (line_angle > 0.5_wp*pi + margin) line_angle = line_angle - pi
-      if (line_angle <= margin - 0.5_wp*pi) line_angle = line_angle + pi
+      if (line_angle > 0.5_wp*pi + end_of_range) line_angle = line_angle - pi
+      if (line_angle <= end_of_range - 0.5_wp*pi) line_angle = line_angle + pi
    end function line_angle
 end module instant_centres

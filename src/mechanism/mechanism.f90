@@ -16,7 +16,7 @@ module mechanism
 
    type(pair_kind_t), parameter :: pair_kinds(pair_revolute:pair_prismatic) = [pair_kind_t(), pair_kind_t(.true.)]
 
-   !> The kinds of what has a name and a row in the tables.
+   !> The kinds of parts of a mechanism that have a name and a row in the tables.
    integer, parameter :: request_link = 1, request_point = 2, request_pair = 3, request_measure = 4
    !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
    integer, parameter :: request_pole = 5, request_curve = 6
@@ -89,7 +89,7 @@ module mechanism
 
    integer, parameter :: own_predictor = -1  !< the predictor of the method
 
-   !> The kinds of remarks: what a deck has that is harmless, or likely not what was meant.
+   !> The kinds of remarks: things in a deck that are harmless, or probably not meant.
    enum, bind(c)
       enumerator :: remark_title_long = 1       !< a title is cut
       enumerator :: remark_title_letters        !< a title has letters that are not ASCII
@@ -103,7 +103,7 @@ module mechanism
       enumerator :: remark_alpha                !< the axes of a guide's link are turned against those of the drawing
       enumerator :: remark_rest                 !< no drive moves; `text` names one of them, or several
       enumerator :: remark_turns                !< a drive turns once or more between two instants
-      enumerator :: remark_more                 !< there are more remarks, `text` says how many
+      enumerator :: remark_more                 !< there are more remarks; `text` has their number
    end enum
 
    !> A remark about `text`, which begins at `column` of a card; its sentence ends with `value`.
@@ -156,7 +156,7 @@ module mechanism
       real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< of a cylinder: its least and greatest length
    end type pair_t
 
-   !> What a measure is made of.
+   !> A link, point, pair or measure of which a measure is made.
    type :: subject_t
       integer :: kind = 0                    !< request_link, request_point, request_pair or request_measure
       integer :: number = 0                  !< of the link, point, pair or measure
@@ -191,8 +191,8 @@ module mechanism
       logical :: turns = .false.             !< its card gives the rate in turns a minute
    end type drive_t
 
-   !> What is asked about a link, point, pair or measure: a row of the tables, its extremes, or both; or about the
-   !> motion of a link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
+   !> A request about a link, point, pair or measure: a row of the tables, its extremes, or both. The motion of a link
+   !> (request_pole) or the path of a point (request_curve) is seen from the link `second`.
    type :: request_t
       integer :: kind = request_link         !< request_link, ..., request_curve
       integer :: subject = 0                 !< the number of the link, point, pair or measure
@@ -208,7 +208,7 @@ module mechanism
       logical :: sought(3, 0:2) = .true.     !< the numbers of its row whose extremes are asked for
    end type request_t
 
-   !> What a COLUMN card asks for: one number of a row at every instant.
+   !> The request of a COLUMN card: one number of a row at every instant.
    type :: column_request_t
       integer :: request = 0                 !< the number of the row among the requests of the set
       integer :: at(2) = 0                   !< the place of the number in the row: coordinate, derivative
@@ -221,7 +221,7 @@ module mechanism
       integer :: card = 0                    !< of a part: its number among the BRANCH cards of the set
    end type branch_request_t
 
-   !> A number on a card: its address, see `card_numbers`.
+   !> A number on a card: its address, which `card_numbers` explains.
    type :: card_number_t
       integer :: kind = number_point         !< number_link, ..., number_time; 0: no number that is known
       integer :: subject = 0                 !< the number of its link, point, pair or drive
@@ -239,7 +239,7 @@ module mechanism
       character(2*label_length + 5) :: unit_name = ''
    end type tolerance_t
 
-   !> Options and instants: what each part of a set has in common with the whole.
+   !> Options and instants, which each part of a set has in common with the whole.
    type :: settings_t
       integer :: set_number = 1              !< of the set in its deck
       character(label_length) :: length_unit = 'M', time_unit = 'S'   !< printed, never converted
@@ -262,7 +262,7 @@ module mechanism
       type(column_request_t), allocatable :: columns(:)   !< of the COLUMN cards; none: not allocated
    end type settings_t
 
-   !> A set of computations, or one of its independent mechanisms: that has the settings of its set, and no title.
+   !> A set of computations, or one of its independent mechanisms, which has the settings of its set and no title.
    type, extends(settings_t) :: mechanism_t
       character(title_length) :: title = ''  !< of the card TITLE
       type(link_t), allocatable :: links(:)
@@ -280,17 +280,17 @@ module mechanism
 
 contains
 
-   !> The number of instants of `settings`.
+   !> Counts the instants of a set.
    pure integer function instant_count(settings)
       class(settings_t), intent(in) :: settings
 
       instant_count = settings%steps + 1 + size(settings%at)
    end function instant_count
 
-   !> Instant number `k` = 0, 1, ..., instant_count - 1. The last one of TIME is exactly t1.
+   !> Gives the time of an instant, in the deck's unit. The last one of TIME is exactly t1.
    pure real(wp) function instant(settings, k) result(t)
       class(settings_t), intent(in) :: settings
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the instant, from 0 to instant_count - 1
 
       if (k > settings%steps) then
          t = settings%at(k - settings%steps)
@@ -301,10 +301,10 @@ contains
       end if
    end function instant
 
-   !> The `first` and the `last` of all instants of `settings` in time; the other way round where there are none.
+   !> Finds the earliest and the latest of all instants of a set. Without instants, `first` is above `last`.
    pure subroutine find_instants(settings, first, last)
       class(settings_t), intent(in) :: settings
-      real(wp), intent(out) :: first, last
+      real(wp), intent(out) :: first, last   !< earliest and latest time, in the deck's unit
 
       first = minval(settings%at)
       last = maxval(settings%at)
@@ -313,9 +313,9 @@ contains
       last = max(last, settings%t0, settings%t1)
    end subroutine find_instants
 
-   !> Finds the place (2) from which all computed places are counted: that of the first ground link that a pair uses, or
-   !> of the first one. It is added when a row is written. Reason: far from the origin of the deck, or from a ground
-   !> link that only a row uses, small lengths would be rounded with large places.
+   !> Finds the place (2) from which all computed places are counted: the place of the first ground link that a pair
+   !> uses, or else of the first ground link. The place is added when a row is written. Reason: far from the origin of
+   !> the deck, or from a ground link that only a row uses, small lengths would be rounded with large places.
    pure function plane_origin(m) result(origin)
       type(mechanism_t), intent(in) :: m
       real(wp) :: origin(2)
@@ -331,7 +331,7 @@ contains
       if (first > 0) origin = m%links(first)%position(:2)
    end function plane_origin
 
-   !> The links i and j of `pair`.
+   !> Finds the links i and j of a pair.
    pure function pair_links(m, pair) result(links)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -340,7 +340,7 @@ contains
       links = m%points([pair%point_i, pair%point_j])%link
    end function pair_links
 
-   !> The links of what `drive` drives; of fewer than three some are there again.
+   !> Finds the links of the coordinate of a drive; if they are fewer than three, some appear several times.
    pure function drive_links(m, drive) result(links)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: drive
@@ -362,7 +362,7 @@ contains
       end if
    end function request_links
 
-   !> Finds the links of what is no measure; of fewer than three some are there again.
+   !> Finds the links of a subject that is no measure; if they are fewer than three, some appear several times.
    pure function subject_links(m, kind, subject, second) result(links)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: kind            !< request_link, ...
@@ -410,7 +410,7 @@ contains
       if (allocated(m%measures)) measure_count = size(m%measures)
    end function measure_count
 
-   !> Finds a measure and those of which it is made.
+   !> Finds a measure and the measures of which it is made.
    pure recursive function measures_within(m, i) result(list)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i               !< its number
@@ -425,7 +425,7 @@ contains
       end do
    end function measures_within
 
-   !> Finds the links that the card of a pair joins: of a slot not its block.
+   !> Finds the links that the card of a pair joins. A slot joins the links of its guide and of its pin, not its block.
    pure function joined_by(m, pair) result(links)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
@@ -443,8 +443,8 @@ contains
       is_hidden = pair%pin == 0 .and. m%links(m%points(pair%point_i)%link)%hidden
    end function is_hidden
 
-   !> Leaves out the blocks of SLOT cards. If no other link remains, the moving links that these cards join stand for
-   !> them.
+   !> Removes the blocks of SLOT cards from a list of links. If no other link remains, the list has the moving links
+   !> that these cards join.
    pure function shown_links(m, links) result(shown)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: links(:)        !< their numbers
@@ -475,15 +475,15 @@ contains
       is_centre = kind == request_pole .or. kind == request_curve
    end function is_centre
 
-   !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.
+   !> Tells whether only the listing has the rows of a request, since no card asks for them: no picture, no path.
    elemental logical function is_listed_alone(request)
       type(request_t), intent(in) :: request
 
       is_listed_alone = request%listed .and. .not. request%extremes
    end function is_listed_alone
 
-   !> Whether each link (links) is needed by a request of `m`; ranges, circuits, proofs, assemblies and tolerances need
-   !> all of them.
+   !> Tells of each link (links) whether a request needs it. Ranges, circuits, proofs, assemblies and tolerances need
+   !> all links.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))
@@ -499,7 +499,7 @@ contains
       end do
    end function wanted_links
 
-   !> Whether a pair or a drive uses each point (points) of `m`.
+   !> Tells of each point (points) whether a pair or a drive uses it.
    pure function used_points(m) result(used)
       type(mechanism_t), intent(in) :: m
       logical :: used(size(m%points))
@@ -513,7 +513,7 @@ contains
       end do
    end function used_points
 
-   !> `m` with requests for all its moving links, after its own.
+   !> Copies a mechanism and adds requests for all its links, after its own requests.
    pure function with_all_links(m) result(all_links)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t) :: all_links

@@ -1,5 +1,5 @@
-!> The motion of every link at one instant: what the solvers fill and the writers print; and diagnostics, beside its
-!> numbers, as data: results/ has their words.
+!> The motion of every link at one instant: the solvers fill it and the writers print it. In addition to its numbers it
+!> has diagnostics as data: results/ has their words.
 module motion
    use kinds, only: wp
    implicit none
@@ -61,7 +61,7 @@ module motion
       enumerator :: mark_stroke         !< all is known, and a cylinder is out of its stroke
    end enum
 
-   !> What a position with a singular Jacobian is, the worst last.
+   !> The kinds of positions with a singular Jacobian, the worst last.
    enum, bind(c)
       enumerator :: singular_unclear = 0 !< neither of those below, or they cannot be told apart
       enumerator :: singular_change      !< a change point: velocities exist and are not unique
@@ -104,18 +104,18 @@ module motion
 
 contains
 
-   !> The motion of `n` links at rest at the origin.
+   !> Makes the motion of links at rest at the origin.
    pure function new_motion(n) result(m)
-      integer, intent(in) :: n
+      integer, intent(in) :: n               !< number of links
       type(motion_t) :: m
 
       allocate (m%position(3, n), m%velocity(3, n), m%acceleration(3, n), source=0.0_wp)
    end function new_motion
 
-   !> How much of the motion of `link` exists, in the values of `known`.
+   !> Gives how much of the motion of a link exists, in the values of `known`.
    pure integer function known_of(q, link)
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: link
+      integer, intent(in) :: link            !< number of the link
 
       known_of = q%known
       if (allocated(q%link_known)) known_of = q%link_known(link)
@@ -129,10 +129,10 @@ contains
       if (allocated(q%link_mark)) deallocate (q%link_mark)
    end subroutine forget_links
 
-   !> A diagnostic of `kind` about the links (links) that are true in `chosen`, as many as there is room for.
+   !> Makes a diagnostic about links. Links for which it has no room are only counted.
    pure function new_diagnostic(kind, chosen) result(r)
-      integer, intent(in) :: kind
-      logical, intent(in) :: chosen(:)
+      integer, intent(in) :: kind            !< diagnostic_inconsistent, ...
+      logical, intent(in) :: chosen(:)       !< (links) the diagnostic is about this link
       type(diagnostic_t) :: r
       integer :: i, n
 

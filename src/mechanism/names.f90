@@ -8,12 +8,14 @@ module names
    private
    public :: drive_name, subject_name, listed, more
 
-   !> The largest number of names in a list, and of its characters; the rest is only counted. Drives have long names.
-   integer, parameter :: max_names = 8, max_listed = 84
+   !> The largest number of names in a list; the rest is only counted.
+   integer, parameter :: max_listed_names = 8
+   !> The largest number of characters of these names: drives have long names.
+   integer, parameter :: max_list_length = 84
 
 contains
 
-   !> The kind of `drive` of the mechanism `m` and what it drives, as on its card.
+   !> Names a drive as on its card: its kind and the names of its links, point or pair.
    pure function drive_name(m, drive) result(name)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: drive
@@ -23,10 +25,11 @@ contains
       if (drive%kind == drive_relangle) name = trim(name)//' '//m%links(drive%second)%name
    end function drive_name
 
-   !> The name of the link, point, pair or measure (`kind`, as of a request) with the number `subject`.
+   !> Gives the name of a link, point, pair or measure.
    pure function subject_name(m, kind, subject) result(name)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: kind, subject
+      integer, intent(in) :: kind            !< request_link, ..., request_measure
+      integer, intent(in) :: subject         !< number of the link, point, pair or measure
       character(label_length) :: name
 
       select case (kind)
@@ -41,26 +44,25 @@ contains
       end select
    end function subject_name
 
-   !> The names `words` (at least one) with commas between them; of many, the first ones and the number of the rest, in
-   !> Polish or in English.
+   !> Lists names with commas between them; of many, the first ones and the number of the rest.
    pure function listed(words, polish) result(text)
-      character(*), intent(in) :: words(:)
-      logical, intent(in) :: polish
+      character(*), intent(in) :: words(:)   !< (1 or more) the names
+      logical, intent(in) :: polish          !< in Polish; otherwise in English
       character(:), allocatable :: text
       integer :: i
 
       text = trim(words(1))
-      do i = 2, min(size(words), max_names)
-         if (len(text) + 2 + len_trim(words(i)) > max_listed) exit
+      do i = 2, min(size(words), max_listed_names)
+         if (len(text) + 2 + len_trim(words(i)) > max_list_length) exit
          text = text//', '//trim(words(i))
       end do
       text = text//more(size(words) - i + 1, polish)
    end function listed
 
-   !> The end of a list of which `n` are left out: ' AND 3 MORE'; '' where none are.
+   !> Gives the end of a list that is not complete: ' AND 3 MORE'; '' for a complete list.
    pure function more(n, polish) result(text)
-      integer, intent(in) :: n
-      logical, intent(in) :: polish
+      integer, intent(in) :: n               !< number of names that are left out
+      logical, intent(in) :: polish          !< in Polish; otherwise in English
       character(:), allocatable :: text
 
       text = ''
@@ -68,5 +70,4 @@ contains
       text = ' AND '//whole(n)//' MORE'
       if (polish) text = ' I '//whole(n)//' INNE'
    end function more
-
 end module names

@@ -1,8 +1,8 @@
-!> The closure error and the coordinate of a pair, where its links are given.
+!> The closure error and the coordinate of a pair, from the positions of its links.
 !>
 !> Point P of link i and point Q of link j. The guide of a prismatic pair lies in link i: its direction is
 !> e = (cos theta, sin theta), theta = phi_i + alpha, and its normal n is e turned by a quarter turn. Its slide is
-!> (Q - P) . e, eq. (3) and (4), and it is closed where (P - Q) . n = h, eq. (9).
+!> (Q - P) . e, eq. (3) and (4), and it is closed if (P - Q) . n = h, eq. (9).
 module pair_geometry
    use kinds, only: wp
    use plane_vectors, only: direction, quarter_turn, point_of
@@ -24,7 +24,8 @@ contains
       way = point_of(link_j, m%points(pair%point_j)%offset) - point_of(link_i, m%points(pair%point_i)%offset)
    end function way_of
 
-   !> Finds by how much a pair is open, in the deck's unit: the distance from P to Q, or h + (Q - P) . n across a guide.
+   !> Finds the closure error of a pair, in the deck's unit of length: the distance from P to Q, or h + (Q - P) . n
+   !> across a guide.
    pure real(wp) function opening_of(m, pair, link_i, link_j) result(opening)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair

@@ -18,8 +18,8 @@ module points
    public :: row_t, column_of_ratio, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, &
       is_fixed
 
-   !> One row of a table, in the deck's units of length and time and in radians. Its `value`: x, y, phi (a pair: its
-   !> value first) and their derivatives; of a pole or curve as in `centre_t`.
+   !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
+   !> its value first) and their derivatives; of a pole or curve the numbers of `centre_t`.
    type, extends(centre_t) :: row_t
       integer :: kind = request_link        !< request_link, ..., request_curve
       !> Of the link, point, pair or measure; of both links, or point and link; of a ratio the quantity BY the drive.
@@ -31,7 +31,7 @@ module points
 
    !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
    !> between them.
-   real(wp), parameter :: same_place = 4.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: coincidence_limit = 4.0_wp*epsilon(1.0_wp)
    !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
    real(wp), parameter :: half_turn_margin = 1.0e-9_wp
    real(wp), parameter :: full_turn = 2.0_wp*pi
@@ -39,42 +39,42 @@ module points
    !> The coordinate of the row of a ratio that searches along the time take.
    integer, parameter :: column_of_ratio = 2
 
-   !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
+   !> A row without numbers. It is a variable: a constant, or intent(out), the compiler makes number by number, and
+   !> waits for each as it copies them.
    type(row_t), protected :: new_row = row_t()
 
 contains
 
-   !> Whether `request` has a row in the CSV at instant number `k` (0, 1, ...): where it is printed, and where a COLUMN
-   !> card names it.
+   !> Tells whether a request has a row in the CSV at an instant: it is printed, or a COLUMN card names it.
    pure logical function is_due(settings, request, k)
       class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the instant, from 0
 
       is_due = request%in_columns .or. is_printed(settings, request, k)
    end function is_due
 
-   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
+   !> Tells whether a request is printed at an instant: at every `every`-th, at the first and at the last, if any.
    pure logical function is_printed(settings, request, k)
       class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the instant, from 0
 
       is_printed = request%every > 0
       if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(settings) - 1
    end function is_printed
 
-   !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
+   !> Tells whether the listing has a row of a request at an instant: it is printed, or is listed without a card for it.
    pure logical function is_listed(settings, request, k)
       class(settings_t), intent(in) :: settings
       type(request_t), intent(in) :: request
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the instant, from 0
 
       is_listed = request%listed .or. is_printed(settings, request, k)
    end function is_listed
 
-   !> Finds the `row` of `request`, as far as the motion `q` is known. What belongs to the ground is known at every
-   !> instant. A subroutine: of the many rows of a table none is copied.
+   !> Finds the row of a request, as far as the motion is known. Links and points of the ground are known at every
+   !> instant. It is a subroutine: of the many rows of a table none is copied.
    pure subroutine find_row(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -113,12 +113,14 @@ contains
                return
             end if
             row%value(:2, :) = point_motion(m, q, i)
+
          case (request_pair)
             row%value(1, :) = motion_of_pair(m, q, i)
             return
          case (request_measure)
             if (row%known >= 0) call find_measure(m, q, i, row%value(1, :), row%state, row%weight)
             return
+
          case (request_pole)
             row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
             if (row%known < 1) return
@@ -138,9 +140,13 @@ contains
       end associate
    end subroutine find_row
 
-   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure in the motion in which the drive
-   !> alone moves, with the rate 1, in the deck's units. Its value (:, 0) and (:, 1) is the ratio and its derivative by
-   !> the drive. For searches along the time `column_of_ratio` has nothing, the ratio, the rate of the ratio.
+   !> Finds the row of a ratio: the velocity and the acceleration of a pair or measure in the motion in which only the
+   !> drive moves, with the rate 1, in the deck's units.
+   !>
+   !> - value(1, 0) is the ratio, value(1, 1) its derivative by the drive;
+   !> - value(column_of_ratio, 1:) is the ratio and its rate, for searches along the time.
+   !>
+   !> If the motion by the drive is not known, nothing of the row is.
    pure subroutine find_ratio(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -157,6 +163,7 @@ contains
       links = request_links(m, request)
       call find_known(m, q, links, row%known, row%mark)
       if (row%known < 0) return
+
       row%known = -1
       row%mark = mark_singular
       if (.not. allocated(q%by)) return
@@ -187,7 +194,7 @@ contains
       row%value(column_of_ratio, 1:) = [row%value(1, 0), row%value(1, 1)*(f(2)/in_drive)]
    end subroutine find_ratio
 
-   !> Finds how much is known of a row: that is what is known of its links.
+   !> Finds how much is known of a row: as much as of the link of which least is known.
    pure subroutine find_known(m, q, links, known, mark)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -205,7 +212,7 @@ contains
       end do
    end subroutine find_known
 
-   !> Finds how much of a row exists, as in `motion_t`: where points coincide, only the value of a length does.
+   !> Finds how much of a row exists, as in `motion_t`. If points coincide, only the value of a length exists.
    pure integer function known_at(row)
       type(row_t), intent(in) :: row
 
@@ -214,10 +221,11 @@ contains
       known_at = merge(0, -1, row%known >= 0 .and. columns_of_rows(forms(row%form)%first)%there(points_coincide))
    end function known_at
 
-   !> Position, velocity and acceleration (3, 0:2) of link number `i`.
+   !> Gives the position, velocity and acceleration (3, 0:2) of a link: x, y from the motion's origin (length), phi
+   !> (rad).
    pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the link
       real(wp) :: x(3, 0:2)
 
       x(:, 0) = q%position(:, i)
@@ -225,10 +233,12 @@ contains
       x(:, 2) = q%acceleration(:, i)
    end function link_motion
 
-   !> By how much the numbers of `one` differ from those of `row`, to first order (3, 0:2): a place at p = n/w, with the
-   !> weight w, changes by (n' - p w')/w where n and w become n' and w'. Directions of lines count without half turns.
+   !> Finds by how much the numbers of a changed row differ from the numbers of a row, to first order (3, 0:2). A place
+   !> p = n/w with the weight w changes by (n' - p w')/w when n and w become n' and w'. Directions of lines differ
+   !> without half turns.
    pure function difference(one, row) result(d)
-      type(row_t), intent(in) :: one, row
+      type(row_t), intent(in) :: one         !< the changed row
+      type(row_t), intent(in) :: row         !< the row itself
       real(wp) :: d(3, 0:2)
 
       d = abs(one%value - row%value)
@@ -241,7 +251,7 @@ contains
       end if
    end function difference
 
-   !> Whether the subject of `request` belongs to the ground.
+   !> Tells whether the subject of a request belongs to the ground.
    pure logical function is_fixed(m, request)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
@@ -249,12 +259,13 @@ contains
       is_fixed = all(m%links(request_links(m, request))%ground)
    end function is_fixed
 
-   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's
-   !> origin o:  p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
+   !> Gives the place from the motion's origin, the velocity and the acceleration (2, 0:2) of a point, in the deck's
+   !> units. With the vector u from its link's origin o to the point:
+   !>   p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
    pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the point
       real(wp) :: p(2, 0:2), x(3, 0:2), u(2)
 
       x = link_motion(q, m%points(i)%link)
@@ -266,7 +277,8 @@ contains
    !> Finds the value of a measure and its derivatives. With d from point P to point Q, and x x y = x1 y2 - x2 y1:
    !>   s = |d|,    s' = d.d'/s,       s'' = ((d x d')/s)**2/s + d.d''/s   (Rejected: d'.d' - s'**2, which cancels),
    !>   w = d x d'/s**2,               w' = d x d''/s**2 - 2 (d.d') w/s**2.
-   !> Between points of one link d is at rest in its axes, and what is constant has no rates, not even by rounding.
+   !> Between points of one link d is at rest in its axes, and a constant length has no rates, not even by rounding.
+   !> If two of its points coincide, values that do not exist are 0.
    pure recursive subroutine find_measure(m, q, i, values, state, closest)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -291,10 +303,11 @@ contains
             end if
             distance = norm2(d(:, 0))
             closest = min(closest, distance/measure%length)
-            if (distance <= same_place*measure%length) then
+            if (distance <= coincidence_limit*measure%length) then
                state = points_coincide
                return
             end if
+
             values(1) = cross(d(:, 0), d(:, 1))/distance
             if (measure%kind == measure_distance) then
                values = [distance, dot_product(d(:, 0), d(:, 1))/distance, &
@@ -309,6 +322,7 @@ contains
                   values = values + x(3, :)
                end if
             end if
+
          case (measure_xi, measure_eta)
             if (m%points(subjects(1)%number)%link == subjects(2)%number) then
                d(:, 0) = m%points(subjects(1)%number)%offset
@@ -317,6 +331,7 @@ contains
                d = seen_from(link_motion(q, subjects(2)%number), point_motion(m, q, subjects(1)%number))
             end if
             values = d(merge(1, 2, measure%kind == measure_xi), :)
+
          case default
             do k = 1, size(subjects)
                select case (subjects(k)%kind)
@@ -335,6 +350,7 @@ contains
          end select
          if (.not. measure%continues .or. state == points_coincide) return
       end associate
+
       values(0) = between_half_turns(values(0))
       if (.not. allocated(q%turned)) return
       if (.not. q%turned(i)%is_known) return
@@ -346,7 +362,7 @@ contains
 
    !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
    !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
-   !> times as much for the direction. Where points coincide there is nothing that could grow.
+   !> times as much for the direction. If points coincide, nothing can grow: 0.
    pure recursive real(wp) function growth_in_measure(m, q, i, rate) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
@@ -360,7 +376,7 @@ contains
          if (any(measure%kind == [measure_distance, measure_line])) then
             d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
             distance = norm2(d(:, 0))
-            if (distance <= same_place*measure%length) return
+            if (distance <= coincidence_limit*measure%length) return
             v = norm2(d(:, 1))/(distance*rate)
             growth = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
             if (measure%kind == measure_line) growth = growth*measure%length/distance
@@ -373,7 +389,7 @@ contains
       end associate
    end function growth_in_measure
 
-   !> Gives a direction above -pi and up to pi. One that is -pi but for rounding is pi.
+   !> Gives a direction above -pi and up to pi. A direction that is -pi but for rounding becomes pi.
    pure real(wp) function between_half_turns(angle) result(x)
       real(wp), intent(in) :: angle          !< rad
 
@@ -381,7 +397,7 @@ contains
       if (x <= half_turn_margin - pi) x = x + full_turn
    end function between_half_turns
 
-   !> Takes the values of the measures that continue as those from which the next instant goes on.
+   !> Keeps the values of the measures that continue, from which the next instant goes on.
    pure subroutine keep_turns(m, q)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
@@ -401,11 +417,11 @@ contains
       end do
    end subroutine keep_turns
 
-   !> Value and derivatives (0:2) of pair number `i`.
+   !> Gives the coordinate of a pair with its derivatives (0:2): its slide (length) or its angle (rad).
    pure function motion_of_pair(m, q, i) result(s)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the pair
       real(wp) :: s(0:2), point(2, 0:2)
 
       associate (pair => m%pairs(i))

@@ -13,9 +13,12 @@ module scales
 
 contains
 
-   !> The largest of: the extent of a link between its points (all ground links are one), the offset of a prismatic
-   !> pair, the value at t = 0 of a drive of length. In the deck's unit of length; 1 where the deck has no length at
-   !> all. It does not depend on where the origin is.
+   !> Finds the characteristic length of a mechanism, in the deck's unit; 1 if the deck has no length. It is the largest
+   !> of these lengths, and does not depend on where the origin is:
+   !>
+   !> - the extent of a link between its points (all ground links are one);
+   !> - the offset of a prismatic pair;
+   !> - the value at t = 0 of a drive of a length.
    pure real(wp) function characteristic_length(m) result(length)
       type(mechanism_t), intent(in) :: m
 
@@ -32,17 +35,17 @@ contains
       if (.not. is_usable(length)) length = characteristic_length(m)
    end function solver_length
 
-   !> Whether a length or rate is positive and finite.
+   !> Tells whether a length or rate is positive and finite.
    pure logical function is_usable(value)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< length or rate, in any unit
 
       is_usable = value > 0.0_wp .and. value <= huge(value)
    end function is_usable
 
-   !> The largest length of `m` with those of its points that `counts` (points) marks; 0 if there is none.
+   !> Finds the largest length of a mechanism, in the deck's unit; 0 if there is none.
    pure real(wp) function largest_length(m, counts) result(length)
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: counts(:)
+      logical, intent(in) :: counts(:)       !< (points) the extents of links include the point
       real(wp), allocatable :: low(:, :), high(:, :)
       real(wp) :: place(2), origin(2), start
       integer :: i, k
@@ -65,6 +68,7 @@ contains
          low(:, k) = min(low(:, k), place)
          high(:, k) = max(high(:, k), place)
       end do
+
       length = max(0.0_wp, maxval(high - low, mask=high >= low))
       do i = 1, size(m%pairs)
          if (has_guide(m%pairs(i)%kind)) length = max(length, abs(m%pairs(i)%offset))
@@ -78,12 +82,12 @@ contains
       end do
    end function largest_length
 
-   !> The largest rate of the drives at the instants, in rad per unit of time; rates of length are divided by the
-   !> characteristic `length`. 1 where nothing moves or the rate has no bound. An estimate: it selects printed digits,
-   !> nothing else.
+   !> Estimates the largest rate of the drives at the instants, in rad per unit of time; rates of length are divided by
+   !> the characteristic length. It is 1 if nothing moves or the rate has no bound. An estimate is enough: it only
+   !> selects printed digits.
    pure real(wp) function characteristic_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length         !< characteristic length, in the deck's unit
       integer :: i
 
       rate = 0.0_wp
@@ -93,15 +97,15 @@ contains
       if (.not. is_usable(rate)) rate = 1.0_wp
    end function characteristic_rate
 
-   !> The largest |t| of an instant.
+   !> Finds the largest |t| of an instant, in the deck's unit of time.
    pure real(wp) function latest_time(settings) result(t)
       class(settings_t), intent(in) :: settings
 
       t = max(abs(settings%t0), abs(settings%t1), maxval([0.0_wp, abs(settings%at)]))
    end function latest_time
 
-   !> The shortest step from an instant of `settings` to the next in the deck's order at another time; the largest
-   !> number where there is none.
+   !> Finds the shortest step from an instant to the next one in the deck's order, in the deck's unit of time. Steps of
+   !> length 0 do not count. Without a step it is the largest number.
    pure real(wp) function shortest_step(settings) result(step)
       class(settings_t), intent(in) :: settings
       real(wp), allocatable :: times(:), steps(:)
@@ -113,14 +117,14 @@ contains
       step = minval(steps, mask=steps > 0.0_wp)
    end function shortest_step
 
-   !> The largest power of two that is not above `value` > 0: division by it is exact.
+   !> Finds the largest power of two that is not above a value: division by it is exact.
    pure real(wp) function power_of_two(value) result(p)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< above 0, in any unit
 
       p = scale(1.0_wp, exponent(value) - 1)
    end function power_of_two
 
-   !> Whether the coordinate of `drive` is a length, not an angle.
+   !> Tells whether the coordinate of a drive is a length, not an angle.
    elemental logical function is_length(drive)
       type(drive_t), intent(in) :: drive
 

@@ -25,7 +25,7 @@ contains
    end function separation
 
    !> Finds how far two motions are apart at most: places, angles but for whole turns, and velocities, in characteristic
-   !> lengths, rad and rates. Huge where a position is not known. Velocities that are not unique count as alike.
+   !> lengths, rad and rates. Huge if a position is not known. Velocities that are not unique count as alike.
    pure function motions_apart(m, first, last) result(apart)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: first, last
@@ -44,7 +44,7 @@ contains
 
    !> Tells whether a motion closes, by how far its end is from its beginning.
    pure logical function closes(apart)
-      real(wp), intent(in) :: apart(:)       !< some of what `motions_apart` finds
+      real(wp), intent(in) :: apart(:)       !< (1 to 3) places, angles, velocities, in the units of `motions_apart`
 
       closes = all(apart <= closes_to)
    end function closes

@@ -16,9 +16,10 @@ module splines
 
 contains
 
-   !> The spline through the knots `times` (strictly increasing, at least two) and the `values`.
+   !> Makes the natural cubic spline through points.
    function new_spline(times, values) result(s)
-      real(wp), intent(in) :: times(:), values(:)
+      real(wp), intent(in) :: times(:)       !< (knots, 2 or more) strictly increasing
+      real(wp), intent(in) :: values(:)      !< (knots) length or rad
       type(spline_t) :: s
       real(wp) :: h(size(times) - 1), slope(size(times) - 1), diagonal(size(times) - 2), off(size(times) - 2)
       integer :: n, info
@@ -36,12 +37,12 @@ contains
       call ptsv(n - 2, 1, diagonal, off, s%m(2:n - 1), n - 2, info)
    end function new_spline
 
-   !> Value, first and second derivative (3) at the time `t` of the cubic between the knots `i` and `i` + 1 of `spline`.
-   !> It may be continued beyond them.
+   !> Gives the value and the first and second derivative (3) of a piece of a spline at a time, in the unit of its
+   !> values and the deck's unit of time. The cubic of the piece continues beyond its knots.
    pure function piece_value(spline, i, t) result(f)
       type(spline_t), intent(in) :: spline
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
+      integer, intent(in) :: i               !< number of the piece: between the knots i and i + 1
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
       real(wp) :: h, u, w, slope, bend
 
@@ -50,8 +51,8 @@ contains
       w = spline%x(i + 1) - t
       slope = (spline%y(i + 1) - spline%y(i))/h
       bend = (spline%m(i + 1) - spline%m(i))/h
-      ! From the nearer knot: at that the value is that of the table, and beside it, in a piece that is much longer than
-      ! its neighbour, no cubes of the long way cancel.
+      ! From the nearer knot: there the value is exactly the value of the table. Near the knot, in a piece that is much
+      ! longer than its neighbour, no cubes of the long way cancel.
       if (u < w) then
          slope = slope - h*(2.0_wp*spline%m(i) + spline%m(i + 1))/6.0_wp
          f = [spline%y(i) + u*(slope + u*(spline%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(spline%m(i) + &
@@ -65,10 +66,10 @@ contains
       end if
    end function piece_value
 
-   !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
+   !> Finds the piece i with x(i) <= t <= x(i + 1), by bisection; the first or the last if the time is beyond the table.
    pure integer function piece_at(spline, t) result(low)
       type(spline_t), intent(in) :: spline
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       integer :: high, middle
 
       low = 1

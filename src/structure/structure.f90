@@ -5,7 +5,7 @@
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
    use kinds, only: label_length
-   use cards, only: forms, form_ground
+   use cards, only: card_forms, form_ground
    use failures, only: failure_t, fail, status_rejected
    use number_format, only: whole
    use names, only: drive_name, listed, more
@@ -155,7 +155,7 @@ contains
       end if
       if (report%ground == 0) then
          call add_line('E105  SET '//whole(set)//': NO LINK IS GROUND: GIVE IT A GROUND CARD')
-         text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
+         text = text//new_line('a')//' LAYOUT    |'//trim(card_forms(form_ground)%layout)
       end if
       call add_line('E101  SET '//whole(set)//': '//counted('LINK', m%links(report%loose)%name)//': ' &
          //whole(report%free)//' ' &
