@@ -1,10 +1,11 @@
 !> What a procedure writes to an output, as text.
 module written
+   use kinds, only: wp
    use failures, only: failure_t
    use text_output, only: output_t, open_output, close_output
    implicit none
    private
-   public :: open_text, text_of, taken, count_of
+   public :: open_text, text_of, taken, count_of, numbers_after
 
    character(*), parameter :: file = 'unit_test_output.tmp'
 
@@ -53,4 +54,20 @@ contains
 
       count_of = count([(text(i:i + len(part) - 1) == part, i=1, len(text) - len(part) + 1)])
    end function count_of
+
+   !> The first `n` numbers behind the first `part` of `text`, up to the end of its attribute: a comma, semicolon or blank between two.
+   function numbers_after(text, part, n) result(numbers)
+      character(*), intent(in) :: text, part
+      integer, intent(in) :: n
+      real(wp) :: numbers(n)
+      character(:), allocatable :: list
+      integer :: first, i
+
+      first = index(text, part) + len(part)
+      list = text(first:first + index(text(first:), '"') - 2)
+      do i = 1, len(list)
+         if (index(',;', list(i:i)) > 0) list(i:i) = ' '
+      end do
+      read (list, *) numbers
+   end function numbers_after
 end module written
