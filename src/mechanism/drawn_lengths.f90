@@ -111,12 +111,13 @@ contains
 
    !> Puts the lengths of `m` into the drawing, in their order: moves the hole of point Q of each, along the line from P
    !> or, if the next length has the same hole, to the intersection of two circles on the side on which it is drawn.
-   !> Axes and points follow. Numbers that are as drawn do not.
+   !> Axes and points follow. Numbers that are as drawn do not. An intersection that was found before and has other
+   !> lengths now goes on by one step of Newton's method: differences of such places have no error of the root.
    pure subroutine put_lengths(m, reached)
       type(mechanism_t), intent(inout) :: m
       type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
       type(reach_t) :: reach
-      real(wp) :: place(2, size(m%points)), q(2), way(2)
+      real(wp) :: place(2, size(m%points)), q(2), way(2), arm(2, 2), open(2)
       integer :: i, k
       logical :: is_one
 
@@ -134,7 +135,17 @@ contains
                reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(place(:, one%point(1))))
                if (.not. reach%has_no_side) q = place(:, one%point(1)) + one%length*(way/norm2(way))
             else
-               call find_intersection(place(:, [one%point(1), next%point(1)]), [one%length, next%length], q, reach)
+               associate (centre => place(:, [one%point(1), next%point(1)]), radius => [one%length, next%length], &
+                     point => m%points(one%point(2)))
+                  arm = spread(point_of(m%links(point%link)%position, point%offset), 2, 2) - centre
+                  if (point%moves .and. abs(cross(arm(:, 1), arm(:, 2))) > same_place_tolerance*product(radius)) then
+                     open = 0.5_wp*(radius**2 - sum(arm**2, dim=1))/cross(arm(:, 1), arm(:, 2))
+                     q = centre(:, 1) + arm(:, 1) + [open(1)*arm(2, 2) - open(2)*arm(2, 1), &
+                        open(2)*arm(1, 1) - open(1)*arm(1, 2)]
+                  else
+                     call find_intersection(centre, radius, q, reach)
+                  end if
+               end associate
             end if
             do i = 1, size(m%points)
                if (m%points(i)%hole /= one%hole(2)) cycle

@@ -36,7 +36,7 @@ module closed_forms
 
    type(count_t), parameter :: counts(*) = [ &
       count_t('book_four_bar', 4, 4, 0, 1), count_t('geneva_slot', 3, 2, 1, 1, blocks=1), &
-      count_t('crank_shaper', 5, 4, 2, 1, blocks=1), &
+      count_t('crank_shaper', 5, 4, 2, 1, blocks=1), count_t('landing_gear', 6, 6, 1, 1), &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
       count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), &
       count_t('crank_rockers', 4, 4, 0, 1), &
@@ -95,6 +95,8 @@ contains
          links = tolerant_links(1, t)
       case ('guide_tolerances')
          links = tolerant_links(2, t)
+      case ('landing_gear')
+         links = tolerant_links(3, t)
       case ('poles')
          links = four_bar(1, t)
          if (set == 2) links = parallelogram(t)

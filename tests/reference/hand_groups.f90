@@ -69,6 +69,7 @@ module hand_groups
       statement_t('book_four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('points_meet', 0, '*BLOCK; *CROSS'), &
       statement_t('boom', 0, '*BOOM BARREL ROD'), &
+      statement_t('landing_gear', 0, '*LEG BARREL ROD; UPPER LOWER'), &
       statement_t('leverage', 0, '*ARM'), &
       statement_t('jacobian', 0, '*UPPER; *FORE'), &
       statement_t('drawn_slider', 1, '*CRANK; ROD SLIDER'), &

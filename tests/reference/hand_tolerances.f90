@@ -1,10 +1,11 @@
-!> Tests. What tolerances do to the rows of the decks tolerances (1) and guide_tolerances (2), from their closed forms in real128 as functions of the
-!> numbers that have tolerances: sensitivities are central differences of these. Numbers, tolerances and units are those
-!> of the deck, written out again by hand.
+!> Tests. What tolerances do to the rows of the decks tolerances (1), guide_tolerances (2) and landing_gear (3), from their
+!> closed forms in real128 as functions of the numbers that have tolerances: sensitivities are central differences of
+!> these. Numbers, tolerances and units are those of the deck, written out again by hand.
 module hand_tolerances
-   use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic
-   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
+   use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic, drive_slide
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos, atan2
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, corner
+   use closed_forms_linkages, only: drawn_link
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: pair_slots
@@ -34,9 +35,14 @@ module hand_tolerances
       number_t('PRISM GUIDE H', '0.005', 'MM', 6.0_qp, 0.005_qp), &
       number_t('PRISM GUIDE BETA', '0.0001', 'RAD', 0.0_qp, 0.0001_qp), &
       number_t('ANGLE CRANK RATE', '0.001', 'RAD/S', 6.0_qp, 0.001_qp)]
+   !> The holes are those of one link of the pin, in the order of their cards.
+   type(number_t), parameter :: numbers_3(6) = [ &
+      number_t('C IN BASE X', '0.5', 'MM', 0.0_qp, 0.5_qp), number_t('C IN BASE Y', '0.5', 'MM', 0.0_qp, 0.5_qp), &
+      number_t('E IN LEG X', '0.5', 'MM', 0.0_qp, 0.5_qp), number_t('E IN LEG Y', '0.5', 'MM', 0.0_qp, 0.5_qp), &
+      number_t('LENGTH A K', '0.2', 'MM', 740.0_qp, 0.2_qp), number_t('LENGTH D K', '0.2', 'MM', 700.0_qp, 0.2_qp)]
    !> The largest tolerance of deck 1 is about 1/200 of the whole, that of deck 2 1/5000: for four digits of what it does,
-   !> one more decimal.
-   integer, parameter :: more_decimals(2) = [0, 1]
+   !> one more decimal; that of deck 3 1/3000.
+   integer, parameter :: more_decimals(3) = [0, 1, 1]
    !> The error of the differences is the square of this.
    real(qp), parameter :: h = 1.0e-12_qp
    !> Numbers that differ by less are alike: symmetric positions, equal shares.
@@ -49,17 +55,18 @@ module hand_tolerances
       'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
    character(8), parameter :: column_words(3, 0:2, 2) = reshape([character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', &
       'AX', 'AY', 'APHI', 'X', 'Y', 'FI', 'VX', 'VY', 'VFI', 'AX', 'AY', 'AFI'], [3, 3, 2])
-   !> Of deck 1 pairs have angles, of deck 2 a slide.
-   character(14), parameter :: pair_words(0:2, 2) = reshape([character(14) :: 'ANGLE', 'VELOCITY', 'ACCELERATION', &
-      'PRZESUW', 'PREDKOSC', 'PRZYSPIESZENIE'], [3, 2])
+   !> Of decks 1 and 3 pairs have angles, of deck 2 a slide.
+   character(14), parameter :: pair_words(0:2, 3) = reshape([character(14) :: 'ANGLE', 'VELOCITY', 'ACCELERATION', &
+      'PRZESUW', 'PREDKOSC', 'PRZYSPIESZENIE', 'ANGLE', 'VELOCITY', 'ACCELERATION'], [3, 3])
 
 contains
 
-   !> The deck of `m`: 2 if it has a guide.
+   !> The deck of `m`: 2 if it has a guide, 3 if the guide is driven.
    pure integer function case_of(m)
       type(mechanism_t), intent(in) :: m
 
       case_of = merge(2, 1, any(m%pairs%kind == pair_prismatic))
+      if (any(m%drives%kind == drive_slide)) case_of = 3
    end function case_of
 
    !> The numbers with tolerances of deck `set`.
@@ -69,13 +76,14 @@ contains
 
       list = numbers_1
       if (set == 2) list = numbers_2
+      if (set == 3) list = numbers_3
    end function numbers_of_set
 
    !> The links of deck `set` at the time `t`, its numbers being what the deck says.
    pure function tolerant_links(set, t) result(links)
       integer, intent(in) :: set
       real(qp), intent(in) :: t
-      type(body_t) :: links(4)
+      type(body_t), allocatable :: links(:)
       type(number_t), allocatable :: list(:)
 
       list = numbers_of_set(set)
@@ -86,7 +94,7 @@ contains
    pure function links_with(set, t, p) result(links)
       integer, intent(in) :: set
       real(qp), intent(in) :: t, p(:)
-      type(body_t) :: links(4)
+      type(body_t), allocatable :: links(:)
       type(place_t) :: a0, b0, a, b
       type(body_t) :: base
       type(jet_t) :: phi, s, along, across
@@ -99,6 +107,8 @@ contains
          a = polar(a0, p(5), phi)
          b = third_corner(a, b0, constant_jet(p(6)**2), constant_jet(p(9)**2), 1.0_qp)
          links = [base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+      else if (set == 3) then
+         links = landing_gear(t, p)
       else
          ! The pin B is on the guide, (0 - B) . n = h, at the distance of the rod from A.
          a0 = fixed_place(0.0_qp, 0.0_qp)
@@ -113,14 +123,40 @@ contains
       end if
    end function links_with
 
+   !> A leg about (0, 0), which a cylinder from (-450, -250) to the leg's eye (0, -400) lifts to the right, 50 in a unit of
+   !> time from the length drawn. A brace of two bars folds between (1000, 0) and the leg's pin (0, -995), its knee below.
+   !> `p`: how far the hole of the ground for the cylinder is off, the hole of the leg for it, the lengths of the bars. The
+   !> axes of all links are those of the drawing; LENGTH moves the knee (580, -560) of either bar along the drawn bar.
+   pure function landing_gear(t, p) result(links)
+      real(qp), intent(in) :: t, p(6)
+      type(body_t) :: links(6), leg
+      real(qp), parameter :: c0(2) = [-450.0_qp, -250.0_qp], e0(2) = [0.0_qp, -400.0_qp], a0(2) = [1000.0_qp, 0.0_qp], &
+         d0(2) = [0.0_qp, -995.0_qp], k0(2) = [580.0_qp, -560.0_qp], origin(2) = 0.0_qp
+      type(place_t) :: o, a, c, d, e, knee
+      type(jet_t) :: ram
+
+      o = fixed_place(0.0_qp, 0.0_qp)
+      a = fixed_place(a0(1), a0(2))
+      c = fixed_place(c0(1) + p(1), c0(2) + p(2))
+      ram = norm2(e0 - c0) + 50.0_qp*time_jet(t)
+      e = third_corner(o, c, constant_jet(sum((e0 + p(3:4))**2)), ram*ram, 1.0_qp)
+      leg = drawn_link('LEG', o, e, origin, e0 + p(3:4), origin)
+      d = place_on(leg, d0(1), d0(2))
+      knee = corner(d, p(6), a, p(5), -1.0_qp)
+      links = [body('BASE', o, constant_jet(0.0_qp)), leg, drawn_link('BARREL', c, e, c0, e0, origin), &
+         drawn_link('ROD', e, c, e0, c0, origin), drawn_link('UPPER', a, knee, a0, k0, origin), &
+         drawn_link('LOWER', d, knee, d0, k0, origin)]
+   end function landing_gear
+
    !> The numbers (3, 0:2) of the row of request number `i` of `m` at the time `t`, with the numbers `p`: of deck 1 the
-   !> rocker, the point C, the angle of pair B; of deck 2 the piston, and the slide along its guide.
+   !> rocker, the point C, the angle of pair B; of deck 2 the piston, and the slide along its guide; of deck 3 the wheel
+   !> and the angle of the knee.
    function row_with(m, i, t, p) result(value)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(qp), intent(in) :: t, p(:)
       real(qp) :: value(3, 0:2)
-      type(body_t) :: b(4)
+      type(body_t), allocatable :: b(:)
       type(place_t) :: c
       type(jet_t) :: x(3)
 
@@ -128,6 +164,10 @@ contains
       x = constant_jet(0.0_qp)
       if (m%requests(i)%kind == request_link) then
          x = [b(4)%x, b(4)%y, b(4)%phi]
+      else if (case_of(m) == 3) then
+         c = place_on(b(2), 0.0_qp, -1500.0_qp)
+         x(:2) = [c%x, c%y]
+         if (m%requests(i)%kind /= request_point) x = [b(6)%phi - b(5)%phi, x(2:)]
       else if (m%requests(i)%kind == request_point) then
          c = place_on(b(3), p(7), p(8))
          x(:2) = [c%x, c%y]
@@ -222,7 +262,7 @@ contains
       integer, intent(in) :: i, c
 
       column_of = c
-      if (columns_of(m, i) == 1 .and. case_of(m) == 1) column_of = 3
+      if (columns_of(m, i) == 1 .and. case_of(m) /= 2) column_of = 3
    end function column_of
 
    !> The unit of lengths (1) or angles (2) in those of the forms.

@@ -5,8 +5,8 @@ program print_expected
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, instant_count, instant, drive_angle
-   use motion, only: diagnostic_t
+   use mechanism, only: mechanism_t, request_t, instant_count, instant, drive_angle, request_pair
+   use motion, only: diagnostic_t, diagnostic_stroke
    use structure, only: structure_report_t
    use following, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
@@ -17,11 +17,12 @@ program print_expected
    use answers, only: answers_t
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
    use variant_tables, only: put_variant, put_variant_heads, put_variant_row, put_variants_end
-   use text_output, only: output_t, open_output, close_output
+   use text_output, only: output_t, open_output, close_output, put
    use listing, only: new_layout, listing_head, listing_end
    use listing, only: put_diagnostics
    use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
+   use hand_rows, only: hand_row_t, row_by_hand
    use hand_estimates, only: estimates_by_hand
    use hand_tables, only: above_t, put_tables
    use closed_forms_dyads, only: body_t
@@ -142,7 +143,12 @@ contains
          ! Next to dead points only are digits in doubt.
          error = reshape([real(qp) ::], [3, 3, 0])
          if (index(name, 'dead_point') == 1) error = estimates_by_hand(m, real(instant(m, k), qp))
+         diagnostics = [diagnostics, out_of_strokes(m, links)]
          call put_tables(o, name, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
+         if (any(diagnostics%kind == diagnostic_stroke)) then
+            was_flagged(k) = .true.
+            call put(o, ' *** OUT OF STROKE')
+         end if
          call put_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on.
@@ -156,6 +162,23 @@ contains
       call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
          merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0), 0.0_wp, [diagnostic_t ::])
    end subroutine print_motion
+
+   !> The cylinders of `m` whose length is out of their stroke, its links being at `links`.
+   function out_of_strokes(m, links) result(list)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      type(diagnostic_t), allocatable :: list(:)
+      type(hand_row_t) :: row
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%stroke(1) <= 0.0_wp) cycle
+         row = row_by_hand(m, links, request_t(kind=request_pair, subject=i))
+         if (row%value(1, 0) < m%pairs(i)%stroke(1) .or. row%value(1, 0) > m%pairs(i)%stroke(2)) list = [list, &
+            diagnostic_t(kind=diagnostic_stroke, pair=i, value=real(row%value(1, 0), wp))]
+      end do
+   end function out_of_strokes
 
    !> The numbers of the links of `r`.
    function links_of(r) result(list)
