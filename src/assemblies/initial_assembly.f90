@@ -86,7 +86,7 @@ contains
          [(all(e%blocks%needed /= i), i=1, size(found))]), .false., rest)
       places = places_of(e)
       is_complete = is_solved(convergence) .and. is_solved(rest)
-      if (is_complete) is_complete = has_lengths(e, [(i, i=1, size(e%cylinders))])
+      if (is_complete) is_complete = without_length(e, [(i, i=1, size(e%cylinders))]) == 0
 
       ! Places may imply other angles than those of the deck: the links of a class turn with its first one.
       turn = 0.0_wp
@@ -291,8 +291,10 @@ contains
       type(block_positions_t) :: every
       real(wp), dimension(e%blocks%list(i)%shape%n) :: start, least
       real(wp) :: angles
+      integer, allocatable :: cylinders_here(:)
       integer :: k
 
+      cylinders_here = pack([(k, k=1, size(e%cylinders))], last_places(e, places) == i)
       allocate (found%x(size(start), 0), found%distance(0))
       start = e%estimated(own_unknowns(e%blocks, i))
       call set_values(e%blocks, i, start, e%state)
@@ -319,7 +321,10 @@ contains
       call solve_block(e%blocks, e%geometry, i, .true., e%work, e%state, found%ending)
       if (is_solved(found%ending)) then
          call note_position(values_of(e%blocks, i, e%state), found%ending%singular)
-         if (size(found%distance) == 0) found%ending%ended = ended_elsewhere
+         if (size(found%distance) == 0) then
+            found%ending%ended = ended_elsewhere
+            found%ending%open%pair = without_length(e, cylinders_here)
+         end if
       else
          call set_values(e%blocks, i, least, e%state)
          call find_closure_error(e%blocks, e%geometry, i, e%state, found%ending)
@@ -347,7 +352,7 @@ contains
          end associate
          call set_values(e%blocks, i, y, e%state)
          call add_turns(e%blocks, e%geometry, i, e%state)
-         if (.not. has_lengths(e, pack([(k, k=1, size(e%cylinders))], last_places(e, places) == i))) return
+         if (without_length(e, cylinders_here) > 0) return
          y = values_of(e%blocks, i, e%state)
          square = squares_of(e, guess)
          angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
@@ -373,25 +378,28 @@ contains
       last = [(maxval(places(:, [e%cylinders(k)%i, e%cylinders(k)%j])), k=1, size(last))]
    end function last_places
 
-   !> Tells whether those of the cylinders of `e` that have the numbers `list` have lengths above 0 at its values.
-   function has_lengths(e, list) result(has)
+   !> Finds the pair of the first cylinder of `e` in a list of their numbers that has no length above 0 at the values of
+   !> `e`; 0: all have.
+   function without_length(e, list) result(pair)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
-      logical :: has
+      integer :: pair
       type(motion_t) :: q
       logical :: finite
       integer :: k
 
-      has = .true.
+      pair = 0
       if (size(list) == 0) return
       q = new_motion(size(e%estimate, 2))
       call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
       do k = 1, size(list)
          associate (one => e%cylinders(list(k)))
-            has = has .and. cylinder_length(one, q%position(:, one%i), q%position(:, one%j)) > 0.0_wp
+            if (cylinder_length(one, q%position(:, one%i), q%position(:, one%j)) > 0.0_wp) cycle
+            pair = one%pair
+            return
          end associate
       end do
-   end function has_lengths
+   end function without_length
 
    !> (2, links) The block that finds the angle of each link of `e`, and the block after which its place is known; 0:
    !> none.

@@ -33,7 +33,7 @@ module convergence
    integer, parameter :: ended_diverged = 5    !< the residual left all bounds
    integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
    integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
-   integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
+   integer, parameter :: ended_elsewhere = 8   !< at another assembly; open%pair: the cylinder below 0
 
    !> By how much an equation is not satisfied.
    type :: closure_error_t
@@ -85,7 +85,7 @@ contains
       c%residual = max(c%residual, one%residual)
       c%step = max(c%step, one%step)
       c%determinant = c%determinant*one%determinant
-      if (one%open%value > c%open%value) c%open = one%open
+      if (one%open%value > c%open%value .or. one%ended == ended_elsewhere) c%open = one%open
       c%singular = c%singular .or. one%singular
       c%rates_open = c%rates_open .or. one%rates_open
    end subroutine gather

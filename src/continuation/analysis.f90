@@ -414,6 +414,8 @@ contains
          if (step%ending == step_creeps) &
             ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
          list = limit_diagnostic(a%engine, ahead, step%ending == step_creeps)
+         if (.not. a%follows .and. a%convergence%ended == ended_elsewhere .and. a%convergence%open%pair > 0) &
+            list = [diagnostic_t(kind=diagnostic_stroke, pair=a%convergence%open%pair)]
          if (a%follows .and. size(a%engine%cylinders) > 0) call find_length_limit(a, t, list)
          if (size(list) == 0 .and. a%follows .and. step%ending == step_blocked) &
             list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
@@ -583,13 +585,12 @@ contains
    subroutine flag_strokes(a, found)
       type(analysis_t), intent(in) :: a
       type(motion_t), intent(inout) :: found
-      real(wp) :: length
       integer :: k
 
       if (found%known < 2 .or. found%mark /= mark_none) return
       do k = 1, size(a%engine%cylinders)
-         associate (one => a%engine%cylinders(k))
-            length = cylinder_length(one, found%position(:, one%i), found%position(:, one%j))
+         associate (one => a%engine%cylinders(k), length => cylinder_length(a%engine%cylinders(k), &
+               found%position(:, a%engine%cylinders(k)%i), found%position(:, a%engine%cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
             found%mark = mark_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)

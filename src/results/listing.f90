@@ -366,9 +366,10 @@ contains
             //measure(m, diagnostic, value_digits)
          if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(m, diagnostic)
       case (diagnostic_stroke)
-         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '//phrase(say_length, &
-            m%polish) &
-            //' '//measure(m, diagnostic, value_digits)
+         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '
+         if (diagnostic%value > 0.0_wp) text = text//phrase(say_length, m%polish)//' '//measure(m, diagnostic, &
+            value_digits)
+         if (.not. diagnostic%value > 0.0_wp) text = text//phrase(say_below_0, m%polish)
       case (diagnostic_far_estimate)
          text = links(m, diagnostic)//': '//phrase(say_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_second)

@@ -62,6 +62,8 @@ module phrases
       say_cylinder = phrase_t('CYLINDER', 'SILOWNIK'), &
       say_length = phrase_t('LENGTH', 'DLUGOSC'), &
       say_length_0 = phrase_t('LENGTH 0, FOR A SLIDE THROUGH 0 USE PRISM', 'DLUGOSC 0, DLA SUWU PRZEZ 0 UZYJ PRISM'), &
+      say_below_0 = phrase_t('ONLY LENGTHS BELOW 0, FOR A SLIDE THROUGH 0 USE PRISM', &
+         'TYLKO DLUGOSCI PONIZEJ 0, DLA SUWU PRZEZ 0 UZYJ PRISM'), &
       say_drawn_stroke = phrase_t('IS DRAWN OUT OF STROKE, ITS LENGTH IS', 'JEST NARYSOWANY POZA SKOKIEM, DLUGOSC'), &
       say_shut = phrase_t('LENGTH 0', 'DLUGOSC 0'), &
       say_negative = phrase_t('ASSEMBLIES WITH A CYLINDER OF NEGATIVE LENGTH, NOT LISTED:', &

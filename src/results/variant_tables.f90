@@ -8,6 +8,7 @@ module variant_tables
    use listing_layout, only: layout_t, line_length, put_folded
    use table, only: cell_text, add_cell, add_name, power_text, unit_of, right
    use listing, only: put_diagnostics
+   use listing_tables, only: mask_words
    use text_output, only: output_t, put, add
    use number_format, only: whole
    use variant_rows
@@ -136,11 +137,12 @@ contains
       end if
    end subroutine put_variant_row
 
-   !> The last line of a set of variants.
+   !> The last line of a set of variants, below what `?` means in their rows if a closing tolerance leaves digits open.
    subroutine put_variants_end(o, settings)
       type(output_t), intent(inout) :: o
       class(settings_t), intent(in) :: settings
 
+      if (settings%closing > 0.0_wp) call put(o, mask_words(settings))
       call put(o, '')
       call put(o, ' '//phrase(say_end, settings%polish)//' '//whole(settings%set_number)//':  '//phrase(say_variants, &
          settings%polish)//' ' &

@@ -128,6 +128,10 @@ equal 'length 0: the limit' 1 "$(grep -c 'SILOWNIK CYL: DLUGOSC 0, DLA SUWU PRZE
 equal 'length 0: RANGE and circuits' '0.000000000 4.000000000' "$(awk '/ZAKRES(Y)? / { on = 1 } on && /^   (MIN|MAX)/ { printf "%s ", $2 }' "$w/out" | sed 's/ $//')"
 through '' "$(card DRIVE SLIDE CYL '' -0.5 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a law that begins below 0' E109 "$("$kinmat" "$w/deck" 2>&1 | grep -o E109 | sort -u)"
+# A barrel that points away from the boom's circle: no position but with a length below 0.
+boom '' '' "$(card DRIVE ANGLE BARREL '' 180.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
+equal 'only lengths below 0' ' *** NO POSITION FOUND
+ *** CYLINDER RAM: ONLY LENGTHS BELOW 0, FOR A SLIDE THROUGH 0 USE PRISM' "$("$kinmat" "$w/deck" | grep '[*][*][*]')"
 through 2.0 "$(card DRIVE SLIDE CYL '' '' 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a drawing out of its stroke' 1 "$("$kinmat" --check "$w/deck" 2>&1 | grep -c 'IS DRAWN OUT OF STROKE')"
 boom 2.4 1.8 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"

@@ -56,6 +56,25 @@ run negative
 equal 'a length that is refused: status' 2 $status
 equal 'a length that is refused: its row' ' *** E036 CARD 14 COLUMN 33 FIELD REAL-1: "65.0" IS OUT OF RANGE; ALLOWED: ABOVE 0.0' "$(grep 'E036' "$w/negative.lst" | tr -s ' ')"
 
+# Cards that ASSEMBLY prints, with the LENGTH cards: each starts at that assembly, also with a POINT that lengths have moved.
+four() { { card UNITS MM DEG S; book '' '' '' | sed -e '/^LENGTH/d' -e 's/^LINK    \([A-Z]*\).*/LINK    \1/'; card POINT C COUPLER '' 40.0 70.0; card POINT D COUPLER '' 10.0 10.0
+   card LENGTH A0 A '' 30.0; card LENGTH A B '' 70.0; card LENGTH B0 B '' 65.0; card LENGTH A C '' 45.0; card LENGTH B C '' 50.0
+   card AT '' '' '' 0.0 1.0; card PRINT POINTS; card ASSEMBLY; card END; } > "$w/four.deck"; run four; }
+four
+for n in 1 2; do
+   awk -v n=$n 'FNR == NR { if (/^ ASSEMBLY /) on = $2 == n; if (on && /^[A-Z]/) card[sprintf("%-16.16s", $0)] = $0; next }
+      { name = sprintf("%-16.16s", $0); print (name in card ? card[name] : $0) }' "$w/four.lst" "$w/four.deck" > "$w/pasted$n.deck"
+   run pasted$n
+   equal "assembly $n with its lengths: status" 0 $status
+   equal "assembly $n with its lengths: cards" 4 "$(grep -c '^JOINT.*[.][0-9][0-9][0-9]' "$w/pasted$n.deck")"
+   # The joint B that ASSEMBLY prints is where this run begins, and A C, B C are as long as their cards say.
+   equal "assembly $n with its lengths: where it begins" yes "$(awk -F, -v b="$(grep '^JOINT   B ' "$w/pasted$n.deck" | cut -c33-64)" '
+      $2 == 0 && $4 == "POINT" { x[$5] = $6; y[$5] = $7 }
+      function off(p, q, l) { return (sqrt((x[p] - x[q])^2 + (y[p] - y[q])^2) - l)^2 > 1e-22 }
+      END { split(b, at, " "); print (x["B"] - at[1])^2 + (y["B"] - at[2])^2 < 1e-18 && !off("A", "C", 45) && !off("B", "C", 50) \
+         && !off("A", "B", 70) ? "yes" : "no" }' "$w/pasted$n.csv")"
+done
+
 # A plate of three joints: two lengths, the side on which C is drawn; its sensitivity to one of them, with the law of cosines.
 plate() {
    card GROUND BASE; card LINK CRANK A0 A; card LINK PLATE A B; card LINK ROCKER B0 B; card LINK ROD C E; card LINK ARM D0 E
