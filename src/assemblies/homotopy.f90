@@ -32,10 +32,11 @@ module homotopy
    !> method leaves the square: near a singular end rounding keeps corrections above a smaller part.
    real(dp), parameter :: converged = 1.0e-11_dp
    integer, parameter :: max_corrections = 4
-   real(dp), parameter :: first_step = 0.05_dp, least_step = 1.0e-5_dp
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps: a path that does not reach
    !> it so has a singular end, unless its neighbour is nearer to it than about the root of the last of them.
-   real(dp), parameter :: near_end = 0.1_dp, tenth = 0.1_dp, least_to_end = 0.1_dp
+   real(dp), parameter :: near_end = 0.1_dp, tenth = 0.1_dp
+   !> The first step and the least, parts of the way: to `near_end`, by a tenth, and to the end.
+   real(dp), parameter :: to_near_end(2) = [0.05_dp, 1.0e-5_dp], by_tenth(2) = [0.3_dp, 1.0e-5_dp], to_end(2) = 0.3_dp
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
    real(dp), parameter :: least_power = 0.04_dp
@@ -166,7 +167,7 @@ contains
       count_of = 0
       do k = 1, size(list)
          associate (e => list(count_of + 1))
-            call follow(h, 1.0_dp, near_end, least_step, z(:, k), is_done)
+            call follow(h, 1.0_dp, near_end, to_near_end, z(:, k), is_done)
             is_whole = is_whole .and. is_done
             if (is_done) call follow_to_end(bilinear, h, start%chart, z(:, k), e, is_infinite, is_done)
          end associate
@@ -206,11 +207,11 @@ contains
          call put_end(z)
          finite(k) = finiteness(bilinear, ending%x, ending%y)
          last = z
-         call follow(paths, t, 0.0_dp, least_to_end, last, is_done)
+         call follow(paths, t, 0.0_dp, to_end, last, is_done)
          if (is_done) exit
          if (k == max_tenths) exit
          last = z
-         call follow(paths, t, tenth*t, least_step, last, is_done)
+         call follow(paths, t, tenth*t, by_tenth, last, is_done)
          if (.not. is_done) exit
          z = last
          t = tenth*t
@@ -252,21 +253,23 @@ contains
    end function falls
 
    !> Follows the path from `point` at `from` `to`: the tangent by Runge and Kutta, Newton's correction; steps are
-   !> divided down to the part `least` of the whole.
-   subroutine follow(paths, from, to, least, point, is_done)
+   !> divided down to the least.
+   subroutine follow(paths, from, to, steps, point, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: from, to, least
+      real(dp), intent(in) :: from, to       !< values of t
+      real(dp), intent(in) :: steps(2)       !< the first and the least, parts of the way
       complex(dp), intent(inout) :: point(:)
       logical, intent(out) :: is_done
       complex(dp) :: next(size(point))
-      real(dp) :: s, step, correction
+      real(dp) :: s, step, correction, t, rate
 
       s = 0.0_dp
-      step = max(first_step, least)
+      step = steps(1)
       do
          step = min(step, 1.0_dp - s)
-         call predict(paths, from + s*(to - from), step*(to - from), point, next, is_done)
-         if (is_done) call correct(paths, from + (s + step)*(to - from), next, correction, is_done)
+         call predict(paths, from, to, s, step, point, next, is_done)
+         call find_t(from, to, s + step, t, rate)
+         if (is_done) call correct(paths, t, next, correction, is_done)
          if (is_done) then
             point = next
             s = s + step
@@ -276,21 +279,38 @@ contains
          else
             step = 0.4_dp*step
          end if
-         if (step < least) exit
+         if (step < steps(2)) exit
       end do
       is_done = .false.
    end subroutine follow
 
-   !> A step of length `step` in t along the tangent, by Runge and Kutta's rule of fourth order.
-   subroutine predict(paths, t, step, point, next, is_done)
+   !> Finds `t` at the part `s` of the way between two of its values, and its `rate` by s. In a tenth it falls by equal
+   !> factors, since z goes with a power of t near a singular end.
+   pure subroutine find_t(from, to, s, t, rate)
+      real(dp), intent(in) :: from, to       !< values of t
+      real(dp), intent(in) :: s              !< 0 to 1
+      real(dp), intent(out) :: t, rate
+
+      rate = to - from
+      t = from + s*rate
+      if (from > near_end .or. .not. to > 0.0_dp) return
+      t = from*(to/from)**s
+      rate = t*log(to/from)
+   end subroutine find_t
+
+   !> Predicts z after a `step` along the tangent from the part `s` of the way, by Runge and Kutta's rule of fourth
+   !> order.
+   subroutine predict(paths, from, to, s, step, point, next, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: t, step
+      real(dp), intent(in) :: from, to       !< values of t
+      real(dp), intent(in) :: s, step        !< parts of the way
       complex(dp), intent(in) :: point(:)
       complex(dp), intent(out) :: next(:)
       logical, intent(out) :: is_done
       real(dp), parameter :: part(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: weight(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), tangent(size(point))
+      real(dp) :: t, rate
       integer :: pivots(size(point)), info, k
 
       next = point
@@ -299,10 +319,12 @@ contains
          x = point + part(k)*step*tangent
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
-         call assemble(paths, t + part(k)*step, x, a, r, tangent)
+         call find_t(from, to, s + part(k)*step, t, rate)
+         call assemble(paths, t, x, a, r, tangent)
          call zgesv(size(point), 1, a, size(point), pivots, tangent, size(point), info)
          is_done = info == 0
          if (.not. is_done) return
+         tangent = rate*tangent
          next = next + weight(k)*step*tangent
       end do
       is_done = size_of(next - point) <= size_of(point)
