@@ -16,7 +16,7 @@ module job
    use motion_run, only: run_motion
    use variant_runs, only: run_variants, are_together
    use lane_runs, only: width
-   use listing, only: new_layout, listing_head, remarks_text
+   use listing, only: new_layout, listing_head, remark_text
    use csv, only: csv_head, new_table, table_head
    use solver_log, only: log_head
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
@@ -104,11 +104,15 @@ contains
       !> Gives the remarks about `sets`, each line ended by new_line('a'), if no listing has them; '' for --quiet.
       function said() result(text)
          character(:), allocatable :: text
+         integer :: k
 
          text = ''
          if (options%quiet) return
          do i = 1, size(sets)
-            if (allocated(sets(i)%remarks)) text = text//remarks_text(sets(i))//new_line('a')
+            if (.not. allocated(sets(i)%remarks)) cycle
+            do k = 1, size(sets(i)%remarks)
+               text = text//' --- '//remark_text(sets(i), sets(i)%remarks(k))//new_line('a')
+            end do
          end do
       end function said
    end subroutine run_job

@@ -3,7 +3,7 @@
 module block_assemblies
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use plane_vectors, only: wrap_angle
+   use plane_vectors, only: pi, wrap_angle
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use blocks, only: blocks_t, geometry_t, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
@@ -128,6 +128,8 @@ contains
          if (.not. is_real) return
          ! The digits of a position do not show from which start its path came.
          place = anint(grid*place)/grid
+         ! Half a turn is positive, whatever sign rounding gives it.
+         where (f%turns < 0 .and. place <= anint(-grid*pi)/grid) place = -place
          call set_values(b, i, place, s)
          call add_turns(b, x, i, s)
          place = values_of(b, i, s)

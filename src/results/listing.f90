@@ -5,7 +5,7 @@
 module listing
    use kinds, only: wp
    use plane_vectors, only: degree
-   use mechanism, only: settings_t, mechanism_t, shown_links, remark_title_long, remark_rest, remark_turns, &
+   use mechanism, only: settings_t, mechanism_t, remark_t, shown_links, remark_title_long, remark_rest, remark_turns, &
       remark_more, request_link
    use names, only: drive_name, listed, more
    use motion
@@ -26,7 +26,7 @@ module listing
    private
    public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold
    public :: words_of_mark
-   public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remarks_text
+   public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remark_text
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_stroke) = &
@@ -70,7 +70,11 @@ contains
          do i = 1, size(m%echo)
             call put(o, ' '//trim(m%echo(i)))
          end do
-         if (allocated(m%remarks)) call put(o, remarks_text(m))
+         if (allocated(m%remarks)) then
+            do i = 1, size(m%remarks)
+               call put_folded(o, ' --- ', remark_text(m, m%remarks(i)))
+            end do
+         end if
          call put(o, '')
 
          call put(o, ' '//phrase(say_structure, pl))
@@ -289,38 +293,28 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> A line for each remark about the cards of `m`, joined by new_line('a'); '' if there are none. As
-   !> CARD 7  COLUMN 9: "TIP" and a sentence.
-   function remarks_text(m) result(text)
+   !> Gives the text of the remark `r` about the cards of `m`: CARD 7  COLUMN 9: "TIP" and a sentence.
+   function remark_text(m, r) result(text)
       type(mechanism_t), intent(in) :: m
+      type(remark_t), intent(in) :: r
       character(:), allocatable :: text
-      character(:), allocatable :: words
-      integer :: i
       logical :: is_one
 
-      text = ''
-      if (.not. allocated(m%remarks)) return
-      do i = 1, size(m%remarks)
-         associate (r => m%remarks(i))
-            words = trim(phrase(remark_words(r%kind), m%polish)//' '//r%value)
-            if (r%kind == remark_more) then
-               words = words//' '//trim(r%text)
-            else
-               if (any(r%kind == [remark_rest, remark_turns])) then
-                  is_one = index(r%text, ', ') == 0
-                  if (r%kind == remark_rest .and. .not. is_one) words = phrase(say_rest, m%polish)
-                  words = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(r%text)//' '//words
-               else if (r%text /= '') then
-                  words = '"'//trim(r%text)//'" '//words
-               end if
-               words = phrase(say_card, m%polish)//' '//whole(r%card)//'  '//phrase(say_column, m%polish)//' ' &
-                  //whole(r%column)//': '//words
-            end if
-         end associate
-         if (i > 1) text = text//new_line('a')
-         text = text//' --- '//words
-      end do
-   end function remarks_text
+      text = trim(phrase(remark_words(r%kind), m%polish)//' '//r%value)
+      if (r%kind == remark_more) then
+         text = text//' '//trim(r%text)
+         return
+      end if
+      if (any(r%kind == [remark_rest, remark_turns])) then
+         is_one = index(r%text, ', ') == 0
+         if (r%kind == remark_rest .and. .not. is_one) text = phrase(say_rest, m%polish)
+         text = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(r%text)//' '//text
+      else if (r%text /= '') then
+         text = '"'//trim(r%text)//'" '//text
+      end if
+      text = phrase(say_card, m%polish)//' '//whole(r%card)//'  '//phrase(say_column, m%polish)//' ' &
+         //whole(r%column)//': '//text
+   end function remark_text
 
    !> A line for each diagnostic of `list` that no mark has told.
    subroutine put_diagnostics(o, m, list)
