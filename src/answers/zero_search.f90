@@ -207,7 +207,7 @@ contains
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
       real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run
-      real(wp) :: place, bend, best_step, best_noise, width
+      real(wp) :: place, bend, best_step, best_noise, width, value
       integer :: i, k
 
       associate (length => b%t - a%t)
@@ -217,6 +217,7 @@ contains
          if (min(abs(t - a%t), abs(b%t - t)) <= beside_end*abs(length)) return
          call evaluate_column(s, c, t, at)
          if (at%known < 2) return
+         value = at%f(2)
          slope = abs(on_curve(c, 4, t))
          if (slope > 0.0_wp) then
             if (is_inside(c, 2, at%f(2), 0.5_wp*(error_by_length*(at%f(2) - on_curve(c, 2, t))/length)**2/slope)) then
@@ -269,8 +270,11 @@ contains
                step = step/shorter
             end if
          end do
-         ! If no stencil serves, all of the time from `a` to `b` is open. If its extreme is at an end, that of the
-         ! polynomial counts, and the time between both is open; within a step they are one, as good as at the end.
+         ! If no stencil serves, all of the time from `a` to `b` is open, unless an end is more extreme. If the
+         ! extreme of a stencil is at an end, that of the polynomial counts, and the time between both is open; within
+         ! a step they are one, as good as at the end.
+         if (.not. bend > 0.0_wp .and. maxval([a%f(2), b%f(2)]*sign(1.0_wp, -on_curve(c, 4, first))) &
+            >= value*sign(1.0_wp, -on_curve(c, 4, first))) return
          if (min(abs(place - a%t), abs(b%t - place)) <= beside_end*abs(length)) then
             left = abs(place - first)
             if (left <= best_step) return
