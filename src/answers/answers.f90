@@ -30,44 +30,45 @@ module answers
 
 contains
 
-   !> Ready for the first instant of the set that `s` analyses. `lists`: its tables are written, which alone have the
+   !> Ready for the first instant of the set that `set` analyses. `lists`: its tables are written, which alone have the
    !> shares of tolerances.
-   subroutine new_answers(s, lists, a)
-      type(set_analysis_t), intent(in) :: s
+   subroutine new_answers(set, lists, answers)
+      type(set_analysis_t), intent(in) :: set
       logical, intent(in) :: lists           !< the tables of the set are written
-      type(answers_t), intent(out) :: a
+      type(answers_t), intent(out) :: answers
       integer :: c
 
-      a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=1, s%now%count)])
-      a%shares_asked = lists .and. s%now%largest_tolerance > 0.0_wp
-      if (s%now%assemblies) then
-         if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])
+      answers%extremes_asked = any([(any(set%now%parts(c)%requests%extremes), c=1, set%now%count)])
+      answers%shares_asked = lists .and. set%now%largest_tolerance > 0.0_wp
+      if (set%now%assemblies) then
+         if (all(set%assemblies%is_known)) answers%assemblies = sum([(size(set%assemblies(c)%list), c=1, &
+            size(set%assemblies))])
       end if
-      allocate (a%ranges(0))
-      if (a%extremes_asked) call new_extremes(s%now, a%extremes)
+      allocate (answers%ranges(0))
+      if (answers%extremes_asked) call new_extremes(set%now, answers%extremes)
    end subroutine new_answers
 
-   !> Takes instant number `k`, to which `s` has advanced, and what is asked for between it and those before. `due`: it
-   !> is printed.
-   subroutine take_instant(a, s, rows, k, due)
-      type(answers_t), intent(inout) :: a
-      type(set_analysis_t), intent(inout) :: s
+   !> Takes instant number `k`, to which `set` has advanced, and what is asked for between it and those before. `due`:
+   !> it is printed.
+   subroutine take_instant(answers, set, rows, k, due)
+      type(answers_t), intent(inout) :: answers
+      type(set_analysis_t), intent(inout) :: set
       type(finished_row_t), intent(in) :: rows(:)
       integer, intent(in) :: k               !< the number of the instant, from 0
       logical, intent(in) :: due             !< it is printed
 
-      if (s%now%proves) call note_proof(a%proofs, s, k, due)
-      if (s%now%ranges .and. k == 0) call find_ranges(s, a%ranges)
-      if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
-      if (a%shares_asked .and. due) call note_tolerances(a%shares, s%now, rows)
-      if (a%extremes_asked) call note_instant(a%extremes, s, k)
+      if (set%now%proves) call note_proof(answers%proofs, set, k, due)
+      if (set%now%ranges .and. k == 0) call find_ranges(set, answers%ranges)
+      if (set%now%circuits .and. set%now%variants == 0 .and. k == 0) call find_all_circuits(set, answers%circuits)
+      if (answers%shares_asked .and. due) call note_tolerances(answers%shares, set%now, rows)
+      if (answers%extremes_asked) call note_instant(answers%extremes, set, k)
    end subroutine take_instant
 
    !> Finds after the last instant what the whole run answers.
-   subroutine finish_answers(a, s)
-      type(answers_t), intent(inout) :: a
-      type(set_analysis_t), intent(inout) :: s   !< after its last instant
+   subroutine finish_answers(answers, set)
+      type(answers_t), intent(inout) :: answers
+      type(set_analysis_t), intent(inout) :: set   !< after its last instant
 
-      if (a%extremes_asked) call find_dwells(a%extremes, s, a%dwells)
+      if (answers%extremes_asked) call find_dwells(answers%extremes, set, answers%dwells)
    end subroutine finish_answers
 end module answers

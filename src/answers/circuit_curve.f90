@@ -74,8 +74,8 @@ module circuit_curve
 contains
 
    !> The curve on which drive number `drive` of `m` is free; the other ones have their values of the time `t`.
-   subroutine make_curve(c, m, drive, t)
-      type(curve_t), intent(out) :: c
+   subroutine make_curve(curve, m, drive, t)
+      type(curve_t), intent(out) :: curve
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: drive
       real(wp), intent(in) :: t
@@ -83,52 +83,52 @@ contains
       integer, allocatable :: others(:)
       integer :: i
 
-      c%closure = new_system(m)
-      c%cylinders = cylinders_of(m, .false.)
-      if (m%drives(drive)%kind == drive_slide) c%drives_cylinder = m%pairs(m%drives(drive)%subject)%is_cylinder
-      c%driven = c%closure
-      call find_drive_values(c%closure, drive_path_t(m%drives), t, f)
-      c%first = f(1, drive)
-      c%is_angle = .not. is_length(m%drives(drive))
+      curve%closure = new_system(m)
+      curve%cylinders = cylinders_of(m, .false.)
+      if (m%drives(drive)%kind == drive_slide) curve%drives_cylinder = m%pairs(m%drives(drive)%subject)%is_cylinder
+      curve%driven = curve%closure
+      call find_drive_values(curve%closure, drive_path_t(m%drives), t, f)
+      curve%first = f(1, drive)
+      curve%is_angle = .not. is_length(m%drives(drive))
       others = pack([(i, i=1, size(m%drives))], [(i /= drive, i=1, size(m%drives))])
-      c%held = [f(1, others), 0.0_wp]
-      c%driven%drives = c%closure%drives([others, drive])
-      c%closure%drives = c%driven%drives(:size(others))
-      c%configuration = new_configuration(c%closure, m)
-      c%factors = new_factors(c%closure%n)
-      c%nonlinear = new_coordinates(c%closure)
+      curve%held = [f(1, others), 0.0_wp]
+      curve%driven%drives = curve%closure%drives([others, drive])
+      curve%closure%drives = curve%driven%drives(:size(others))
+      curve%configuration = new_configuration(curve%closure, m)
+      curve%factors = new_factors(curve%closure%n)
+      curve%nonlinear = new_coordinates(curve%closure)
    end subroutine make_curve
 
    !> Some equations are too many, by count: two of each pair, one of each drive that is held.
-   pure logical function is_redundant(c)
-      type(curve_t), intent(in) :: c
+   pure logical function is_redundant(curve)
+      type(curve_t), intent(in) :: curve
 
-      is_redundant = 2*size(c%closure%pairs) + size(c%closure%drives) > c%closure%n - 1
+      is_redundant = 2*size(curve%closure%pairs) + size(curve%closure%drives) > curve%closure%n - 1
    end function is_redundant
 
-   !> Newton's method from `c%configuration`, with the row `border` at rest. `c%factors` are those of the Jacobian
-   !> there, with `border` in the place of the `row` of the free drive.
-   subroutine correct(c, border, row, ok)
-      type(curve_t), intent(inout) :: c
+   !> Newton's method from `curve%configuration`, with the row `border` at rest. `curve%factors` are those of the
+   !> Jacobian there, with `border` in the place of the `row` of the free drive.
+   subroutine correct(curve, border, row, ok)
+      type(curve_t), intent(inout) :: curve
       real(wp), intent(in) :: border(:)
       real(wp), intent(out) :: row(:)
       logical, intent(out) :: ok
-      real(wp) :: r(c%closure%n), change, before
+      real(wp) :: r(curve%closure%n), change, before
       integer :: i, info
 
       before = huge(before)
       do i = 1, max_iterations
-         call residual(c%driven, c%configuration, c%held, r)
-         r(c%closure%n) = 0.0_wp
+         call residual(curve%driven, curve%configuration, curve%held, r)
+         r(curve%closure%n) = 0.0_wp
          call factor_there()
          if (.not. ok) return
-         call solve(c%factors, r)
+         call solve(curve%factors, r)
          change = maxval(abs(r))
          ok = change <= 1.0_wp
          if (.not. ok) return
-         call add_to_links(c%closure, -r, c%configuration%q)
-         call set_configuration(c%closure, c%configuration)
-         ok = change <= converged*max(1.0_wp, maxval(abs(c%configuration%q)))
+         call add_to_links(curve%closure, -r, curve%configuration%q)
+         call set_configuration(curve%closure, curve%configuration)
+         ok = change <= converged*max(1.0_wp, maxval(abs(curve%configuration%q)))
          if (ok) return
          ok = change <= stalled
          if (ok .and. change > 0.5_wp*before) exit
@@ -138,208 +138,208 @@ contains
 
    contains
 
-      !> Factors the bordered Jacobian at `c%configuration`.
+      !> Factors the bordered Jacobian at `curve%configuration`.
       subroutine factor_there()
-         call jacobian(c%driven, c%configuration, c%factors%a)
-         row = c%factors%a(c%closure%n, :)
-         c%factors%a(c%closure%n, :) = border
-         call factor(c%factors, info)
+         call jacobian(curve%driven, curve%configuration, curve%factors%a)
+         row = curve%factors%a(curve%closure%n, :)
+         curve%factors%a(curve%closure%n, :) = border
+         call factor(curve%factors, info)
          ok = info == 0
       end subroutine factor_there
    end subroutine correct
 
-   !> The value `x` of the free drive in the deck's unit.
-   pure real(wp) function drive_value(c, x) result(value)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: x
+   !> The value `given` of the free drive in the deck's unit.
+   pure real(wp) function drive_value(curve, given) result(value)
+      type(curve_t), intent(in) :: curve
+      real(wp), intent(in) :: given
 
-      value = x
-      if (c%is_angle) return
-      value = x*c%closure%length
-      associate (drive => c%driven%drives(size(c%held)))
-         if (drive%kind == drive_x) value = value + c%closure%origin(1)
-         if (drive%kind == drive_y) value = value + c%closure%origin(2)
+      value = given
+      if (curve%is_angle) return
+      value = given*curve%closure%length
+      associate (drive => curve%driven%drives(size(curve%held)))
+         if (drive%kind == drive_x) value = value + curve%closure%origin(1)
+         if (drive%kind == drive_y) value = value + curve%closure%origin(2)
       end associate
    end function drive_value
 
-   !> The links' position (3, links) `q` in the deck's unit, counted from its origin.
-   pure function deck_position(c, q) result(position)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: q(:, :)
-      real(wp) :: position(3, size(q, 2))
+   !> The links' position (3, links) `places` in the deck's unit, counted from its origin.
+   pure function deck_position(curve, places) result(position)
+      type(curve_t), intent(in) :: curve
+      real(wp), intent(in) :: places(:, :)
+      real(wp) :: position(3, size(places, 2))
 
-      position = q
-      position(:2, :) = q(:2, :)*c%closure%length
+      position = places
+      position(:2, :) = places(:2, :)*curve%closure%length
    end function deck_position
 
-   !> The point `p` of the curve at the links' `position` (3, links), in the deck's unit and from its origin. Its
+   !> The `point` of the curve at the links' `position` (3, links), in the deck's unit and from its origin. Its
    !> tangent has the sense in which the drive grows, unless it is at rest. `ok`: it was found, and is regular.
-   subroutine start_point(c, position, p, ok)
-      type(curve_t), intent(inout) :: c
+   subroutine start_point(curve, position, point, ok)
+      type(curve_t), intent(inout) :: curve
       real(wp), intent(in) :: position(:, :)
-      type(curve_point_t), intent(out) :: p
+      type(curve_point_t), intent(out) :: point
       logical, intent(out) :: ok
-      real(wp) :: q(3, size(position, 2)), border(c%closure%n)
+      real(wp) :: q(3, size(position, 2)), border(curve%closure%n)
       integer :: i
 
       q = position
-      q(:2, :) = q(:2, :)/c%closure%length
+      q(:2, :) = q(:2, :)/curve%closure%length
       ! A row without a meaning: only by chance is it at right angles to the tangent.
       border = [(cos(real(i, wp)), i=1, size(border))]
-      call find_point(c, q, border/norm2(border), p, ok)
+      call find_point(curve, q, border/norm2(border), point, ok)
       if (.not. ok) return
-      if (p%value(of_slope) < 0.0_wp) p = reversed(p)
+      if (point%value(of_slope) < 0.0_wp) point = reversed(point)
    end subroutine start_point
 
-   !> The point `b` of the curve at the distance `h` from `a` along its tangent; `ok`: it is regular, and where the
-   !> tangent and the bend of `a` let it be expected.
-   subroutine step_along(c, a, h, b, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: a
-      real(wp), intent(in) :: h
-      type(curve_point_t), intent(out) :: b
+   !> The point `to` of the curve at the distance `step` `from` along its tangent; `ok`: it is regular, and where the
+   !> tangent and the bend of `from` let it be expected.
+   subroutine step_along(curve, from, step, to, ok)
+      type(curve_t), intent(inout) :: curve
+      type(curve_point_t), intent(in) :: from
+      real(wp), intent(in) :: step
+      type(curve_point_t), intent(out) :: to
       logical, intent(out) :: ok
-      real(wp) :: q(3, size(a%q, 2))
+      real(wp) :: q(3, size(from%q, 2))
 
-      q = a%q
-      call add_to_links(c%closure, h*a%tangent + 0.5_wp*h**2*a%bend, q)
-      call find_point(c, q, a%tangent, b, ok)
-      if (ok) ok = maxval(abs(b%q - q)) <= max(same, 0.5_wp*abs(h))
+      q = from%q
+      call add_to_links(curve%closure, step*from%tangent + 0.5_wp*step**2*from%bend, q)
+      call find_point(curve, q, from%tangent, to, ok)
+      if (ok) ok = maxval(abs(to%q - q)) <= max(same, 0.5_wp*abs(step))
    end subroutine step_along
 
-   !> `p`, its tangent turned round.
-   pure function reversed(p) result(r)
-      type(curve_point_t), intent(in) :: p
+   !> `point`, its tangent turned round.
+   pure function reversed(point) result(r)
+      type(curve_point_t), intent(in) :: point
       type(curve_point_t) :: r
 
-      r = p
-      r%tangent = -p%tangent
-      r%value(of_slope) = -p%value(of_slope)
+      r = point
+      r%tangent = -point%tangent
+      r%value(of_slope) = -point%value(of_slope)
    end function reversed
 
-   !> The distance from `a` to `b` along the tangent of `a`.
-   pure real(wp) function step_between(c, a, b) result(h)
-      type(curve_t), intent(in) :: c
-      type(curve_point_t), intent(in) :: a, b
+   !> The distance `from` `to` along the tangent of `from`.
+   pure real(wp) function step_between(curve, from, to) result(h)
+      type(curve_t), intent(in) :: curve
+      type(curve_point_t), intent(in) :: from, to
 
-      h = dot_product(a%tangent, offset_from(c, a%q, b%q, .false.))
+      h = dot_product(from%tangent, offset_from(curve, from%q, to%q, .false.))
    end function step_between
 
-   !> Whether the position `q` (3, links) is on the curve at a distance from 0 to `h` along the tangent of `a`, or
-   !> beside its end; whole turns of links do not count. `b`: the point of the curve there.
-   subroutine lies_between(c, a, h, q, b, lies)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: a
-      real(wp), intent(in) :: h, q(:, :)
-      type(curve_point_t), intent(out) :: b
+   !> Whether the `position` (3, links) is on the curve at a distance from 0 to `step` along the tangent of `from`, or
+   !> beside its end; whole turns of links do not count. `to`: the point of the curve there.
+   subroutine lies_between(curve, from, step, position, to, lies)
+      type(curve_t), intent(inout) :: curve
+      type(curve_point_t), intent(in) :: from
+      real(wp), intent(in) :: step, position(:, :)
+      type(curve_point_t), intent(out) :: to
       logical, intent(out) :: lies
-      real(wp) :: x(c%closure%n), along
+      real(wp) :: x(curve%closure%n), along
 
-      x = offset_from(c, a%q, q, .true.)
-      along = dot_product(a%tangent, x)
-      lies = along >= -same .and. along <= h + same
-      if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + same
-      if (lies) call step_along(c, a, along, b, lies)
-      if (lies) lies = same_place(b%q, q)
+      x = offset_from(curve, from%q, position, .true.)
+      along = dot_product(from%tangent, x)
+      lies = along >= -same .and. along <= step + same
+      if (lies) lies = maxval(abs(x - along*from%tangent)) <= step + same
+      if (lies) call step_along(curve, from, along, to, lies)
+      if (lies) lies = same_place(to%q, position)
    end subroutine lies_between
 
-   !> The coordinates of the position `b` less those of `a` (3, links), without whole turns if `turns_off`.
-   pure function offset_from(c, a, b, turns_off) result(x)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: a(:, :), b(:, :)
+   !> The coordinates of the position `second` less those of `first` (3, links), without whole turns if `turns_off`.
+   pure function offset_from(curve, first, second, turns_off) result(x)
+      type(curve_t), intent(in) :: curve
+      real(wp), intent(in) :: first(:, :), second(:, :)
       logical, intent(in) :: turns_off
-      real(wp) :: x(c%closure%n)
+      real(wp) :: x(curve%closure%n)
       integer :: i
 
-      do i = 1, size(a, 2)
-         associate (k => c%closure%column(i))
+      do i = 1, size(first, 2)
+         associate (k => curve%closure%column(i))
             if (k == 0) cycle
-            x(k:k + 2) = b(:, i) - a(:, i)
+            x(k:k + 2) = second(:, i) - first(:, i)
             if (turns_off) x(k + 2) = wrap_angle(x(k + 2))
          end associate
       end do
    end function offset_from
 
    !> Whether two positions (3, links) are one, but for whole turns.
-   pure logical function same_place(a, b)
-      real(wp), intent(in) :: a(:, :), b(:, :)
+   pure logical function same_place(first, second)
+      real(wp), intent(in) :: first(:, :), second(:, :)
 
-      same_place = maxval(separation(a, b, 1.0_wp)) <= same
+      same_place = maxval(separation(first, second, 1.0_wp)) <= same
    end function same_place
 
-   !> Finds the shortest length of a cylinder at the position `q` (3, links), in the deck's unit.
-   pure real(wp) function shortest(c, q)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: q(:, :)
-      real(wp) :: position(3, size(q, 2))
+   !> Finds the shortest length of a cylinder at the position `places` (3, links), in the deck's unit.
+   pure real(wp) function shortest(curve, places)
+      type(curve_t), intent(in) :: curve
+      real(wp), intent(in) :: places(:, :)
+      real(wp) :: position(3, size(places, 2))
       integer :: k
 
-      position = deck_position(c, q)
-      shortest = minval([(cylinder_length(c%cylinders(k), position(:, c%cylinders(k)%i), &
-         position(:, c%cylinders(k)%j)), k=1, size(c%cylinders))])
+      position = deck_position(curve, places)
+      shortest = minval([(cylinder_length(curve%cylinders(k), position(:, curve%cylinders(k)%i), &
+         position(:, curve%cylinders(k)%j)), k=1, size(curve%cylinders))])
    end function shortest
 
-   !> The point `p` near the position `q` (3, links) at which `border` (coordinates) times the difference from `q` is 0.
-   !> Its tangent has the sense of `border`.
-   subroutine find_point(c, q, border, p, ok)
-      type(curve_t), intent(inout) :: c
-      real(wp), intent(in) :: q(:, :), border(:)
-      type(curve_point_t), intent(out) :: p
+   !> The `point` near the `position` (3, links) at which `border` (coordinates) times the difference from `position` is
+   !> 0. Its tangent has the sense of `border`.
+   subroutine find_point(curve, position, border, point, ok)
+      type(curve_t), intent(inout) :: curve
+      real(wp), intent(in) :: position(:, :), border(:)
+      type(curve_point_t), intent(out) :: point
       logical, intent(out) :: ok
-      real(wp) :: x(c%closure%n), row(c%closure%n), along(3, size(q, 2))
+      real(wp) :: x(curve%closure%n), row(curve%closure%n), along(3, size(position, 2))
 
-      c%configuration%q = q
-      call set_configuration(c%closure, c%configuration)
-      call correct(c, border, row, ok)
+      curve%configuration%q = position
+      call set_configuration(curve%closure, curve%configuration)
+      call correct(curve, border, row, ok)
       if (.not. ok) return
-      p%q = c%configuration%q
+      point%q = curve%configuration%q
 
       x = 0.0_wp
-      x(c%closure%n) = 1.0_wp
-      call solve(c%factors, x)
-      p%tangent = x/norm2(x)
+      x(curve%closure%n) = 1.0_wp
+      call solve(curve%factors, x)
+      point%tangent = x/norm2(x)
 
       along = 0.0_wp
-      call add_to_links(c%closure, p%tangent, along)
-      call remainder(c%driven, c%configuration, along, x)
-      p%value(of_bend) = x(c%closure%n)
-      x(c%closure%n) = 0.0_wp
-      call solve(c%factors, x)
-      p%bend = dot_product(p%tangent, x)*p%tangent - x
+      call add_to_links(curve%closure, point%tangent, along)
+      call remainder(curve%driven, curve%configuration, along, x)
+      point%value(of_bend) = x(curve%closure%n)
+      x(curve%closure%n) = 0.0_wp
+      call solve(curve%factors, x)
+      point%bend = dot_product(point%tangent, x)*point%tangent - x
 
-      call residual(c%driven, c%configuration, c%held, x)
-      p%value(of_value) = x(c%closure%n)
-      p%value(of_slope) = dot_product(row, p%tangent)
-      p%value(of_bend) = p%value(of_bend) + dot_product(row, p%bend)
-      p%value(of_size) = maxval(abs(p%q(:2, :)))
-      if (size(c%cylinders) > 0) p%value(of_gap) = shortest(c, p%q)
-      call find_reach(c, along, p)
+      call residual(curve%driven, curve%configuration, curve%held, x)
+      point%value(of_value) = x(curve%closure%n)
+      point%value(of_slope) = dot_product(row, point%tangent)
+      point%value(of_bend) = point%value(of_bend) + dot_product(row, point%bend)
+      point%value(of_size) = maxval(abs(point%q(:2, :)))
+      if (size(curve%cylinders) > 0) point%value(of_gap) = shortest(curve, point%q)
+      call find_reach(curve, along, point)
    end subroutine find_point
 
-   !> Finds the longest certified step at `p`, found last, and the room about it; `along` (3, links): its tangent.
+   !> Finds the longest certified step at `point`, found last, and the room about it; `along` (3, links): its tangent.
    !>
    !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
    !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
    !> within 2 e of that place, and one solution is there.
-   subroutine find_reach(c, along, p)
-      type(curve_t), intent(inout) :: c
+   subroutine find_reach(curve, along, point)
+      type(curve_t), intent(inout) :: curve
       real(wp), intent(in) :: along(:, :)
-      type(curve_point_t), intent(inout) :: p
+      type(curve_point_t), intent(inout) :: point
       real(wp), allocatable :: y(:, :)
       real(wp) :: k, change, speed, bend, powers(3), least
 
-      call measure_slides(c%closure, c%configuration, c%nonlinear)
-      y = forms_by_inverse(c%nonlinear, c%factors, p%tangent)
-      k = kantorovich(c%closure, c%nonlinear, y, c%configuration)
-      change = change_along(c%closure, c%nonlinear, y, c%configuration, along)
-      speed = distance(c%nonlinear, p%tangent)
-      bend = distance(c%nonlinear, p%bend)
+      call measure_slides(curve%closure, curve%configuration, curve%nonlinear)
+      y = forms_by_inverse(curve%nonlinear, curve%factors, point%tangent)
+      k = kantorovich(curve%closure, curve%nonlinear, y, curve%configuration)
+      change = change_along(curve%closure, curve%nonlinear, y, curve%configuration, along)
+      speed = distance(curve%nonlinear, point%tangent)
+      bend = distance(curve%nonlinear, point%bend)
       ! Where nothing turns a step is as long as the mechanism is far.
-      least = 1.0_wp/max(1.0_wp, p%value(of_size))
+      least = 1.0_wp/max(1.0_wp, point%value(of_size))
 
       powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified
       ! The sum of powers(i) h^i is 1 at most.
-      p%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
-      p%room = 1.0_wp/max(speed/max_step, speed*k/certified, least)
+      point%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
+      point%room = 1.0_wp/max(speed/max_step, speed*k/certified, least)
    end subroutine find_reach
 end module circuit_curve

@@ -41,16 +41,16 @@ module circuit_trace
 
 contains
 
-   !> The circuit of the curve `c` through the point `start`. One that closes begins, and ends, at its first dead point.
-   subroutine trace(c, start, circuit)
-      type(curve_t), intent(inout) :: c
+   !> The circuit of the `curve` through the point `start`. One that closes begins, and ends, at its first dead point.
+   subroutine trace(curve, start, circuit)
+      type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(circuit_t) :: back
       type(curve_point_t), allocatable :: points(:)
       integer :: n, i
 
-      call follow(c, start, circuit)
+      call follow(curve, start, circuit)
       if (circuit%ends(2) == end_closed) then
          circuit%ends(1) = end_closed
          ! Of a dead point at the start only the neighbours tell.
@@ -69,7 +69,7 @@ contains
             call move_alloc(points, circuit%points)
          end if
       else
-         call follow(c, reversed(start), back)
+         call follow(curve, reversed(start), back)
          circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
          ! What lies back from the first point comes before it.
          n = size(back%points)
@@ -85,8 +85,8 @@ contains
    end subroutine trace
 
    !> Follows the curve from `start` in the sense of its tangent to its end.
-   subroutine follow(c, start, circuit)
-      type(curve_t), intent(inout) :: c
+   subroutine follow(curve, start, circuit)
+      type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(curve_point_t) :: a, b, again
@@ -107,7 +107,7 @@ contains
             ! The longest certified step that Newton's method takes.
             h = a%reach
             do
-               call step_along(c, a, h, b, ok)
+               call step_along(curve, a, h, b, ok)
                if (ok .or. h < 0.1_wp*least_step) exit
                h = 0.5_wp*h
             end do
@@ -117,19 +117,19 @@ contains
          end if
          if (.not. ok .or. signal_received() > 0) exit
          closes = .false.
-         if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
+         if (n > 1) call lies_between(curve, a, step_between(curve, a, b), start%q, again, closes)
          if (closes) b = again
          if (b%value(of_gap) <= 0.0_wp) then
             closes = .false.
             circuit%ends(2) = end_shut
-            call find_root(c, a, b, of_gap, 0.0_wp, again, ok)
+            call find_root(curve, a, b, of_gap, 0.0_wp, again, ok)
             if (ok) b = again
             ! Nothing is passed there.
             if (circuit%points(n)%is_change) n = n - 1
             call find_value_at_0(b%value(of_value))
-         else if (b%value(of_size) > c%far) then
+         else if (b%value(of_size) > curve%far) then
             circuit%ends(2) = end_far
-            call find_root(c, a, b, of_size, c%far, again, ok)
+            call find_root(curve, a, b, of_size, curve%far, again, ok)
             if (ok) b = again
          end if
          ! The dead points between point `sure`, the last one at which the drive's sense is known, and `b`. Where they
@@ -161,23 +161,24 @@ contains
          real(wp) :: x(3)
          integer :: from, k
 
-         from = findloc(circuit%points(:n)%value(of_gap) > 3.0_wp*short*c%closure%length, .true., dim=1, back=.true.)
+         from = findloc(circuit%points(:n)%value(of_gap) > 3.0_wp*short*curve%closure%length, .true., dim=1, &
+            back=.true.)
          if (from > 0) then
             do k = 1, 3
-               call find_root(c, circuit%points(from), b, of_gap, real(k, wp)*short*c%closure%length, p, ok)
+               call find_root(curve, circuit%points(from), b, of_gap, real(k, wp)*short*curve%closure%length, p, ok)
                if (.not. ok) return
                x(k) = p%value(of_value)
             end do
             value = 3.0_wp*(x(1) - x(2)) + x(3)
          end if
          ! The driven cylinder itself has the length 0; another one may come to 0 before it.
-         if (c%drives_cylinder .and. abs(value) < short*c%closure%length) value = 0.0_wp
+         if (curve%drives_cylinder .and. abs(value) < short*curve%closure%length) value = 0.0_wp
       end subroutine find_value_at_0
 
-      !> From the last of the `n` points of `circuit` across the change point ahead, which is appended, to `b`, as far
-      !> behind it: certified steps shrink in proportion to the distance from it.
-      subroutine pass_change_point(b)
-         type(curve_point_t), intent(out) :: b
+      !> From the last of the `n` points of `circuit` across the change point ahead, which is appended, to `point`, as
+      !> far behind it: certified steps shrink in proportion to the distance from it.
+      subroutine pass_change_point(point)
+         type(curve_point_t), intent(out) :: point
          type(curve_point_t) :: change
          real(wp) :: shrinks, h
 
@@ -187,48 +188,48 @@ contains
          associate (before => circuit%points(n - 1), a => circuit%points(n))
             shrinks = a%room/before%room
             if (shrinks >= 1.0_wp) return
-            h = 2.0_wp*step_between(c, before, a)*shrinks/(1.0_wp - shrinks)
-            call step_along(c, a, h, b, ok)
+            h = 2.0_wp*step_between(curve, before, a)*shrinks/(1.0_wp - shrinks)
+            call step_along(curve, a, h, point, ok)
             if (.not. ok) return
-            ok = b%room < alike*a%room .and. a%room < alike*b%room &
-               .and. norm2(b%tangent - a%tangent) < straight
+            ok = point%room < alike*a%room .and. a%room < alike*point%room &
+               .and. norm2(point%tangent - a%tangent) < straight
             if (.not. ok) return
             ! Halfway on the cubic through both with their tangents: the drive may have its dead point there.
-            call add_to_links(c%closure, &
-               0.5_wp*offset_from(c, a%q, b%q, .false.) + 0.125_wp*h*(a%tangent - b%tangent), change%q)
-            change%value(of_value) = 0.5_wp*(a%value(of_value) + b%value(of_value)) &
-               + 0.125_wp*h*(a%value(of_slope) - b%value(of_slope))
+            call add_to_links(curve%closure, &
+               0.5_wp*offset_from(curve, a%q, point%q, .false.) + 0.125_wp*h*(a%tangent - point%tangent), change%q)
+            change%value(of_value) = 0.5_wp*(a%value(of_value) + point%value(of_value)) &
+               + 0.125_wp*h*(a%value(of_slope) - point%value(of_slope))
          end associate
          change%room = 0.0_wp
          change%is_change = .true.
          call append(change)
       end subroutine pass_change_point
 
-      !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes
-      !> its sign; two where it does so and back, about the place at which it is least.
-      recursive subroutine append_dead_points(b)
-         type(curve_point_t), intent(in) :: b
+      !> Appends the dead points between the last of the `n` points and `point`: one where the drive's derivative
+      !> changes its sign; two where it does so and back, about the place at which it is least.
+      recursive subroutine append_dead_points(point)
+         type(curve_point_t), intent(in) :: point
          type(curve_point_t) :: a, p
          logical :: ok
 
          a = circuit%points(n)
-         if (a%value(1)*b%value(1) < 0.0_wp) then
-            call find_root(c, a, b, of_slope, 0.0_wp, p, ok)
+         if (a%value(1)*point%value(1) < 0.0_wp) then
+            call find_root(curve, a, point, of_slope, 0.0_wp, p, ok)
             p%is_dead = .true.
             if (ok) call append(p)
-         else if (a%value(1)*a%value(2) < 0.0_wp .and. b%value(1)*b%value(2) > 0.0_wp) then
-            call find_root(c, a, b, of_bend, 0.0_wp, p, ok)
+         else if (a%value(1)*a%value(2) < 0.0_wp .and. point%value(1)*point%value(2) > 0.0_wp) then
+            call find_root(curve, a, point, of_bend, 0.0_wp, p, ok)
             if (ok) ok = a%value(1)*p%value(1) < 0.0_wp
             if (.not. ok) return
             call append_dead_points(p)
             call append(p)
-            call append_dead_points(b)
+            call append_dead_points(point)
          end if
       end subroutine append_dead_points
 
-      !> Appends `p` to the `n` points of `circuit`.
-      subroutine append(p)
-         type(curve_point_t), intent(in) :: p
+      !> Appends `point` to the `n` points of `circuit`.
+      subroutine append(point)
+         type(curve_point_t), intent(in) :: point
          type(curve_point_t), allocatable :: more(:)
 
          if (n == size(circuit%points)) then
@@ -237,15 +238,15 @@ contains
             call move_alloc(more, circuit%points)
          end if
          n = n + 1
-         circuit%points(n) = p
+         circuit%points(n) = point
       end subroutine append
    end subroutine follow
 
-   !> Whether the sense in which the drive moves is known at `p`.
-   pure elemental logical function is_sure(p)
-      type(curve_point_t), intent(in) :: p
+   !> Whether the sense in which the drive moves is known at `point`.
+   pure elemental logical function is_sure(point)
+      type(curve_point_t), intent(in) :: point
 
-      is_sure = abs(p%value(1))*p%room**2 > unsure
+      is_sure = abs(point%value(1))*point%room**2 > unsure
    end function is_sure
 
    !> 1 or -1: the sense in which the drive moves at the first of `points` at which it is known; 0 where there is none.
@@ -258,24 +259,24 @@ contains
       if (k > 0) sense = nint(sign(1.0_wp, points(k)%value(1)))
    end function sense
 
-   !> The point `p` between the neighbours `a` and `b` at which number `order` (of_value, ..., of_size) is `level`,
-   !> which is between theirs, by halving the step from `a`. `ok`: it was found.
-   subroutine find_root(c, a, b, order, level, p, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: a, b
+   !> The point `root` between the neighbours `from` and `to` at which number `order` (of_value, ..., of_size) is
+   !> `level`, which is between theirs, by halving the step `from`. `ok`: it was found.
+   subroutine find_root(curve, from, to, order, level, root, ok)
+      type(curve_t), intent(inout) :: curve
+      type(curve_point_t), intent(in) :: from, to
       integer, intent(in) :: order
       real(wp), intent(in) :: level
-      type(curve_point_t), intent(out) :: p
+      type(curve_point_t), intent(out) :: root
       logical, intent(out) :: ok
       real(wp) :: near, far
       integer :: i
 
       near = 0.0_wp
-      far = step_between(c, a, b)
+      far = step_between(curve, from, to)
       do i = 1, digits(1.0_wp)
-         call step_along(c, a, middle_of(near, far), p, ok)
+         call step_along(curve, from, middle_of(near, far), root, ok)
          if (.not. ok .or. abs(far - near) <= 4.0_wp*epsilon(1.0_wp)) return
-         call halve((p%value(order) - level)*(a%value(order) - level) > 0.0_wp, near, far)
+         call halve((root%value(order) - level)*(from%value(order) - level) > 0.0_wp, near, far)
       end do
    end subroutine find_root
 end module circuit_trace

@@ -201,11 +201,11 @@ contains
       call move_alloc(more, found%list)
    end subroutine add_circuit
 
-   !> Finds where a known circuit goes through `p`: number `i`, between its points `k` and k + 1, or at its only one.
-   !> `i` is 0 if none does.
-   subroutine locate(found, p, i, k)
+   !> Finds where a known circuit goes through `point`: number `i`, between its points `k` and k + 1, or at its only
+   !> one. `i` is 0 if none does.
+   subroutine locate(found, point, i, k)
       type(circuits_t), intent(inout) :: found
-      type(curve_point_t), intent(in) :: p
+      type(curve_point_t), intent(in) :: point
       integer, intent(out) :: i, k
       type(curve_point_t) :: again
       real(wp) :: least, greatest
@@ -215,13 +215,13 @@ contains
       do i = 1, size(found%list)
          n = size(found%list(i)%points)
          do k = 1, max(1, n - 1)
-            associate (a => found%list(i)%points(k), b => found%list(i)%points(min(k + 1, n)), value => p%value(0))
-               ! The drive has the value of `p`, but for whole turns, between these neighbours, or nearly there.
+            associate (a => found%list(i)%points(k), b => found%list(i)%points(min(k + 1, n)), value => point%value(0))
+               ! The drive has the value of `point`, but for whole turns, between these neighbours, or nearly there.
                least = min(a%value(0), b%value(0)) - same
                greatest = max(a%value(0), b%value(0)) + same
                passes = value >= least .and. value <= greatest
                if (found%curve%is_angle) passes = modulo(value - least, turn) <= greatest - least
-               if (passes) call lies_between(found%curve, a, step_between(found%curve, a, b), p%q, again, passes)
+               if (passes) call lies_between(found%curve, a, step_between(found%curve, a, b), point%q, again, passes)
                if (passes) return
             end associate
          end do
@@ -229,12 +229,12 @@ contains
       i = 0
    end subroutine locate
 
-   !> The dead point at the point `p` of the curve, where the drive has this `value` (deck's unit). Its links are those
+   !> The dead point at the `point` of the curve, where the drive has this `value` (deck's unit). Its links are those
    !> that are singular at a first instant there of `held`, in which all other drives rest.
-   function dead_point(found, held, p, value) result(dead)
+   function dead_point(found, held, point, value) result(dead)
       type(circuits_t), intent(in) :: found
       type(mechanism_t), intent(in) :: held
-      type(curve_point_t), intent(in) :: p
+      type(curve_point_t), intent(in) :: point
       real(wp), intent(in) :: value
       type(diagnostic_t) :: dead
       type(mechanism_t) :: there
@@ -244,9 +244,9 @@ contains
       dead = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle, value=value)
       there = held
       ! A drive at rest leaves open which singular position that is.
-      there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, p%value(0)), &
+      there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, point%value(0)), &
          merge(1.0_wp, found%curve%closure%length, found%curve%is_angle)]
-      call put_estimate(there, deck_position(found%curve, p%q))
+      call put_estimate(there, deck_position(found%curve, point%q))
       call make_analysis(a, there)
       q = new_motion(size(there%links))
       call advance(a, 0.0_wp, q)
@@ -342,13 +342,13 @@ contains
       end do
    end subroutine add_meetings
 
-   !> The value `x` of the free drive without whole turns: within half a turn of the first instant's.
-   pure real(wp) function near_first(c, x) result(value)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: x
+   !> The value `given` of the free drive without whole turns: within half a turn of the first instant's.
+   pure real(wp) function near_first(curve, given) result(value)
+      type(curve_t), intent(in) :: curve
+      real(wp), intent(in) :: given
 
-      value = x
-      if (c%is_angle) value = x - turn*floor((x - c%first)/turn + 0.5_wp - tie)
+      value = given
+      if (curve%is_angle) value = given - turn*floor((given - curve%first)/turn + 0.5_wp - tie)
    end function near_first
 
    !> The turns of the drive after which `circuit` closes.

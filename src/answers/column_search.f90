@@ -45,10 +45,10 @@ module column_search
 
 contains
 
-   !> Finds the `node` of the `track` at the last instant of `s` or a time `t` between the instants. `always`: its
+   !> Finds the `node` of the `track` at the last instant of `set` or a time `t` between the instants. `always`: its
    !> errors too where no digit of a table is in doubt.
-   subroutine find_node(s, track, t, node, always)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine find_node(set, track, t, node, always)
+      type(set_analysis_t), intent(inout) :: set
       type(track_t), intent(inout) :: track
       real(wp), intent(in) :: t
       type(node_t), intent(inout) :: node
@@ -60,7 +60,7 @@ contains
       node%t = t
       node%is_known = .true.
       associate (rows => track%rows, error => track%error)
-         call rows_at(s, track%requests, t, rows, always, error, growth)
+         call rows_at(set, track%requests, t, rows, always, error, growth)
          node%is_lost = any(rows%known < 0)
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
@@ -79,17 +79,17 @@ contains
       end associate
    end subroutine find_node
 
-   !> Finds the node of mechanism `c` that comes next, at the time `t`, and whether something turns between the last
+   !> Finds the node of mechanism `place` that comes next, at the time `t`, and whether something turns between the last
    !> three: `always` as in `find_node`.
-   subroutine find_next(x, s, c, t, always)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+   subroutine find_next(extremes, set, place, t, always)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: place
       real(wp), intent(in) :: t
       logical, intent(in) :: always
 
-      associate (track => x%tracks(c))
-         call find_node(s, track, t, track%nodes(track%filled + 1), always)
+      associate (track => extremes%tracks(place))
+         call find_node(set, track, t, track%nodes(track%filled + 1), always)
          if (track%filled == 2) call look_for_extreme(track)
       end associate
    end subroutine find_next
@@ -132,61 +132,61 @@ contains
 
    contains
 
-      !> Takes values `v` after the `last` one with a clear sign; those up to `noise` have none.
-      subroutine compare(v, noise, last)
-         real(wp), intent(in) :: v(:), noise
+      !> Takes `values` after the `last` one with a clear sign; those up to `noise` have none.
+      subroutine compare(values, noise, last)
+         real(wp), intent(in) :: values(:), noise
          real(wp), intent(inout) :: last
          integer :: n
 
-         do n = 1, size(v)
-            if (abs(v(n)) <= noise) cycle
-            track%turns = track%turns .or. differ_in_sign(last, v(n))
-            last = v(n)
+         do n = 1, size(values)
+            if (abs(values(n)) <= noise) cycle
+            track%turns = track%turns .or. differ_in_sign(last, values(n))
+            last = values(n)
          end do
       end subroutine compare
    end subroutine look_for_extreme
 
    !> The parts between three nodes have one length, and are searched together.
-   pure logical function is_pair(track, a, middle, b)
+   pure logical function is_pair(track, before, middle, after)
       type(track_t), intent(in) :: track
-      type(node_t), intent(in) :: a, middle, b
+      type(node_t), intent(in) :: before, middle, after
 
-      associate (length => abs(b%t - a%t))
-         is_pair = length <= track%longest .and. abs(b%t - 2.0_wp*middle%t + a%t) <= alike_part*length
+      associate (length => abs(after%t - before%t))
+         is_pair = length <= track%longest .and. abs(after%t - 2.0_wp*middle%t + before%t) <= alike_part*length
       end associate
    end function is_pair
 
-   !> Takes the node of mechanism `c` that comes next, and searches between it and the last one of which all is known.
-   !> Two parts of one length are searched together: the node between them is the one in the middle, and no motion is
-   !> looked for. They are passed over if nothing turns there.
-   subroutine add_node(x, s, c)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+   !> Takes the node of mechanism `place` that comes next, and searches between it and the last one of which all is
+   !> known. Two parts of one length are searched together: the node between them is the one in the middle, and no
+   !> motion is looked for. They are passed over if nothing turns there.
+   subroutine add_node(extremes, set, place)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: place
       integer :: n
 
-      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
+      associate (track => extremes%tracks(place), nodes => extremes%tracks(place)%nodes)
          n = track%filled + 1
          if (.not. nodes(n)%is_known) then
-            call search_waiting(x, s, c)
-            call take_node(x, c, nodes(n), .true.)
+            call search_waiting(extremes, set, place)
+            call take_node(extremes, place, nodes(n), .true.)
             ! Nothing is searched across it.
             track%filled = 0
             return
          end if
          track%filled = n
-         if (n == 1) call take_node(x, c, nodes(1), .true.)
+         if (n == 1) call take_node(extremes, place, nodes(1), .true.)
          if (n < 3) return
          if (track%turns) then
-            call take_node(x, c, nodes(1), .true.)
+            call take_node(extremes, place, nodes(1), .true.)
             if (is_pair(track, nodes(1), nodes(2), nodes(3))) then
-               call search_part(x, s, c, nodes(1), nodes(3), nodes(2))
+               call search_part(extremes, set, place, nodes(1), nodes(3), nodes(2))
             else
-               call search_part(x, s, c, nodes(1), nodes(2))
-               call take_node(x, c, nodes(2), .true.)
-               call search_part(x, s, c, nodes(2), nodes(3))
+               call search_part(extremes, set, place, nodes(1), nodes(2))
+               call take_node(extremes, place, nodes(2), .true.)
+               call search_part(extremes, set, place, nodes(2), nodes(3))
             end if
-            call take_node(x, c, nodes(3), .true.)
+            call take_node(extremes, place, nodes(3), .true.)
          end if
          ! Into the room that there is: this is done at every instant.
          nodes(1)%t = nodes(3)%t
@@ -196,49 +196,49 @@ contains
       end associate
    end subroutine add_node
 
-   !> Searches between the last node of mechanism `c` and the one that waits, if there is one: the last one ends a
+   !> Searches between the last node of mechanism `part` and the one that waits, if there is one: the last one ends a
    !> piece.
-   subroutine search_waiting(x, s, c)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
+   subroutine search_waiting(extremes, set, part)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part
 
-      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
+      associate (track => extremes%tracks(part), nodes => extremes%tracks(part)%nodes)
          if (track%filled == 0) return
-         call take_node(x, c, nodes(1), .true.)
+         call take_node(extremes, part, nodes(1), .true.)
          if (track%filled == 1) return
-         call search_part(x, s, c, nodes(1), nodes(2))
-         call take_node(x, c, nodes(2), .true.)
+         call search_part(extremes, set, part, nodes(1), nodes(2))
+         call take_node(extremes, part, nodes(2), .true.)
          nodes(1) = nodes(2)
          track%filled = 1
       end associate
    end subroutine search_waiting
 
-   !> Finds the third derivatives `jerk` at both ends of a part with the samples `a`, `middle` and `b`: those of the
-   !> polynomial of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic values.
-   !> `noise`: what rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with the
-   !> accelerations and jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
-   pure subroutine find_jerk(a, middle, b, size_of, jerk, noise, simple)
-      type(sample_t), intent(in) :: a, middle, b
+   !> Finds the third derivatives `jerk` at both ends of a part with the samples `before`, `middle` and `after`: those
+   !> of the polynomial of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic
+   !> values. `noise`: what rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with
+   !> the accelerations and jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
+   pure subroutine find_jerk(before, middle, after, size_of, jerk, noise, simple)
+      type(sample_t), intent(in) :: before, middle, after
       real(wp), intent(in) :: size_of(0:2)
       real(wp), intent(out) :: jerk(2), noise(3)
       logical, intent(out) :: simple
       real(wp), dimension(0:2) :: left, odd, even
       real(wp) :: seventh, eighth, mean, change, open, h, most, step
 
-      h = b%t - a%t
-      left = left_open(a, middle, b, size_of)
+      h = after%t - before%t
+      left = left_open(before, middle, after, size_of)
       noise(:2) = left(1:)
       noise(3) = errors_by_rates*(noise(1)/abs(h) + noise(2))/abs(h)
-      call find_differences(a, middle, b, left(0), odd, even, seventh, eighth)
+      call find_differences(before, middle, after, left(0), odd, even, seventh, eighth)
       ! The mean of both jerks and half their change, in accelerations; what is less than `open` counts for nothing.
       mean = (40.0_wp*odd(2) - 64.0_wp*odd(1) + 448.0_wp*seventh)/(h*h)
       change = (56.0_wp*even(2) - 120.0_wp*even(1) + 512.0_wp*eighth)/(h*h)
       jerk = [mean - change, mean + change]/h
       open = overlooked*size_of(2) + noise(3)*abs(h)
-      step = b%f(2) - a%f(2)
-      simple = abs(middle%f(2) - 0.5_wp*(a%f(2) + b%f(2)) + 0.25_wp*change) <= misses_by &
-         *(max(a%f(2), middle%f(2), b%f(2)) - min(a%f(2), middle%f(2), b%f(2))) + open
+      step = after%f(2) - before%f(2)
+      simple = abs(middle%f(2) - 0.5_wp*(before%f(2) + after%f(2)) + 0.25_wp*change) <= misses_by &
+         *(max(before%f(2), middle%f(2), after%f(2)) - min(before%f(2), middle%f(2), after%f(2))) + open
       most = abs(mean) + abs(change)
       if (abs(change) > abs(mean) .or. most <= open) return
       simple = simple .and. mean*sign(1.0_wp, step) > 0.0_wp .and. most <= steeper_by*abs(step) + open
@@ -247,16 +247,16 @@ contains
    !> The coefficients (0:8) of that polynomial, of the time from the middle in halves of the part. Its `jerk` has an
    !> error of 2E-6 of the ninth derivative, but where rounding explains the difference from rates and accelerations
    !> alone, with an error of 7E-4 of the seventh.
-   pure function curve_through(a, middle, b, size_of) result(curve)
-      type(sample_t), intent(in) :: a, middle, b
+   pure function curve_through(before, middle, after, size_of) result(curve)
+      type(sample_t), intent(in) :: before, middle, after
       real(wp), intent(in) :: size_of(0:2)
       real(wp) :: curve(0:8)
       real(wp), dimension(0:2) :: left, odd, even
       real(wp) :: half
 
-      half = 0.5_wp*(b%t - a%t)
-      left = left_open(a, middle, b, size_of)
-      call find_differences(a, middle, b, left(0), odd, even, curve(7), curve(8))
+      half = 0.5_wp*(after%t - before%t)
+      left = left_open(before, middle, after, size_of)
+      call find_differences(before, middle, after, left(0), odd, even, curve(7), curve(8))
       curve(:2) = middle%f*[1.0_wp, half, 0.5_wp*half**2]
       curve(5) = (odd(2) - 2.0_wp*odd(1) - 28.0_wp*curve(7))/10.0_wp
       curve(3) = (odd(1) - 5.0_wp*curve(5) - 7.0_wp*curve(7))/3.0_wp
@@ -266,31 +266,31 @@ contains
 
    !> What is `left` open at most of values, rates and accelerations: by errors, by the size of numbers, and by a
    !> rounding of the time.
-   pure function left_open(a, middle, b, size_of) result(left)
-      type(sample_t), intent(in) :: a, middle, b
+   pure function left_open(before, middle, after, size_of) result(left)
+      type(sample_t), intent(in) :: before, middle, after
       real(wp), intent(in) :: size_of(0:2)
       real(wp) :: left(0:2), largest(0:2)
 
-      largest = max(abs(a%f), abs(middle%f), abs(b%f))
-      left = max(noise_part, epsilon(1.0_wp)*max(a%growth, middle%growth, b%growth))*max(size_of, largest)
-      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))*largest(1:)
-      left = max(a%error, middle%error, b%error, left)
+      largest = max(abs(before%f), abs(middle%f), abs(after%f))
+      left = max(noise_part, epsilon(1.0_wp)*max(before%growth, middle%growth, after%growth))*max(size_of, largest)
+      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(before%t), abs(after%t))*largest(1:)
+      left = max(before%error, middle%error, after%error, left)
    end function left_open
 
    !> Finds by what values, rates and accelerations at the ends differ from those of the square at the middle, halves
    !> of the part as unit of time: the `odd` (0:2) and `even` (0:2) parts of the differences, and the coefficients of
    !> degree 7 and 8, which are 0 where rounding explains them by values that are `open`.
-   pure subroutine find_differences(a, middle, b, open, odd, even, seventh, eighth)
-      type(sample_t), intent(in) :: a, middle, b
+   pure subroutine find_differences(before, middle, after, open, odd, even, seventh, eighth)
+      type(sample_t), intent(in) :: before, middle, after
       real(wp), intent(in) :: open
       real(wp), intent(out) :: odd(0:2), even(0:2), seventh, eighth
       real(wp), dimension(0:2) :: first, half, last
       real(wp) :: h
 
-      h = 0.5_wp*(b%t - a%t)
-      first = [a%f(0), h*a%f(1), h*h*a%f(2)]
+      h = 0.5_wp*(after%t - before%t)
+      first = [before%f(0), h*before%f(1), h*h*before%f(2)]
       half = [middle%f(0), h*middle%f(1), h*h*middle%f(2)]
-      last = [b%f(0), h*b%f(1), h*h*b%f(2)]
+      last = [after%f(0), h*after%f(1), h*h*after%f(2)]
       odd = [0.5_wp*(last(0) - first(0)) - half(1), 0.5_wp*(last(1) + first(1)) - half(1), 0.5_wp*(last(2) - first(2))]
       even = [0.5_wp*(last(0) + first(0)) - half(0) - 0.5_wp*half(2), 0.5_wp*(last(1) - first(1)) - half(2), &
          0.5_wp*(last(2) + first(2)) - half(2)]
@@ -303,18 +303,18 @@ contains
       eighth = eighth/8.0_wp
    end subroutine find_differences
 
-   !> The values of `node` of mechanism `c` may be extremes; its velocities are the `next` along the run.
-   subroutine take_node(x, c, node, next)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: c
+   !> The values of `node` of mechanism `part` may be extremes; its velocities are the `next` along the run.
+   subroutine take_node(extremes, part, node, next)
+      type(extremes_t), intent(inout) :: extremes
+      integer, intent(in) :: part
       type(node_t), intent(in) :: node
       logical, intent(in) :: next
       integer :: i, k
 
       do i = 1, size(node%samples)
-         associate (one => x%tracks(c)%coordinates(i), sample => node%samples(i))
+         associate (one => extremes%tracks(part)%coordinates(i), sample => node%samples(i))
             do k = 0, sample%known
-               call offer_sample(one, k, sample, .false., x%step)
+               call offer_sample(one, k, sample, .false., extremes%step)
             end do
             ! A length that is 0, since its points coincide, turns there.
             if (next .and. (sample%known == 2 .or. (sample%meets .and. sample%known == 0))) &
@@ -323,97 +323,99 @@ contains
       end do
    end subroutine take_node
 
-   !> Searches between the nodes `a` and `b` of mechanism `c`, in halves where accelerations are not simple; `between`:
-   !> a node in the middle.
-   recursive subroutine search_part(x, s, c, a, b, between)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: a, b
+   !> Searches between the nodes `before` and `after` of mechanism `part`, in halves where accelerations are not simple;
+   !> `between`: a node in the middle.
+   recursive subroutine search_part(extremes, set, part, before, after, between)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part
+      type(node_t), intent(in) :: before, after
       type(node_t), intent(in), optional :: between
       type(node_t) :: middle
-      real(wp) :: shortest, jerk(2), noise(3, size(x%tracks(c)%coordinates))
-      logical, dimension(size(x%tracks(c)%coordinates)) :: simple, has_kink
+      real(wp) :: shortest, jerk(2), noise(3, size(extremes%tracks(part)%coordinates))
+      logical, dimension(size(extremes%tracks(part)%coordinates)) :: simple, has_kink
       logical :: is_last, meets(3)
       integer :: i
 
       has_kink = .false.
-      associate (track => x%tracks(c), length => abs(b%t - a%t))
-         shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
-         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
+      associate (track => extremes%tracks(part), length => abs(after%t - before%t))
+         shortest = max(shortest_part*extremes%step, time_part*max(abs(before%t), abs(after%t)))
+         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(extremes%run, before%t))
          if (length <= shortest) then
             ! Near a joint there is nothing to be missed but the joint itself.
-            if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
-            if (present(between)) call take_node(x, c, between, .true.)
+            if (length > 0.5_wp*extremes%step) call note_interval(extremes%open, extremes%way, before%t, after%t, &
+               shortest)
+            if (present(between)) call take_node(extremes, part, between, .true.)
             return
          end if
          if (present(between)) then
             middle = between
          else
-            call find_node(s, track, a%t + 0.5_wp*(b%t - a%t), middle, .false.)
+            call find_node(set, track, before%t + 0.5_wp*(after%t - before%t), middle, .false.)
          end if
          if (.not. middle%is_known) then
-            call note_interval(x%open, x%way, a%t, b%t, shortest)
+            call note_interval(extremes%open, extremes%way, before%t, after%t, shortest)
             return
          end if
          do i = 1, size(simple)
             ! Where points of a measure coincide at one of the three nodes it is searched up to there.
-            meets = [a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets]
+            meets = [before%samples(i)%meets, middle%samples(i)%meets, after%samples(i)%meets]
             simple(i) = all(meets)
-            if (.not. any(meets)) call find_jerk(a%samples(i), middle%samples(i), b%samples(i), &
+            if (.not. any(meets)) call find_jerk(before%samples(i), middle%samples(i), after%samples(i), &
                track%coordinates(i)%size_of, jerk, noise(:, i), simple(i))
          end do
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
             do i = 1, size(simple)
                if (.not. simple(i) .and. length <= 2.0_wp*shortest) &
-                  has_kink(i) = jumps(s, track%coordinates(i), a%samples(i), middle%samples(i), b%samples(i))
+                  has_kink(i) = jumps(set, track%coordinates(i), before%samples(i), middle%samples(i), after%samples(i))
             end do
-            if (.not. all(simple .or. has_kink)) call note_interval(x%open, x%way, a%t, b%t, shortest)
-            call take_node(x, c, middle, .false.)
-            call search_columns(x, s, c, a, middle, b, noise(3, :), has_kink)
+            if (.not. all(simple .or. has_kink)) call note_interval(extremes%open, extremes%way, before%t, after%t, &
+               shortest)
+            call take_node(extremes, part, middle, .false.)
+            call search_columns(extremes, set, part, before, middle, after, noise(3, :), has_kink)
          else
             track%halvings = track%halvings + 1
-            call search_part(x, s, c, a, middle)
-            call take_node(x, c, middle, .false.)
-            call search_part(x, s, c, middle, b)
+            call search_part(extremes, set, part, before, middle)
+            call take_node(extremes, part, middle, .false.)
+            call search_part(extremes, set, part, middle, after)
          end if
       end associate
    end subroutine search_part
 
    !> Tells whether points of a measure coincide in a short part: the rate of a length jumps there, or a direction.
    !> The place of that is found by halving. The parts beside this one are searched.
-   logical function jumps(s, one, a, middle, b)
-      type(set_analysis_t), intent(inout) :: s
+   logical function jumps(set, one, before, middle, after)
+      type(set_analysis_t), intent(inout) :: set
       type(coordinate_t), intent(in) :: one
-      type(sample_t), intent(in) :: a, middle, b   !< at the ends and in the middle of the part
+      type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       type(row_t) :: row(1)
       real(wp) :: t, ends(2)
       integer :: k
 
-      jumps = a%meets .or. middle%meets .or. b%meets
+      jumps = before%meets .or. middle%meets .or. after%meets
       if (jumps) return
       k = merge(0, 1, one%is_angle)
-      ends = [a%t, b%t]
+      ends = [before%t, after%t]
       do
          t = ends(1) + 0.5_wp*(ends(2) - ends(1))
-         call rows_at(s, [one%request], t, row)
+         call rows_at(set, [one%request], t, row)
          if (row(1)%known < 2) return
          jumps = row(1)%weight <= alike
          if (jumps .or. abs(ends(2) - ends(1)) <= 4.0_wp*spacing(maxval(abs(ends)))) return
          associate (f => row(1)%value(one%column, k))
-            ends(merge(1, 2, abs(f - a%f(k)) < abs(f - b%f(k)))) = t
+            ends(merge(1, 2, abs(f - before%f(k)) < abs(f - after%f(k)))) = t
          end associate
       end do
    end function jumps
 
-   !> Searches for extremes of all columns of mechanism `c` between the nodes `a` and `b`, with the node `middle`.
-   !> Rounding may leave the `noise` (coordinates) of their third derivatives open.
-   subroutine search_columns(x, s, c, a, middle, b, noise, has_kink)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: a, middle, b
+   !> Searches for extremes of all columns of mechanism `part` between the nodes `before` and `after`, with the node
+   !> `middle`. Rounding may leave the `noise` (coordinates) of their third derivatives open.
+   subroutine search_columns(extremes, set, part, before, middle, after, noise, has_kink)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part
+      type(node_t), intent(in) :: before, middle, after
       real(wp), intent(in) :: noise(:)
       logical, intent(in) :: has_kink(:)     !< (coordinates) only a length is searched, which turns where it is 0
       type(sample_t), allocatable :: path(:), known(:)
@@ -423,21 +425,23 @@ contains
       integer :: i, k, n, order, last
 
       ! The motion is smooth from the last joint before to the next one, or to the ends of the run so far.
-      associate (joints => x%tracks(c)%joints, beside => x%way*beside_joint(x%run, a%t))
-         smooth = [s%now%t0, s%now%motions(c)%t]
-         n = count((joints - a%t)*x%way <= 0.0_wp)
+      associate (joints => extremes%tracks(part)%joints, beside => extremes%way*beside_joint(extremes%run, before%t))
+         smooth = [set%now%t0, set%now%motions(part)%t]
+         n = count((joints - before%t)*extremes%way <= 0.0_wp)
          if (n > 0) smooth(1) = joints(n) + beside
-         n = count((joints - b%t)*x%way < 0.0_wp)
-         if (n < size(joints)) smooth(2) = x%way*min(x%way*smooth(2), x%way*(joints(n + 1) - beside))
+         n = count((joints - after%t)*extremes%way < 0.0_wp)
+         if (n < size(joints)) smooth(2) = extremes%way*min(extremes%way*smooth(2), &
+            extremes%way*(joints(n + 1) - beside))
       end associate
-      do i = 1, size(x%tracks(c)%coordinates)
-         if (any([a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets])) cycle
-         if (has_kink(i) .and. x%tracks(c)%coordinates(i)%is_angle) cycle
-         associate (one => x%tracks(c)%coordinates(i))
-            path = [a%samples(i), middle%samples(i), b%samples(i)]
-            column = column_t(one%request, one%column, min(max_part*abs(b%t - a%t), &
-               max(difference_part*x%step, difference_angle*one%size_of(1)/one%size_of(2))), smooth, middle=middle%t, &
-               half=0.5_wp*(b%t - a%t), &
+      do i = 1, size(extremes%tracks(part)%coordinates)
+         if (any([before%samples(i)%meets, middle%samples(i)%meets, after%samples(i)%meets])) cycle
+         if (has_kink(i) .and. extremes%tracks(part)%coordinates(i)%is_angle) cycle
+         associate (one => extremes%tracks(part)%coordinates(i))
+            path = [before%samples(i), middle%samples(i), after%samples(i)]
+            column = column_t(one%request, one%column, min(max_part*abs(after%t - before%t), &
+               max(difference_part*extremes%step, difference_angle*one%size_of(1)/one%size_of(2))), smooth, &
+                  middle=middle%t, &
+               half=0.5_wp*(after%t - before%t), &
                curve=curve_through(path(1), path(2), path(3), one%size_of))
             do k = 0, 2
                column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
@@ -446,10 +450,10 @@ contains
             ! An extreme of the acceleration; of the velocity, one on either side of that at most; of the coordinate,
             ! one on either side of each of these. Where accelerations are alike and rounding explains the change of
             ! their derivative, none is told.
-            jerk = [on_curve(column, 3, a%t), on_curve(column, 3, b%t)]
+            jerk = [on_curve(column, 3, before%t), on_curve(column, 3, after%t)]
             if (differ_in_sign(jerk(1), jerk(2)) .and. .not. has_kink(i) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
                .or. maxval(path%f(2)) - minval(path%f(2)) > 2.0_wp*max(alike*one%size_of(2), column%noise(2)))) then
-               call find_turn(s, column, path(1), path(3), found)
+               call find_turn(set, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call take_found(2)
             end if
@@ -461,7 +465,7 @@ contains
                   if (abs(known(k)%f(order)) <= column%noise(order)) cycle
                   if (last > 0) then
                      if (differ_in_sign(known(last)%f(order), known(k)%f(order))) then
-                        call find_zero(s, column, order, 0.0_wp, known(last), known(k), found)
+                        call find_zero(set, column, order, 0.0_wp, known(last), known(k), found)
                         call take_found(order - 1)
                      end if
                   end if
@@ -483,8 +487,8 @@ contains
          integer :: n
 
          if (found%known < 2) return
-         call offer_sample(x%tracks(c)%coordinates(i), k, found, .true., x%step)
-         n = count((path%t - found%t)*(b%t - a%t) < 0.0_wp)
+         call offer_sample(extremes%tracks(part)%coordinates(i), k, found, .true., extremes%step)
+         n = count((path%t - found%t)*(after%t - before%t) < 0.0_wp)
          path = [path(:n), found, path(n + 1:)]
       end subroutine take_found
    end subroutine search_columns

@@ -18,29 +18,29 @@ module counts
 
 contains
 
-   !> Takes the instant to which `a` has advanced: whether it is flagged, and of the first one why.
-   subroutine note_flag(r, a)
-      type(counts_t), intent(inout) :: r
-      type(set_analysis_t), intent(in) :: a
+   !> Takes the instant to which `set` has advanced: whether it is flagged, and of the first one why.
+   subroutine note_flag(counts, set)
+      type(counts_t), intent(inout) :: counts
+      type(set_analysis_t), intent(in) :: set
       integer :: c, i
 
-      if (.not. is_flagged(a%now)) then
-         r%solved = r%solved + 1
+      if (.not. is_flagged(set%now)) then
+         counts%solved = counts%solved + 1
          return
       end if
-      r%flagged = r%flagged + 1
-      do c = 1, a%now%count
-         associate (q => a%now%motions(c))
-            if (r%mark == mark_none .and. q%mark /= mark_none) then
-               r%mark = q%mark
-               r%singularity = q%singularity
-               r%t = q%t
+      counts%flagged = counts%flagged + 1
+      do c = 1, set%now%count
+         associate (q => set%now%motions(c))
+            if (counts%mark == mark_none .and. q%mark /= mark_none) then
+               counts%mark = q%mark
+               counts%singularity = q%singularity
+               counts%t = q%t
             end if
-            if (r%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
+            if (counts%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
             i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
             if (i == 0) cycle
-            r%limit = q%diagnostics(i)
-            r%limit%part = c
+            counts%limit = q%diagnostics(i)
+            counts%limit%part = c
          end associate
       end do
    end subroutine note_flag

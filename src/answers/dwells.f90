@@ -21,11 +21,11 @@ module dwells
 
 contains
 
-   !> The dwells (any number) of the set that `s` has analysed, after its last instant, by its extremes `x`; none
+   !> The dwells (any number) of the set that `set` has analysed, after its last instant, by its `extremes`; none
    !> of what never leaves its distance, and none at all where some of the motion between instants is not known.
-   subroutine find_dwells(x, s, list)
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(inout) :: s
+   subroutine find_dwells(extremes, set, list)
+      type(extremes_t), intent(in) :: extremes
+      type(set_analysis_t), intent(inout) :: set
       type(dwell_t), allocatable, intent(out) :: list(:)
       type(dwell_t) :: one
       type(value_at_t), allocatable :: path(:)
@@ -35,17 +35,17 @@ contains
       logical :: is_cycle, found(2)
 
       allocate (list(0))
-      if (.not. is_covered(x)) return
-      do c = 1, size(x%tracks)
-         do i = 1, size(x%tracks(c)%coordinates)
-            associate (moved => x%tracks(c)%coordinates(i))
+      if (.not. is_covered(extremes)) return
+      do c = 1, size(extremes%tracks)
+         do i = 1, size(extremes%tracks(c)%coordinates)
+            associate (moved => extremes%tracks(c)%coordinates(i))
                one = dwell_t(moved%request, moved%column, distance=moved%dwell)
                stroke = moved%found(greatest, 0)%value - moved%found(least, 0)%value
                if (one%distance <= 0.0_wp .or. stroke <= one%distance) cycle
                ! They are in order but for extremes beside the middle of a part.
-               path = moved%places(order_along(moved%places%t, x%way))
+               path = moved%places(order_along(moved%places%t, extremes%way))
                ! A crank that has made whole turns is not where it was.
-               is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, c)
+               is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(extremes, c)
 
                do which = least, greatest
                   one%which = which
@@ -92,8 +92,8 @@ contains
             if (.not. inside(to)) exit
          end do
          if (passed > size(path)) return
-         associate (moved => x%tracks(c)%coordinates(i))
-            call find_zero(s, column_t(moved%request, moved%column, noise=noise_part*moved%size_of), 0, level, &
+         associate (moved => extremes%tracks(c)%coordinates(i))
+            call find_zero(set, column_t(moved%request, moved%column, noise=noise_part*moved%size_of), 0, level, &
                sample_t(path(from)%t, [path(from)%value, 0.0_wp, 0.0_wp], known=2), &
                sample_t(path(to)%t, [path(to)%value, 0.0_wp, 0.0_wp], known=2), zero)
             ! The level is known as far as the extreme.

@@ -43,48 +43,48 @@ module extreme_search
 
 contains
 
-   !> Takes instant number `k`, to which `s` has advanced. Only the instants of TIME count.
-   subroutine note_instant(x, s, k)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
+   !> Takes instant number `k`, to which `set` has advanced. Only the instants of TIME count.
+   subroutine note_instant(extremes, set, k)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: k
       integer :: c
 
-      if (k > s%now%steps) return
-      do c = 1, size(x%tracks)
-         if (size(x%tracks(c)%coordinates) == 0) cycle
-         call find_next(x, s, c, s%now%motions(c)%t, .false.)
-         call search_instant(x, s, c, k, is_searched(x, s, c))
+      if (k > set%now%steps) return
+      do c = 1, size(extremes%tracks)
+         if (size(extremes%tracks(c)%coordinates) == 0) cycle
+         call find_next(extremes, set, c, set%now%motions(c)%t, .false.)
+         call search_instant(extremes, set, c, k, is_searched(extremes, set, c))
       end do
    end subroutine note_instant
 
-   !> Between the last instant of mechanism `c` and the one whose node is found something is searched for: a number may
-   !> turn, or the step is divided.
-   pure logical function is_searched(x, s, c)
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: c
+   !> Between the last instant of mechanism `part` and the one whose node is found something is searched for: a number
+   !> may turn, or the step is divided.
+   pure logical function is_searched(extremes, set, part)
+      type(extremes_t), intent(in) :: extremes
+      type(set_analysis_t), intent(in) :: set
+      integer, intent(in) :: part
 
-      associate (track => x%tracks(c), q => s%now%motions(c))
+      associate (track => extremes%tracks(part), q => set%now%motions(part))
          is_searched = (track%filled == 2 .and. track%turns) .or. track%last%is_open .or. allocated(q%diagnostics) &
             .or. .not. track%nodes(track%filled + 1)%is_known .or. abs(q%t - track%last%t) > track%longest
          if (.not. is_searched .and. size(track%joints) > 0) &
-            is_searched = size(times_between(track%joints, track%longest, x%run, track%last%t, q%t)) > 0
+            is_searched = size(times_between(track%joints, track%longest, extremes%run, track%last%t, q%t)) > 0
       end associate
    end function is_searched
 
-   !> Searches up to instant number `k` of mechanism `c`, whose node is found, and goes on from there. `searches`: see
-   !> `is_searched`.
-   subroutine search_instant(x, s, c, k, searches)
-      type(extremes_t), intent(inout) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c, k
+   !> Searches up to instant number `k` of mechanism `part`, whose node is found, and goes on from there. `searches`:
+   !> see `is_searched`.
+   subroutine search_instant(extremes, set, part, k, searches)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part, k
       logical, intent(in) :: searches
       type(node_t) :: now
       real(wp) :: t
       logical :: known
 
-      associate (track => x%tracks(c), q => s%now%motions(c))
+      associate (track => extremes%tracks(part), q => set%now%motions(part))
          t = q%t
          track%halvings = 0
          if (searches .and. k > 0) then
@@ -98,38 +98,38 @@ contains
             known = node%is_known
             track%is_lost = node%is_lost
          end associate
-         call add_node(x, s, c)
-         if (k == s%now%steps) call search_waiting(x, s, c)
-         if (k == s%now%steps) then
-            track%closure = apart_from_first(s, c)
-            call settle_ratios(track%coordinates, s%now%parts(c))
+         call add_node(extremes, set, part)
+         if (k == set%now%steps) call search_waiting(extremes, set, part)
+         if (k == set%now%steps) then
+            track%closure = apart_from_first(set, part)
+            call settle_ratios(track%coordinates, set%now%parts(part))
          end if
-         if (.not. known) call note_interval(x%gaps, x%way, t, t, 0.0_wp)
+         if (.not. known) call note_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
          track%last = end_t(t, .not. known, q%singularity == singular_change)
       end associate
 
    contains
 
-      !> Searches between the last instant of mechanism `c` and instant number `k`, at `t`.
+      !> Searches between the last instant of mechanism `part` and instant number `k`, at `t`.
       subroutine search_step()
          real(wp), allocatable :: ends(:), times(:)
          type(end_t) :: from, to
          logical :: is_limit
          integer :: i
 
-         associate (track => x%tracks(c), t1 => x%tracks(c)%last%t)
-            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
-            if (s%now%motions(c)%known >= 0) ends = [ends, t]
+         associate (track => extremes%tracks(part), t1 => extremes%tracks(part)%last%t)
+            call find_ends(set%now%motions(part), t1, extremes%way, ends, is_limit)
+            if (set%now%motions(part)%known >= 0) ends = [ends, t]
             if (track%is_lost) ends = [real(wp) ::]
-            times = times_between(track%joints, track%longest, x%run, t1, t)
+            times = times_between(track%joints, track%longest, extremes%run, t1, t)
             from = track%last
             do i = 1, size(ends)
                to = end_t(ends(i), i < size(ends) .or. is_limit .or. .not. known, &
-                  i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit))
+                  i < size(ends) .or. (set%now%motions(part)%singularity == singular_change .and. .not. is_limit))
                call search_piece(times, from, to)
                from = end_t(ends(i), .true., .true.)
             end do
-            if (abs(t - from%t) > 0.0_wp) call note_interval(x%gaps, x%way, from%t, t, 0.0_wp)
+            if (abs(t - from%t) > 0.0_wp) call note_interval(extremes%gaps, extremes%way, from%t, t, 0.0_wp)
          end associate
       end subroutine search_step
 
@@ -150,7 +150,8 @@ contains
          do i = 1, size(q%diagnostics)
             associate (d => q%diagnostics(i))
                if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-               if ((d%t - last)*way <= merge(beside_joint(x%run, last), 0.0_wp, d%kind == diagnostic_change)) cycle
+               if ((d%t - last)*way <= merge(beside_joint(extremes%run, last), 0.0_wp, d%kind == &
+                  diagnostic_change)) cycle
                is_limit = d%kind == diagnostic_limit
                if ((q%t - d%t)*way <= 0.0_wp .and. .not. is_limit) cycle
                ! A limit at the instant itself is later only by rounding.
@@ -170,12 +171,13 @@ contains
          low = from%t
          high = to%t
          if (from%is_open) then
-            call search_waiting(x, s, c)
-            x%tracks(c)%filled = 0
+            call search_waiting(extremes, set, part)
+            extremes%tracks(part)%filled = 0
             call take_limits(from, to%t, beside)
             low = beside(places)
             call look_at(beside(1), .true.)
-            call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, x%tracks(c)%filled > 0), 0.0_wp)
+            call note_interval(extremes%open, extremes%way, from%t, merge(beside(1), to%t, &
+               extremes%tracks(part)%filled > 0), 0.0_wp)
             call look_at(low, .true.)
          end if
          if (to%is_open) then
@@ -183,16 +185,16 @@ contains
             high = beside(places)
          end if
          do i = 1, size(times)
-            if ((times(i) - low)*x%way > 0.0_wp .and. (high - times(i))*x%way > 0.0_wp) &
+            if ((times(i) - low)*extremes%way > 0.0_wp .and. (high - times(i))*extremes%way > 0.0_wp) &
                call look_at(times(i), .false.)
          end do
          if (.not. to%is_open) return
          call look_at(high, .true.)
          call look_at(beside(1), .true.)
-         call search_waiting(x, s, c)
+         call search_waiting(extremes, set, part)
          low = from%t
-         if (x%tracks(c)%filled > 0) low = x%tracks(c)%nodes(1)%t
-         call note_interval(x%open, x%way, low, to%t, 0.0_wp)
+         if (extremes%tracks(part)%filled > 0) low = extremes%tracks(part)%nodes(1)%t
+         call note_interval(extremes%open, extremes%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
       !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times
@@ -202,7 +204,7 @@ contains
          real(wp), intent(in) :: other
          real(wp), intent(out) :: beside(places)
          type(node_t) :: near(places)
-         type(extreme_t), dimension(0:2, size(x%tracks(c)%coordinates)) :: limits, best
+         type(extreme_t), dimension(0:2, size(extremes%tracks(part)%coordinates)) :: limits, best
          real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
          integer :: i, k, n, try
 
@@ -211,11 +213,11 @@ contains
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             ! The nearest first, on the side of `other`.
-            nearest = merge(nearer**try*beside_change, farther**try*beside_limit, at%is_change)*x%step
+            nearest = merge(nearer**try*beside_change, farther**try*beside_limit, at%is_change)*extremes%step
             nearest = min(nearest, abs(other - at%t)/(2*places**2))
             times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places
-               call find_node(s, x%tracks(c), times(i), near(i), .true.)
+               call find_node(set, extremes%tracks(part), times(i), near(i), .true.)
                if (.not. near(i)%is_known) exit
             end do
             if (i <= places) cycle
@@ -225,7 +227,7 @@ contains
             error = 0.0_wp
             do k = 1, size(limits, 2)
                do i = 0, 2
-                  associate (one => limits(i, k), size_of => x%tracks(c)%coordinates(k)%size_of(i))
+                  associate (one => limits(i, k), size_of => extremes%tracks(part)%coordinates(k)%size_of(i))
                      one = extreme_t()
                      ! Points of a measure coincide.
                      if (any([(near(n)%samples(k)%known < 2, n=1, places)])) cycle
@@ -250,7 +252,7 @@ contains
          if (least_error >= huge(1.0_wp)) beside = times
          do k = 1, size(best, 2)
             do i = 0, 2
-               if (best(i, k)%exists) call offer(x%tracks(c)%coordinates(k), i, best(i, k), 0.0_wp)
+               if (best(i, k)%exists) call offer(extremes%tracks(part)%coordinates(k), i, best(i, k), 0.0_wp)
             end do
          end do
       end subroutine take_limits
@@ -260,12 +262,12 @@ contains
          real(wp), intent(in) :: t
          logical, intent(in) :: always
 
-         associate (track => x%tracks(c))
-            call find_next(x, s, c, t, always)
+         associate (track => extremes%tracks(part))
+            call find_next(extremes, set, part, t, always)
             if (track%nodes(track%filled + 1)%is_known) then
-               call add_node(x, s, c)
+               call add_node(extremes, set, part)
             else
-               call note_interval(x%gaps, x%way, t, t, 0.0_wp)
+               call note_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
             end if
          end associate
       end subroutine look_at

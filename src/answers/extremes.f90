@@ -116,15 +116,15 @@ module extremes
 
 contains
 
-   !> The rows of `s` whose extremes are asked for, but those of the ground, which does not move.
-   pure function rows_asked(s) result(asked)
-      class(set_t), intent(in) :: s
+   !> The rows of `set` whose extremes are asked for, but those of the ground, which does not move.
+   pure function rows_asked(set) result(asked)
+      class(set_t), intent(in) :: set
       integer, allocatable :: asked(:)
-      logical :: is_asked(size(s%rows))
+      logical :: is_asked(size(set%rows))
       integer :: i
 
-      do i = 1, size(s%rows)
-         associate (own => s%parts(s%rows(i)%part), k => s%rows(i)%number)
+      do i = 1, size(set%rows)
+         associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
             is_asked(i) = own%requests(k)%extremes .and. .not. is_fixed(own, own%requests(k))
          end associate
       end do
@@ -133,19 +133,19 @@ contains
 
    !> Makes the coordinate of a ratio: a search takes it as the velocity of a coordinate of which nothing is known, and
    !> the rate of the ratio as the acceleration.
-   pure subroutine take_ratio(c, length, rate, degrees)
-      type(coordinate_t), intent(inout) :: c   !< has the places of the numbers of its row
+   pure subroutine take_ratio(coordinate, length, rate, degrees)
+      type(coordinate_t), intent(inout) :: coordinate   !< has the places of the numbers of its row
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
       real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
       logical, intent(in) :: degrees         !< the deck's unit of angles
 
-      c%column = column_of_ratio
-      c%columns = [0, c%columns(:1)]
-      c%sought = [.false., c%sought(:1)]
+      coordinate%column = column_of_ratio
+      coordinate%columns = [0, coordinate%columns(:1)]
+      coordinate%sought = [.false., coordinate%sought(:1)]
       ! No digit of the first one counts.
-      c%size_of(0) = sqrt(huge(1.0_wp))
-      c%size_of(1) = usual_size(columns_of_rows(c%columns(1))%dimension, 0, length, rate, degrees)
-      c%size_of(2) = c%size_of(1)*rate
+      coordinate%size_of(0) = sqrt(huge(1.0_wp))
+      coordinate%size_of(1) = usual_size(columns_of_rows(coordinate%columns(1))%dimension, 0, length, rate, degrees)
+      coordinate%size_of(2) = coordinate%size_of(1)*rate
    end subroutine take_ratio
 
    !> Makes of the extremes of the rates of ratios those of their derivatives by the drive. Only of a drive with a
@@ -182,32 +182,32 @@ contains
       sought = [(i <= forms(form_of(m, request))%coordinates, i=1, 3)] .and. any(request%sought, dim=2)
    end function are_sought
 
-   !> Ready for the first instant of the set `s`.
-   subroutine new_extremes(s, x)
-      class(set_t), intent(in) :: s
-      type(extremes_t), intent(out) :: x
+   !> Ready for the first instant of the `set`.
+   subroutine new_extremes(set, extremes)
+      class(set_t), intent(in) :: set
+      type(extremes_t), intent(out) :: extremes
       integer, allocatable :: asked(:)
       real(wp) :: length, rate, fastest
       logical :: sought(3)
       integer :: i, c, n, q, k
 
-      x%asked = rows_asked(s)
-      x%run = s%t1 - s%t0
-      x%way = sign(1.0_wp, x%run)
-      x%step = abs(x%run)/real(s%steps, wp)
-      allocate (x%gaps(0), x%open(0), x%tracks(s%count))
-      do c = 1, size(x%tracks)
-         associate (track => x%tracks(c), own => s%parts(c))
-            asked = pack(x%asked, s%rows(x%asked)%part == c)
+      extremes%asked = rows_asked(set)
+      extremes%run = set%t1 - set%t0
+      extremes%way = sign(1.0_wp, extremes%run)
+      extremes%step = abs(extremes%run)/real(set%steps, wp)
+      allocate (extremes%gaps(0), extremes%open(0), extremes%tracks(set%count))
+      do c = 1, size(extremes%tracks)
+         associate (track => extremes%tracks(c), own => set%parts(c))
+            asked = pack(extremes%asked, set%rows(extremes%asked)%part == c)
             track%requests = asked
             allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(count(are_sought(own, own%requests(s%rows(asked(q))%number))), &
+            allocate (track%coordinates(sum([(count(are_sought(own, own%requests(set%rows(asked(q))%number))), &
                q=1, size(asked))])))
             n = 0
             do q = 1, size(asked)
-               associate (request => own%requests(s%rows(asked(q))%number))
+               associate (request => own%requests(set%rows(asked(q))%number))
                   sought = are_sought(own, request)
                   do i = 1, size(sought)
                      if (.not. sought(i)) cycle
@@ -224,7 +224,7 @@ contains
                         one%is_measure = request%kind == request_measure
                         if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
-                        if (is_ratio(one%form)) call take_ratio(one, length, rate, s%degrees)
+                        if (is_ratio(one%form)) call take_ratio(one, length, rate, set%degrees)
                         allocate (one%places(0), one%reversals(0))
                      end associate
                   end do
@@ -237,102 +237,107 @@ contains
                track%joints = [track%joints, joints_of(own%drives(i))]
                fastest = max(fastest, largest_frequency(own%drives(i)))
             end do
-            track%joints = track%joints(order_along(track%joints, x%way))
+            track%joints = track%joints(order_along(track%joints, extremes%way))
             track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
          end associate
       end do
    end subroutine new_extremes
 
-   !> Derivative number `k` of `sample` may be an extreme of the coordinate `c`; a place is kept, if its dwells are
+   !> Derivative number `k` of `sample` may be an extreme of the `coordinate`; a place is kept, if its dwells are
    !> asked for. `at_zero`: the sample is at a zero of the next derivative. `step` of TIME.
-   pure subroutine offer_sample(c, k, sample, at_zero, step)
-      type(coordinate_t), intent(inout) :: c
+   pure subroutine offer_sample(coordinate, k, sample, at_zero, step)
+      type(coordinate_t), intent(inout) :: coordinate
       integer, intent(in) :: k
       type(sample_t), intent(in) :: sample
       logical, intent(in) :: at_zero
       real(wp), intent(in) :: step
 
-      call offer(c, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, sample%error(k)), step)
-      if (k == 0 .and. c%dwell > 0.0_wp) c%places = [c%places, value_at_t(sample%t, sample%f(0))]
+      call offer(coordinate, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, &
+         sample%error(k)), step)
+      if (k == 0 .and. coordinate%dwell > 0.0_wp) coordinate%places = [coordinate%places, value_at_t(sample%t, &
+         sample%f(0))]
    end subroutine offer_sample
 
-   !> The value `e` of derivative number `k` of the coordinate `c` may be the least or the greatest. One that is located
-   !> replaces that of a node less than a `step` beside it. So does a node that is alike but by more than rounding: the
-   !> time is open by their distance then.
-   pure subroutine offer(c, k, e, step)
-      type(coordinate_t), intent(inout) :: c
+   !> The value `extreme` of derivative number `k` of the `coordinate` may be the least or the greatest. One that is
+   !> located replaces that of a node less than a `step` beside it. So does a node that is alike but by more than
+   !> rounding: the time is open by their distance then.
+   pure subroutine offer(coordinate, k, extreme, step)
+      type(coordinate_t), intent(inout) :: coordinate
       integer, intent(in) :: k
-      type(extreme_t), intent(in) :: e
+      type(extreme_t), intent(in) :: extreme
       real(wp), intent(in) :: step
       real(wp) :: gain, open
       integer :: which
       logical :: better, near
 
       do which = least, greatest
-         associate (best => c%found(which, k))
+         associate (best => coordinate%found(which, k))
             if (.not. best%has_bound) cycle
-            gain = (e%value - best%value)*outward(which)
-            open = alike*c%size_of(k) + best%error + e%error
+            gain = (extreme%value - best%value)*outward(which)
+            open = alike*coordinate%size_of(k) + best%error + extreme%error
             better = .not. best%exists .or. gain > open
-            near = gain > noise_part*max(c%size_of(k), abs(e%value)) + best%error + e%error &
-               .and. abs(e%t - best%t) < step .and. .not. (better .or. best%is_located .or. e%is_located)
+            near = gain > noise_part*max(coordinate%size_of(k), abs(extreme%value)) + best%error + extreme%error &
+               .and. abs(extreme%t - best%t) < step .and. .not. (better .or. best%is_located .or. extreme%is_located)
             better = better .or. near
-            if (e%is_located .and. .not. (better .or. best%is_located)) better = gain >= -open &
-               .and. abs(e%t - best%t) < step
+            if (extreme%is_located .and. .not. (better .or. best%is_located)) better = gain >= -open &
+               .and. abs(extreme%t - best%t) < step
             ! Of a value of which almost nothing is known, the least that it can be counts.
-            if (best%error > badly_known*c%size_of(k) .and. abs(e%t - best%t) > best%t_error) &
-               better = better .or. gain + best%error > e%error
+            if (best%error > badly_known*coordinate%size_of(k) .and. abs(extreme%t - best%t) > best%t_error) &
+               better = better .or. gain + best%error > extreme%error
             ! A one-sided limit is known less well than the number itself.
-            better = better .or. (.not. e%is_located .and. abs(e%t - best%t) <= 0.0_wp .and. e%error < best%error)
+            better = better .or. (.not. extreme%is_located .and. abs(extreme%t - best%t) <= &
+               0.0_wp .and. extreme%error < best%error)
             ! A value that is alike and much better known.
-            better = better .or. (c%is_measure .and. abs(gain) <= open .and. e%error < badly_known*best%error)
-            if (.not. e%has_bound) better = e%value*outward(which) > 0.0_wp
+            better = better .or. (coordinate%is_measure .and. abs(gain) <= &
+               open .and. extreme%error < badly_known*best%error)
+            if (.not. extreme%has_bound) better = extreme%value*outward(which) > 0.0_wp
             if (.not. better) cycle
-            open = merge(abs(e%t - best%t), 0.0_wp, near)
-            best = e
+            open = merge(abs(extreme%t - best%t), 0.0_wp, near)
+            best = extreme
             best%t_error = max(best%t_error, open)
          end associate
       end do
    end subroutine offer
 
-   !> Finds the values between which derivative number `k` of the coordinate `c` is no new extreme, as `offer` sees it;
+   !> Finds the values between which derivative number `k` of the `coordinate` is no new extreme, as `offer` sees it;
    !> the first is above the second where one may be, or where dwells need its place.
-   pure function never_better(c, k) result(inside)
-      type(coordinate_t), intent(in) :: c
+   pure function never_better(coordinate, k) result(inside)
+      type(coordinate_t), intent(in) :: coordinate
       integer, intent(in) :: k
       real(wp) :: inside(least:greatest)
 
-      associate (e => c%found(:, k))
-         inside = e%value + outward*merge(alike*c%size_of(k) + e%error, -badly_known*c%size_of(k), e%is_located)
-         if ((k == 0 .and. c%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
-            .and. e%error <= badly_known*c%size_of(k))) inside = -huge(inside)*outward
+      associate (e => coordinate%found(:, k))
+         inside = e%value + outward*merge(alike*coordinate%size_of(k) + e%error, -badly_known*coordinate%size_of(k), &
+            e%is_located)
+         if ((k == 0 .and. coordinate%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
+            .and. e%error <= badly_known*coordinate%size_of(k))) inside = -huge(inside)*outward
       end associate
    end function never_better
 
-   !> Takes the velocity of the coordinate `c` in the next `sample` along the run: where its sign has changed the
+   !> Takes the velocity of the `coordinate` in the next `sample` along the run: where its sign has changed the
    !> coordinate has reversed, at its slowest place between.
-   pure subroutine note_velocity(c, sample)
-      type(coordinate_t), intent(inout) :: c
+   pure subroutine note_velocity(coordinate, sample)
+      type(coordinate_t), intent(inout) :: coordinate
       type(sample_t), intent(in) :: sample
       real(wp) :: speed
       integer :: this
 
       speed = abs(sample%f(1))
-      if (speed <= noise_part*c%size_of(1)) speed = 0.0_wp
-      if (speed < c%speed) then
-         c%slowest = value_at_t(sample%t, sample%f(0))
-         c%speed = speed
+      if (speed <= noise_part*coordinate%size_of(1)) speed = 0.0_wp
+      if (speed < coordinate%speed) then
+         coordinate%slowest = value_at_t(sample%t, sample%f(0))
+         coordinate%speed = speed
       end if
       if (speed <= 0.0_wp) return
       this = merge(1, -1, sample%f(1) > 0.0_wp)
-      if (c%first_sign == 0) then
-         c%first_sign = this
-         c%start = c%slowest
+      if (coordinate%first_sign == 0) then
+         coordinate%first_sign = this
+         coordinate%start = coordinate%slowest
       end if
-      if (c%last_sign == -this) c%reversals = [c%reversals, c%slowest]
-      c%last_sign = this
-      c%slowest = value_at_t(sample%t, sample%f(0))
-      c%speed = speed
+      if (coordinate%last_sign == -this) coordinate%reversals = [coordinate%reversals, coordinate%slowest]
+      coordinate%last_sign = this
+      coordinate%slowest = value_at_t(sample%t, sample%f(0))
+      coordinate%speed = speed
    end subroutine note_velocity
 
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
@@ -358,59 +363,60 @@ contains
    end subroutine note_interval
 
    !> All of the motion is known, but for single instants.
-   pure logical function is_covered(x)
-      type(extremes_t), intent(in) :: x
+   pure logical function is_covered(extremes)
+      type(extremes_t), intent(in) :: extremes
 
-      is_covered = .not. any(abs(x%gaps%to - x%gaps%from) > 0.0_wp)
+      is_covered = .not. any(abs(extremes%gaps%to - extremes%gaps%from) > 0.0_wp)
    end function is_covered
 
-   !> After the last instant: all links of mechanism `c` are where they were at the first, but for whole turns, and as
-   !> fast.
-   pure logical function is_cyclic(x, c)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: c
+   !> After the last instant: all links of mechanism `part` are where they were at the first, but for whole turns, and
+   !> as fast.
+   pure logical function is_cyclic(extremes, part)
+      type(extremes_t), intent(in) :: extremes
+      integer, intent(in) :: part
 
-      is_cyclic = is_covered(x) .and. closes(x%tracks(c)%closure)
+      is_cyclic = is_covered(extremes) .and. closes(extremes%tracks(part)%closure)
    end function is_cyclic
 
-   !> Derivative `k` of the coordinate `c`, if it is asked for, has a least and a greatest value that differ by more
+   !> Derivative `k` of the `coordinate`, if it is asked for, has a least and a greatest value that differ by more
    !> than rounding can make, or one of them is not known.
-   pure logical function varies(c, k)
-      type(coordinate_t), intent(in) :: c
+   pure logical function varies(coordinate, k)
+      type(coordinate_t), intent(in) :: coordinate
       integer, intent(in) :: k
 
-      associate (e => c%found(:, k))
-         varies = c%sought(k) .and. (.not. all(e%exists .and. e%has_bound) .or. e(greatest)%value - e(least)%value &
-            > unseen(k)*c%size_of(k) + above_errors*sum(e%error))
+      associate (e => coordinate%found(:, k))
+         varies = coordinate%sought(k) .and. (.not. all(e%exists .and. e%has_bound) &
+               .or. e(greatest)%value - e(least)%value &
+            > unseen(k)*coordinate%size_of(k) + above_errors*sum(e%error))
       end associate
    end function varies
 
-   !> The strokes of the coordinate `c` after the last instant, in the shortest part of a cyclic run after which its
+   !> The strokes of the `coordinate` after the last instant, in the shortest part of a cyclic run after which its
    !> reversals repeat.
-   pure type(strokes_t) function strokes_of(x, c) result(strokes)
-      type(extremes_t), intent(in) :: x
-      type(coordinate_t), intent(in) :: c
+   pure type(strokes_t) function strokes_of(extremes, coordinate) result(strokes)
+      type(extremes_t), intent(in) :: extremes
+      type(coordinate_t), intent(in) :: coordinate
       type(value_at_t), allocatable :: all_of(:)
       real(wp), allocatable :: change(:)
       real(wp) :: period, phase
       integer :: n, in_period
 
-      associate (e => c%found(:, 0))
+      associate (e => coordinate%found(:, 0))
          strokes%length = extreme_t(value=e(greatest)%value - e(least)%value, error=sum(e%error), &
-            exists=all(e%exists .and. e%has_bound) .and. varies(c, 0))
-         all_of = c%reversals
-         if (c%first_sign /= c%last_sign) all_of = [c%start, all_of]
+            exists=all(e%exists .and. e%has_bound) .and. varies(coordinate, 0))
+         all_of = coordinate%reversals
+         if (coordinate%first_sign /= coordinate%last_sign) all_of = [coordinate%start, all_of]
          n = size(all_of)
          strokes%in_run = n
          strokes%reversals = all_of(:0)
-         if (n == 0 .or. .not. is_cyclic(x, c%part)) return
+         if (n == 0 .or. .not. is_cyclic(extremes, coordinate%part)) return
          do in_period = 2, n, 2
             if (mod(n, in_period) /= 0) cycle
-            period = x%run*in_period/n
+            period = extremes%run*in_period/n
             change = all_of(in_period + 1:)%value - all_of(:n - in_period)%value
-            if (c%is_angle) change = wrap_angle(change)
-            if (all(abs(change) <= closes_to*c%size_of(0)) .and. all(abs(all_of(in_period + 1:)%t &
-               - all_of(:n - in_period)%t - period) <= closes_to*abs(x%run))) exit
+            if (coordinate%is_angle) change = wrap_angle(change)
+            if (all(abs(change) <= closes_to*coordinate%size_of(0)) .and. all(abs(all_of(in_period + 1:)%t &
+               - all_of(:n - in_period)%t - period) <= closes_to*abs(extremes%run))) exit
          end do
          if (in_period > n) return
          strokes%reversals = all_of(:in_period)

@@ -83,15 +83,15 @@ contains
       beside_joint = joint_part*max(abs(t), abs(run))
    end function beside_joint
 
-   !> The numbers of the `times` in their order, upwards where `h` > 0, otherwise downwards. What is in order already is
-   !> only looked at.
-   pure function order_along(times, h) result(order)
-      real(wp), intent(in) :: times(:), h
+   !> The numbers of the `times` in their order, upwards where `step` > 0, otherwise downwards. What is in order already
+   !> is only looked at.
+   pure function order_along(times, step) result(order)
+      real(wp), intent(in) :: times(:), step
       integer :: order(size(times)), i, k
 
       do i = 1, size(times)
          do k = i - 1, 1, -1
-            if ((times(order(k)) - times(i))*sign(1.0_wp, h) <= 0.0_wp) exit
+            if ((times(order(k)) - times(i))*sign(1.0_wp, step) <= 0.0_wp) exit
             order(k + 1) = order(k)
          end do
          order(k + 1) = i

@@ -42,39 +42,40 @@ module proofs
 
 contains
 
-   !> Takes what is proved of instant number `k`, to which `s` has advanced; `due`: it is printed.
-   subroutine note_proof(p, s, k, due)
-      type(proofs_t), intent(inout) :: p
-      type(set_analysis_t), intent(in) :: s
+   !> Takes what is proved of instant number `k`, to which `set` has advanced; `due`: it is printed.
+   subroutine note_proof(proofs, set, k, due)
+      type(proofs_t), intent(inout) :: proofs
+      type(set_analysis_t), intent(in) :: set
       integer, intent(in) :: k               !< the number of the instant, from 0
       logical, intent(in) :: due             !< it is printed
       type(reason_t) :: reason
       integer :: c
 
-      if (.not. allocated(p%lines)) allocate (p%lines(max(2, s%now%steps + size(s%now%at) + 2)), p%reasons(0))
-      p%instants = p%instants + 1
-      associate (line => p%lines(p%count + 1))
-         do c = 1, s%now%count
-            associate (proof => s%now%proofs(c))
+      if (.not. allocated(proofs%lines)) allocate (proofs%lines(max(2, set%now%steps + size(set%now%at) + 2)), &
+         proofs%reasons(0))
+      proofs%instants = proofs%instants + 1
+      associate (line => proofs%lines(proofs%count + 1))
+         do c = 1, set%now%count
+            associate (proof => set%now%proofs(c))
                line%parts = line%parts + proof%step%parts
                line%tube = max(line%tube, proof%step%radius)
-               if (proof%is_proved) p%gap = max(p%gap, proof%gap)
+               if (proof%is_proved) proofs%gap = max(proofs%gap, proof%gap)
                if (holds(proof)) cycle
                line%is_proved = .false.
-               if (size(p%reasons) == max_reasons) cycle
-               associate (q => s%now%motions(c))
-                  reason = reason_t(k, c, q%mark, q%singularity, s%list(c)%branch%kind == branch_crossed, &
+               if (size(proofs%reasons) == max_reasons) cycle
+               associate (q => set%now%motions(c))
+                  reason = reason_t(k, c, q%mark, q%singularity, set%list(c)%branch%kind == branch_crossed, &
                      proof%too_many)
                end associate
                if (allocated(proof%failed)) reason%links = proof%failed
-               p%reasons = [p%reasons, reason]
+               proofs%reasons = [proofs%reasons, reason]
             end associate
          end do
-         if (all(holds(s%now%proofs))) p%proved = p%proved + 1
+         if (all(holds(set%now%proofs))) proofs%proved = proofs%proved + 1
          if (.not. due) return
          line%step = k
-         line%bounds = set_bounds(s)
-         p%count = p%count + 1
+         line%bounds = set_bounds(set)
+         proofs%count = proofs%count + 1
       end associate
    end subroutine note_proof
 end module proofs

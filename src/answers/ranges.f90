@@ -41,23 +41,23 @@ module ranges
 contains
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
-   subroutine find_range(m, start, drive, r)
+   subroutine find_range(m, start, drive, range)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
-      type(range_t), intent(out) :: r
+      type(range_t), intent(out) :: range
       type(mechanism_t) :: d
       real(wp) :: unit
       integer :: side
 
-      r%drive = drive
+      range%drive = drive
       d = held_at(m, start%t)
       call put_estimate(d, start%position)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
-         call follow(d, merge(-unit, unit, side == low), side, r)
-         if (r%is_all) return
+         call follow(d, merge(-unit, unit, side == low), side, range)
+         if (range%is_all) return
       end do
    end subroutine find_range
 
@@ -92,30 +92,30 @@ contains
       end do
    end subroutine put_estimate
 
-   !> Follows the motion of `d`, in which all drives rest, by the value of its drive to its end on one `side`: at the
-   !> parameter t the drive has gone `rate` times t.
-   subroutine follow(d, rate, side, r)
-      type(mechanism_t), intent(in) :: d
+   !> Follows the motion of `turned`, in which all drives rest, by the value of its drive to its end on one `side`: at
+   !> the parameter t the drive has gone `rate` times t.
+   subroutine follow(turned, rate, side, range)
+      type(mechanism_t), intent(in) :: turned
       real(wp), intent(in) :: rate
       integer, intent(in) :: side
-      type(range_t), intent(inout) :: r
+      type(range_t), intent(inout) :: range
       type(analysis_t) :: a
       type(motion_t) :: first, now
       real(wp) :: value, t, step, part, apart(3)
       integer :: i, k, steps_a_turn, begin
       logical :: is_angle, grows
 
-      is_angle = .not. is_length(d%drives(r%drive))
+      is_angle = .not. is_length(turned%drives(range%drive))
       step = merge(step_of_angle, step_of_length, is_angle)
       steps_a_turn = nint(2.0_wp*pi/step_of_angle)
-      first = new_motion(size(d%links))
+      first = new_motion(size(turned%links))
       now = first
-      call make_analysis(a, d)
-      a%engine%cylinders = cylinders_of(d, .true.)
-      value = d%drives(r%drive)%polynomial(1)
-      call lead(a%engine%path, r%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
+      call make_analysis(a, turned)
+      a%engine%cylinders = cylinders_of(turned, .true.)
+      value = turned%drives(range%drive)%polynomial(1)
+      call lead(a%engine%path, range%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
       call advance(a, 0.0_wp, first)
-      r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
+      range%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=range%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return
       ! A position without velocities, as at a change point, is passed by more than one motion: the next one counts.
       begin = merge(0, -1, first%known == 2)
@@ -123,7 +123,7 @@ contains
          if (signal_received() > 0) return
          t = step*k
          call advance(a, t, now)
-         if (allocated(now%diagnostics)) r%change_points = r%change_points &
+         if (allocated(now%diagnostics)) range%change_points = range%change_points &
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
             ! Close to a change point rounding leaves no limit: from the time to which the motion was followed it goes
@@ -139,10 +139,10 @@ contains
                if (now%known >= 0) t = t + part
                part = merge(2.0_wp, 0.5_wp, grows)*part
             end do
-            r%has_limit(side) = .true.
-            r%limit(side)%value = value + rate*t
+            range%has_limit(side) = .true.
+            range%limit(side)%value = value + rate*t
             i = last_of(now, diagnostic_limit)
-            if (i > 0) r%limit(side) = now%diagnostics(i)
+            if (i > 0) range%limit(side) = now%diagnostics(i)
             return
          end if
          if (.not. is_angle .or. now%known < 2) cycle
@@ -152,13 +152,13 @@ contains
             cycle
          end if
          if (mod(k - begin, steps_a_turn) /= 0) cycle
-         apart = motions_apart(d, first, now)
+         apart = motions_apart(turned, first, now)
          ! The drive has one rate: what is in its place is as fast.
-         r%is_all = closes(apart(:2))
-         r%turns = (k - begin)/steps_a_turn
-         if (r%is_all) return
+         range%is_all = closes(apart(:2))
+         range%turns = (k - begin)/steps_a_turn
+         if (range%is_all) return
       end do
-      r%limit(side)%value = value + rate*t
+      range%limit(side)%value = value + rate*t
    end subroutine follow
 
    !> The number of the last diagnostic of `q` of this `kind`; 0: there is none.

@@ -18,24 +18,24 @@ module set_circuits
 
 contains
 
-   !> The ranges of all drives of the set that `s` analyses, at its first instant. A mechanism without a position there
-   !> has those of its branches, if all of its circuits are known; a variant has none.
-   subroutine find_ranges(s, list)
-      type(set_analysis_t), intent(in) :: s
+   !> The ranges of all drives of the set that `set` analyses, at its first instant. A mechanism without a position
+   !> there has those of its branches, if all of its circuits are known; a variant has none.
+   subroutine find_ranges(set, list)
+      type(set_analysis_t), intent(in) :: set
       type(range_t), allocatable, intent(out) :: list(:)
       type(range_t) :: r
       type(circuits_t) :: found
       integer :: c, i
 
       allocate (list(0))
-      do c = 1, s%now%count
-         do i = 1, size(s%now%parts(c)%drives)
-            if (s%now%motions(c)%known >= 0) then
-               call find_range(s%now%parts(c), s%now%motions(c), i, r)
+      do c = 1, set%now%count
+         do i = 1, size(set%now%parts(c)%drives)
+            if (set%now%motions(c)%known >= 0) then
+               call find_range(set%now%parts(c), set%now%motions(c), i, r)
                r%part = c
                list = [list, r]
-            else if (s%now%variants == 0) then
-               call find_circuits(s%now%parts(c), s%now%motions(c), i, found)
+            else if (set%now%variants == 0) then
+               call find_circuits(set%now%parts(c), set%now%motions(c), i, found)
                found%part = c
                if (found%is_complete .and. .not. found%are_more) call add_branch_ranges(found, list)
             end if
@@ -70,30 +70,30 @@ contains
       end do
    end subroutine add_branch_ranges
 
-   !> Finds the circuits of each drive, the others held, of the set that `s` analyses, from its first instant.
-   subroutine find_all_circuits(s, list)
-      type(set_analysis_t), intent(in) :: s
+   !> Finds the circuits of each drive, the others held, of the set that `set` analyses, from its first instant.
+   subroutine find_all_circuits(set, list)
+      type(set_analysis_t), intent(in) :: set
       type(circuits_t), allocatable, intent(out) :: list(:)
       type(assemblies_t), allocatable :: first
       integer :: c, i, n
 
-      allocate (list(sum([(size(s%now%parts(c)%drives), c=1, s%now%count)])))
+      allocate (list(sum([(size(set%now%parts(c)%drives), c=1, set%now%count)])))
       n = 0
-      do c = 1, s%now%count
-         do i = 1, size(s%now%parts(c)%drives)
+      do c = 1, set%now%count
+         do i = 1, size(set%now%parts(c)%drives)
             n = n + 1
             ! Not allocated: they are not known.
-            if (allocated(s%assemblies)) first = s%assemblies(c)
-            call find_circuits(s%now%parts(c), s%now%motions(c), i, list(n), first)
+            if (allocated(set%assemblies)) first = set%assemblies(c)
+            call find_circuits(set%now%parts(c), set%now%motions(c), i, list(n), first)
             list(n)%part = c
          end do
       end do
    end subroutine find_all_circuits
 
-   !> `x` (rad or length), 0 if it is rounding.
-   pure real(wp) function known(x)
-      real(wp), intent(in) :: x              !< rad or length
+   !> `value` (rad or length), 0 if it is rounding.
+   pure real(wp) function known(value)
+      real(wp), intent(in) :: value              !< rad or length
 
-      known = merge(0.0_wp, x, abs(x) <= rounding)
+      known = merge(0.0_wp, value, abs(value) <= rounding)
    end function known
 end module set_circuits

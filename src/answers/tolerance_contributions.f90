@@ -26,15 +26,16 @@ module tolerance_contributions
 contains
 
    !> Takes the sensitivities of an instant: of each quantity the instant with the largest root of squares is kept.
-   subroutine note_tolerances(a, s, rows)
-      type(shares_t), intent(inout) :: a
-      type(set_motion_t), intent(in) :: s
+   subroutine note_tolerances(shares, motions, rows)
+      type(shares_t), intent(inout) :: shares
+      type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)
       integer :: i, j, n, c
 
-      if (.not. allocated(a%list)) then
-         allocate (a%list(3, 0:2, size(s%rows)))
-         allocate (a%jams(maxval([(size(s%parts(c)%tolerances), c=1, s%count)]), s%count), source=.false.)
+      if (.not. allocated(shares%list)) then
+         allocate (shares%list(3, 0:2, size(motions%rows)))
+         allocate (shares%jams(maxval([(size(motions%parts(c)%tolerances), c=1, motions%count)]), motions%count), &
+            source=.false.)
       end if
       do i = 1, size(rows)
          if (.not. (rows(i)%listed .and. allocated(rows(i)%others))) cycle
@@ -43,17 +44,17 @@ contains
             ! The further rows are WORST, RSS, then one for each number.
             do j = form%first, form%last
                associate (at => columns_of_rows(j)%at, &
-                  one => a%list(columns_of_rows(j)%at(1), columns_of_rows(j)%at(2), i))
+                  one => shares%list(columns_of_rows(j)%at(1), columns_of_rows(j)%at(2), i))
                   if (at(2) > others(1)%row%known) cycle
                   if (allocated(one%s) .and. others(2)%row%value(at(1), at(2)) <= one%root*(1.0_wp + alike)) cycle
                   one%root = others(2)%row%value(at(1), at(2))
                   one%worst = others(1)%row%value(at(1), at(2))
-                  one%t = s%motions(1)%t
-                  one%s = [(others(n)%row%value(at(1), at(2)), n=3, 2 + size(s%parts(c)%tolerances))]
+                  one%t = motions%motions(1)%t
+                  one%s = [(others(n)%row%value(at(1), at(2)), n=3, 2 + size(motions%parts(c)%tolerances))]
                end associate
             end do
-            n = size(s%sensitivities(c)%jams)
-            a%jams(:n, c) = a%jams(:n, c) .or. s%sensitivities(c)%jams
+            n = size(motions%sensitivities(c)%jams)
+            shares%jams(:n, c) = shares%jams(:n, c) .or. motions%sensitivities(c)%jams
          end associate
       end do
    end subroutine note_tolerances

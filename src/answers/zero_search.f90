@@ -58,90 +58,90 @@ module zero_search
 
 contains
 
-   !> Derivative number `k` of the polynomial of `c` at the time `t`.
-   pure real(wp) function on_curve(c, k, t) result(f)
-      type(column_t), intent(in) :: c
+   !> Derivative number `k` of the polynomial of `column` at the time `t`.
+   pure real(wp) function on_curve(column, k, t) result(f)
+      type(column_t), intent(in) :: column
       integer, intent(in) :: k
       real(wp), intent(in) :: t
       integer :: n, i
 
       f = 0.0_wp
-      do n = ubound(c%curve, 1), k, -1
-         f = f*((t - c%middle)/c%half) + c%curve(n)*real(product([(i, i=n - k + 1, n)]), wp)
+      do n = ubound(column%curve, 1), k, -1
+         f = f*((t - column%middle)/column%half) + column%curve(n)*real(product([(i, i=n - k + 1, n)]), wp)
       end do
-      f = f/c%half**k
+      f = f/column%half**k
    end function on_curve
 
-   !> Where between the times t(1) and t(2) derivative number `order` of `c`, less `level`, is zero: by the polynomial
-   !> of `c`; if that has no sign change, by a straight line between the values `g` (2).
-   pure real(wp) function guess(c, order, level, t, g)
-      type(column_t), intent(in) :: c
+   !> Where between the times t(1) and t(2) derivative number `order` of `column`, less `level`, is zero: by the
+   !> polynomial of `column`; if that has no sign change, by a straight line between the `values` (2).
+   pure real(wp) function guess(column, order, level, t, values)
+      type(column_t), intent(in) :: column
       integer, intent(in) :: order
-      real(wp), intent(in) :: level, t(2), g(2)
+      real(wp), intent(in) :: level, t(2), values(2)
       real(wp) :: ends(2), first
       integer :: n
 
       ends = t
-      first = on_curve(c, order, t(1)) - level
-      if (differ_in_sign(first, on_curve(c, order, t(2)) - level)) then
+      first = on_curve(column, order, t(1)) - level
+      if (differ_in_sign(first, on_curve(column, order, t(2)) - level)) then
          do n = 1, curve_halvings
             guess = ends(1) + 0.5_wp*(ends(2) - ends(1))
-            ends(merge(2, 1, differ_in_sign(first, on_curve(c, order, guess) - level))) = guess
+            ends(merge(2, 1, differ_in_sign(first, on_curve(column, order, guess) - level))) = guess
          end do
       else
-         guess = t(2) - g(2)*((t(2) - t(1))/(g(2) - g(1)))
+         guess = t(2) - values(2)*((t(2) - t(1))/(values(2) - values(1)))
       end if
    end function guess
 
-   !> The column `c` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
-   subroutine evaluate_column(s, c, t, sample, with_errors)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
+   !> The `column` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
+   subroutine evaluate_column(set, column, t, sample, with_errors)
+      type(set_analysis_t), intent(inout) :: set
+      type(column_t), intent(in) :: column
       real(wp), intent(in) :: t
       type(sample_t), intent(out) :: sample
       logical, intent(in), optional :: with_errors
       type(row_t) :: row(1)
       real(wp) :: error(3, 0:2, 1), growth
 
-      call rows_at(s, [c%request], t, row, with_errors, error, growth)
-      sample = sample_t(t, row(1)%value(c%column, :), error(c%column, :, 1), known_at(row(1)), &
+      call rows_at(set, [column%request], t, row, with_errors, error, growth)
+      sample = sample_t(t, row(1)%value(column%column, :), error(column%column, :, 1), known_at(row(1)), &
          row(1)%state == points_coincide, growth)
    end subroutine evaluate_column
 
-   !> Where between `a` and `b` the derivative number `order` (0 to 2) of column `c`, less `level`, is zero: it has
-   !> opposite signs there. Newton's method, in a bracket that is halved where it does not get on. Where a time between
-   !> has no motion, the nearest known one is the zero. `zero`%known is -1 where the signs were the same.
-   subroutine find_zero(s, c, order, level, a, b, zero)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
+   !> Where between `before` and `after` the derivative number `order` (0 to 2) of `column`, less `level`, is zero: it
+   !> has opposite signs there. Newton's method, in a bracket that is halved where it does not get on. Where a time
+   !> between has no motion, the nearest known one is the zero. `zero`%known is -1 where the signs were the same.
+   subroutine find_zero(set, column, order, level, before, after, zero)
+      type(set_analysis_t), intent(inout) :: set
+      type(column_t), intent(in) :: column
       integer, intent(in) :: order
       real(wp), intent(in) :: level
-      type(sample_t), intent(in) :: a, b
+      type(sample_t), intent(in) :: before, after
       type(sample_t), intent(out) :: zero
       type(sample_t) :: at
       real(wp) :: t, ends(2), g(2), g_end(2), last, last_g, slope, step, width, clear(2)
       logical :: jumps
       integer :: n
 
-      if (min(a%known, b%known) < 2) return
-      ends = [a%t, b%t]
-      g = [a%f(order), b%f(order)] - level
+      if (min(before%known, after%known) < 2) return
+      ends = [before%t, after%t]
+      g = [before%f(order), after%f(order)] - level
       if (.not. differ_in_sign(g(1), g(2))) return
       g_end = g
       jumps = .false.
       width = 0.0_wp
-      clear = merge([a%t, g(1)], [b%t, g(2)], abs(g(1)) > abs(g(2)))
-      last = b%t
+      clear = merge([before%t, g(1)], [after%t, g(2)], abs(g(1)) > abs(g(2)))
+      last = after%t
       last_g = huge(1.0_wp)
       slope = 0.0_wp
-      t = guess(c, order, level, ends, g)
+      t = guess(column, order, level, ends, g)
       do n = 1, max_iterations
          if (.not. (t - ends(1))*(ends(2) - t) > 0.0_wp) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
          if (abs(ends(2) - ends(1)) <= closed*spacing(maxval(abs(ends)))) then
-            jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > large_part*c%noise(0)/noise_part
+            jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > large_part*column%noise(0)/noise_part
             exit
          end if
-         call evaluate_column(s, c, t, at)
+         call evaluate_column(set, column, t, at)
          if (at%meets .and. order <= max(0, at%known + 1)) then
             ! A length whose points coincide turns there, and a direction jumps.
             zero = at
@@ -158,25 +158,25 @@ contains
             ends(merge(2, 1, differ_in_sign(f, g(1)))) = t
             g_end(merge(2, 1, differ_in_sign(f, g(1)))) = f
             if (order == 2) then
-               slope = on_curve(c, 3, t)
+               slope = on_curve(column, 3, t)
             else
                slope = at%f(order + 1)
             end if
             step = 0.0_wp
             if (abs(slope) > 0.0_wp) step = -f/slope
-            if (order > 0 .and. abs(step) <= short_part*abs(b%t - a%t)) then
+            if (order > 0 .and. abs(step) <= short_part*abs(after%t - before%t)) then
                zero = at
                zero%t = t + step
                if (order == 2) zero%f(2) = 0.0_wp
                zero%f(1) = at%f(1) + 0.5_wp*step*(at%f(2) + zero%f(2))
                zero%f(0) = at%f(0) + 0.5_wp*step*(at%f(1) + zero%f(1))
-               if (is_inside(c, order - 1, zero%f(order - 1), 0.0_wp)) return
+               if (is_inside(column, order - 1, zero%f(order - 1), 0.0_wp)) return
             end if
             ! What is left is rounding: further steps only follow it.
-            if (abs(f) <= rounding_part*c%noise(order)) exit
+            if (abs(f) <= rounding_part*column%noise(order)) exit
             if (abs(slope) > 0.0_wp .and. abs(step) <= closed*spacing(t)) exit
-            if (abs(f) <= c%noise(order) .and. abs(f) > 0.5_wp*abs(last_g)) exit
-            if (abs(f) > above_noise*c%noise(order)) clear = [t, f]
+            if (abs(f) <= column%noise(order) .and. abs(f) > 0.5_wp*abs(last_g)) exit
+            if (abs(f) > above_noise*column%noise(order)) clear = [t, f]
             last = t
             t = t + step
             if (abs(f) > 0.5_wp*abs(last_g)) t = ends(1) + 0.5_wp*(ends(2) - ends(1))
@@ -185,49 +185,50 @@ contains
       end do
       if (jumps) then
          ! A direction, where two points pass one another.
-         call evaluate_column(s, c, t, zero)
+         call evaluate_column(set, column, t, zero)
          zero%t_error = abs(ends(2) - ends(1)) + epsilon(1.0_wp)*maxval(abs(ends))
          zero%error = 0.0_wp
          return
       end if
       ! The slope from the zero to the last value that is more than noise, unless that beside the zero is less.
-      if (.not. (abs(clear(2)) > above_noise*c%noise(order) .and. abs(clear(1) - t) > 0.0_wp)) slope = 0.0_wp
+      if (.not. (abs(clear(2)) > above_noise*column%noise(order) .and. abs(clear(1) - t) > 0.0_wp)) slope = 0.0_wp
       if (abs(slope) > 0.0_wp) slope = min(abs(slope), abs(clear(2)/(clear(1) - t)))
-      call settle(s, c, order, [a%t, b%t], t, slope, 1.0_wp, c%noise(order), width, zero)
+      call settle(set, column, order, [before%t, after%t], t, slope, 1.0_wp, column%noise(order), width, zero)
    end subroutine find_zero
 
-   !> The extreme `turn` of the acceleration of column `c` between `a` and `b`, at which the third derivative of its
-   !> polynomial has different signs: that of the polynomial through accelerations at five times about it. Where the
+   !> The extreme `turn` of the acceleration of `column` between `before` and `after`, at which the third derivative of
+   !> its polynomial has different signs: that of the polynomial through accelerations at five times about it. Where the
    !> fourth difference counts, the times are too far apart; where rounding counts, they are too near. `turn`%known is
    !> -1 where it is not found.
-   subroutine find_turn(s, c, a, b, turn)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
-      type(sample_t), intent(in) :: a, b
+   subroutine find_turn(set, column, before, after, turn)
+      type(set_analysis_t), intent(inout) :: set
+      type(column_t), intent(in) :: column
+      type(sample_t), intent(in) :: before, after
       type(sample_t), intent(out) :: turn
       type(sample_t) :: at
       real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run
       real(wp) :: place, bend, best_step, best_noise, width, value
       integer :: i, k
 
-      associate (length => b%t - a%t)
-         first = guess(c, 3, 0.0_wp, [a%t, b%t], [-1.0_wp, 1.0_wp])
+      associate (length => after%t - before%t)
+         first = guess(column, 3, 0.0_wp, [before%t, after%t], [-1.0_wp, 1.0_wp])
          t = first
          ! What is so near an end is as good as there.
-         if (min(abs(t - a%t), abs(b%t - t)) <= beside_end*abs(length)) return
-         call evaluate_column(s, c, t, at)
+         if (min(abs(t - before%t), abs(after%t - t)) <= beside_end*abs(length)) return
+         call evaluate_column(set, column, t, at)
          if (at%known < 2) return
          value = at%f(2)
-         slope = abs(on_curve(c, 4, t))
+         slope = abs(on_curve(column, 4, t))
          if (slope > 0.0_wp) then
-            if (is_inside(c, 2, at%f(2), 0.5_wp*(error_by_length*(at%f(2) - on_curve(c, 2, t))/length)**2/slope)) then
+            if (is_inside(column, 2, at%f(2), 0.5_wp*(error_by_length*(at%f(2) - on_curve(column, 2, &
+               t))/length)**2/slope)) then
                turn = at
                return
             end if
          end if
 
-         run = max(abs(s%now%t0), abs(s%now%t1))
-         step = sign(c%step, length)
+         run = max(abs(set%now%t0), abs(set%now%t1))
+         step = sign(column%step, length)
          ! The extreme of the best stencil so far: none.
          place = first
          bend = 0.0_wp
@@ -236,11 +237,12 @@ contains
          width = 0.0_wp
          do i = 1, max_stencils
             ! At five times that are all in the range.
-            if (4.0_wp*abs(step) > abs(c%range(2) - c%range(1))) exit
-            u = min(max((t - c%range(1))/step, 2.0_wp), (c%range(2) - c%range(1))/step - 2.0_wp) - (t - c%range(1))/step
+            if (4.0_wp*abs(step) > abs(column%range(2) - column%range(1))) exit
+            u = min(max((t - column%range(1))/step, 2.0_wp), &
+               (column%range(2) - column%range(1))/step - 2.0_wp) - (t - column%range(1))/step
             t = t + u*step
             do k = -2, 2
-               call evaluate_column(s, c, t + k*step, at)
+               call evaluate_column(set, column, t + k*step, at)
                if (at%known < 2) exit
                f(k) = at%f(2)
             end do
@@ -249,11 +251,11 @@ contains
                (16.0_wp*(f(1) + f(-1)) - 30.0_wp*f(0) - f(2) - f(-2))/12.0_wp, &
                0.5_wp*(f(2) - f(-2)) - f(1) + f(-1), f(2) + f(-2) - 4.0_wp*(f(1) + f(-1)) + 6.0_wp*f(0)]
             if (.not. abs(d(2)) > 0.0_wp) exit
-            noise = max(c%noise(2), noise_part*maxval(abs(f)))
+            noise = max(column%noise(2), noise_part*maxval(abs(f)))
             u = 0.0_wp
             do k = 1, turn_steps
                u = -(d(1) + u**2*(0.5_wp*d(3) + u*d(4)/6.0_wp))/d(2)
-               u = min(max(u, (a%t - t)/step), (b%t - t)/step)
+               u = min(max(u, (before%t - t)/step), (after%t - t)/step)
             end do
             t = t + u*step
             left = truncated*abs(step)*abs(d(4)/d(2))**1.5_wp
@@ -270,26 +272,26 @@ contains
                step = step/shorter
             end if
          end do
-         ! If no stencil serves, all of the time from `a` to `b` is open, unless an end is more extreme. If the
+         ! If no stencil serves, all of the time from `before` to `after` is open, unless an end is more extreme. If the
          ! extreme of a stencil is at an end, that of the polynomial counts, and the time between both is open; within
          ! a step they are one, as good as at the end.
-         if (.not. bend > 0.0_wp .and. maxval([a%f(2), b%f(2)]*sign(1.0_wp, -on_curve(c, 4, first))) &
-            >= value*sign(1.0_wp, -on_curve(c, 4, first))) return
-         if (min(abs(place - a%t), abs(b%t - place)) <= beside_end*abs(length)) then
+         if (.not. bend > 0.0_wp .and. maxval([before%f(2), after%f(2)]*sign(1.0_wp, -on_curve(column, 4, first))) &
+            >= value*sign(1.0_wp, -on_curve(column, 4, first))) return
+         if (min(abs(place - before%t), abs(after%t - place)) <= beside_end*abs(length)) then
             left = abs(place - first)
             if (left <= best_step) return
             place = first
             width = max(width, left)
          end if
-         call settle(s, c, 2, [a%t, b%t], place, bend, best_step, best_noise, width, turn)
+         call settle(set, column, 2, [before%t, after%t], place, bend, best_step, best_noise, width, turn)
       end associate
    end subroutine find_turn
 
-   !> The column `c` at the time `t` between the `ends` (2) at which a derivative that has this `slope` is zero: it is
+   !> The `column` at the time `t` between the `ends` (2) at which a derivative that has this `slope` is zero: it is
    !> open by the error of derivative number `order` over the `step` of a difference, by `noise`, and by `width`.
-   subroutine settle(s, c, order, ends, t, slope, step, noise, width, zero)
-      type(set_analysis_t), intent(inout) :: s
-      type(column_t), intent(in) :: c
+   subroutine settle(set, column, order, ends, t, slope, step, noise, width, zero)
+      type(set_analysis_t), intent(inout) :: set
+      type(column_t), intent(in) :: column
       integer, intent(in) :: order
       real(wp), intent(in) :: ends(2), t, slope, step, noise, width
       type(sample_t), intent(out) :: zero
@@ -298,29 +300,29 @@ contains
 
       do i = 1, 2
          ! An estimate of errors takes nine solutions.
-         call evaluate_column(s, c, t, zero, i == 2)
+         call evaluate_column(set, column, t, zero, i == 2)
          open = zero%error(order)
-         if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(order)
+         if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*column%noise(order)
          zero%t_error = abs(ends(2) - ends(1))
          if (slope > 0.0_wp) zero%t_error = width + epsilon(1.0_wp)*maxval(abs(ends)) &
             + (open/step + rounding_part*noise)/slope
-         if (zero%t_error <= well_known*max(abs(s%now%t0), abs(s%now%t1))) exit
+         if (zero%t_error <= well_known*max(abs(set%now%t0), abs(set%now%t1))) exit
       end do
    end subroutine settle
 
-   !> Derivative number `k` of `c` is no new extreme where it has the value `f`, of which so much is `open`.
-   pure logical function is_inside(c, k, f, open)
-      type(column_t), intent(in) :: c
+   !> Derivative number `k` of `column` is no new extreme where it has the `value`, of which so much is `open`.
+   pure logical function is_inside(column, k, value, open)
+      type(column_t), intent(in) :: column
       integer, intent(in) :: k
-      real(wp), intent(in) :: f, open
+      real(wp), intent(in) :: value, open
 
-      is_inside = f - open > c%inside(1, k) .and. f + open < c%inside(2, k)
+      is_inside = value - open > column%inside(1, k) .and. value + open < column%inside(2, k)
    end function is_inside
 
    !> One is positive, the other negative.
-   pure logical function differ_in_sign(x, y)
-      real(wp), intent(in) :: x, y
+   pure logical function differ_in_sign(first, second)
+      real(wp), intent(in) :: first, second
 
-      differ_in_sign = (x > 0.0_wp .and. y < 0.0_wp) .or. (x < 0.0_wp .and. y > 0.0_wp)
+      differ_in_sign = (first > 0.0_wp .and. second < 0.0_wp) .or. (first < 0.0_wp .and. second > 0.0_wp)
    end function differ_in_sign
 end module zero_search
