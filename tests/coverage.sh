@@ -6,8 +6,10 @@ cover=$BUILD/coverage
 tests/run.sh --list | grep -vE '^(real128|single precision|speed against error|results of the methods|what is installed|the stand-in|the sources|the closed forms|the documents|estimates of errors|proofs|nothing false|the library|drawings|the digits|the method of 1987|what is hard|the tool of mutants)' \
    > "$BUILD/coverage.parts"
 "$MAKE" --no-print-directory BUILD="$cover" COVERAGE=--coverage RELEASE=-O0 DEBUG=-O0 "$cover/kinmat" "$cover/debug/kinmat" "$cover/debug/fuzz" "$cover/tests/unit" \
-   "$cover/release/read_listing" $(for name in circuits_by_chance twins_by_chance dwells_by_chance random_blocks fuzz_mechanisms extremes_by_chance print_expected; do echo "$cover/release/$name"; done) || exit 3
+   "$cover/release/read_listing" $(for name in circuits_by_chance twins_by_chance dwells_by_chance lengths_by_chance cylinders_by_chance random_blocks fuzz_mechanisms extremes_by_chance print_expected; do echo "$cover/release/$name"; done) || exit 3
 find "$cover" -name '*.gcda' -exec rm {} +
+# The other kinds serve as they are.
+[ -x "$BUILD/kinmat-quad" ] && ln -sf "$(pwd)/$BUILD/kinmat-quad" "$cover/kinmat-quad"
 mkdir -p "$cover/expected" && cp expected/*.lst "$cover/expected"
 PARTS=$BUILD/coverage.parts BUILD=$cover tests/run.sh > "$BUILD/coverage.log" 2>&1
 tail -n 1 "$BUILD/coverage.log"

@@ -90,7 +90,7 @@ module input_errors
       link_unused = error_code_t(54, 'IS A LINK WITHOUT PAIR OR DRIVE, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &
-      vary_number = error_code_t(56, 'IS NOT A FIELD OF THE CARD ABOVE: WRITE R1, R2 OR R3', own_layout), &
+      vary_number = error_code_t(56, 'IS NO NUMBER OF THE CARD ABOVE: NAME ONE, R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'MUST BE LIST OR THE NUMBER OF VALUES, FROM 1 TO', own_layout), &
       vary_equal = error_code_t(58, 'EQUALS THE FIRST VALUE: A RANGE NEEDS TWO DIFFERENT VALUES'), &
       ratio_drives = error_code_t(66, 'HAS SEVERAL DRIVES: EXTREMES OF ITS RATIOS ARE NOT SEARCHED'), &

@@ -249,7 +249,9 @@ contains
 
       if (allocated(m%lengths)) before = m
       call put_number(m, number, value)
-      if (number%kind == number_length) call put_lengths(m)
+      ! As if the drawing had other coordinates: lengths and axes along bars are put again.
+      if (number%kind == number_length .or. number%kind == number_joint .and. &
+         (allocated(m%lengths) .or. any(m%links%from > 0))) call put_lengths(m)
       if (any(number%kind == [number_drive, number_knot])) call put_table(m%drives(number%subject), number%term)
       if (number%kind > number_pair) return
       call follow_drawing(m, before)
@@ -279,6 +281,7 @@ contains
          do j = 1, size(m%points)
             if (j /= i .and. (m%points(j)%hole == 0 .or. m%points(j)%hole /= m%points(i)%hole)) cycle
             m%points(j)%offset = m%points(j)%offset + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
+            if (number%kind == number_joint) m%points(j)%place = m%points(j)%place + way
          end do
       end do
    end subroutine put_number

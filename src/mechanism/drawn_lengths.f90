@@ -118,16 +118,18 @@ contains
       type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
       type(reach_t) :: reach
       real(wp) :: place(2, size(m%points)), q(2), way(2), arm(2, 2), open(2)
-      integer :: i, k
+      integer :: i, k, lengths
       logical :: is_one
 
       do i = 1, size(m%points)
          place(:, i) = m%points(i)%place
       end do
+      lengths = 0
+      if (allocated(m%lengths)) lengths = size(m%lengths)
       k = 1
-      do while (k <= size(m%lengths))
-         associate (one => m%lengths(k), next => m%lengths(min(k + 1, size(m%lengths))))
-            is_one = k == size(m%lengths) .or. next%hole(2) /= one%hole(2)
+      do while (k <= lengths)
+         associate (one => m%lengths(k), next => m%lengths(min(k + 1, lengths)))
+            is_one = k == lengths .or. next%hole(2) /= one%hole(2)
             reach = reach_t(has_two=.not. is_one)
             q = m%points(one%point(2))%place
             if (is_one) then

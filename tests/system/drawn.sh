@@ -134,6 +134,12 @@ equal 'only lengths below 0' ' *** NO POSITION FOUND
  *** CYLINDER RAM: ONLY LENGTHS BELOW 0, FOR A SLIDE THROUGH 0 USE PRISM' "$("$kinmat" "$w/deck" | grep '[*][*][*]')"
 through 2.0 "$(card DRIVE SLIDE CYL '' '' 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a drawing out of its stroke' 1 "$("$kinmat" --check "$w/deck" 2>&1 | grep -c 'IS DRAWN OUT OF STROKE')"
+for stroke in '0.0 2.4' '1.8 -2.4'; do
+   boom $stroke "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
+   equal "a stroke $stroke" 'IS OUT OF RANGE; ALLOWED: ABOVE 0.0' "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/.* "-*[0-9.]*" //p')"
+done
+boom '' '' "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card TIME 4 TURN '' 0.0 1.0)" > "$w/deck"
+equal 'a word on TIME' ' *** E070 CARD 11 COLUMN 17 FIELD LABEL-B: "TURN" IS NOT ONE OF TURNS' "$("$kinmat" "$w/deck" 2>&1 | grep '[*][*][*]' | tr -s ' ')"
 boom 2.4 1.8 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a stroke the other way round' E078 "$("$kinmat" "$w/deck" 2>&1 | grep -o E078 | sort -u)"
 conclude

@@ -129,6 +129,11 @@ equal 'one hole' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.05)")"
 equal 'each hole its own' 0.05000 "$(spread "$(card TOLER ROD '' '' 0.04)" "$(card TOLER CRANK '' '' 0.03)")"
 equal 'both holes together' 0.00000 "$(spread "$(card TOLER BOTH '' '' 0.05)")"
 
+# Both holes of A together move the drawn direction of the crank, with which its drive begins: 0.1 mm*20/(20**2 + 20**2) rad.
+{ book | sed -e 's/^JOINT   A .*/&\nTOLER   BOTH                    0.0             0.1/' -e 's/^\(DRIVE.*\) 30.0/\1     /'; card AT '' '' '' 0.0; card PRINT LINKS CRANK; } | made both
+run both
+equal 'both holes and lengths' 0.14323945 "$(awk -F, '$4 == "LINK RSS" { printf "%.8f", $8 }' "$w/both.csv")"
+
 # What is rejected.
 # error NAME MESSAGE: the first message of the deck on standard input
 error() {
