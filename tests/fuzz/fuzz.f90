@@ -145,7 +145,8 @@ contains
                call check_protocol(options%files(other_outputs(k))%text, other_outputs(k) == out_table, wrong)
          end do
       case (1)
-         if (index(message, ' *** E') == 0 .and. index(message, ' IS NOT A DECK: LINE ') == 0) wrong = 'REFUSED WITHOUT A WORD: '//message
+         if (index(message, ' *** E') == 0 .and. index(message, ' IS NOT A DECK: LINE ') == 0) &
+            wrong = 'REFUSED WITHOUT A WORD: '//message
       case default
          wrong = 'STATUS IS NOT 0, 1 OR 2: '//message
       end select
