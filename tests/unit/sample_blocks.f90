@@ -9,7 +9,7 @@ module sample_blocks
    use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, make_equations, tree_blocks
+   public :: plain_blocks, tree_blocks
 
 contains
 

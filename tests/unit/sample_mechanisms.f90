@@ -6,8 +6,7 @@ module sample_mechanisms
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, request_link
    implicit none
    private
-   public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, twice, angle_drive, base, moving, &
-      revolute, prismatic, finish
+   public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, twice, angle_drive
 
 contains
 
