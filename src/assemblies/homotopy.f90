@@ -284,26 +284,26 @@ contains
       is_done = .false.
    end subroutine follow
 
-   !> Finds `t` at the part `s` of the way between two of its values, and its `rate` by s. In a tenth it falls by equal
-   !> factors, since z goes with a power of t near a singular end.
-   pure subroutine find_t(from, to, s, t, rate)
+   !> Finds `t` at the part `covered` of the way between two of its values, and its `rate` by s. In a tenth it falls by
+   !> equal factors, since z goes with a power of t near a singular end.
+   pure subroutine find_t(from, to, covered, t, rate)
       real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(in) :: s              !< 0 to 1
+      real(dp), intent(in) :: covered              !< 0 to 1
       real(dp), intent(out) :: t, rate
 
       rate = to - from
-      t = from + s*rate
+      t = from + covered*rate
       if (from > near_end .or. .not. to > 0.0_dp) return
-      t = from*(to/from)**s
+      t = from*(to/from)**covered
       rate = t*log(to/from)
    end subroutine find_t
 
-   !> Predicts z after a `step` along the tangent from the part `s` of the way, by Runge and Kutta's rule of fourth
-   !> order.
-   subroutine predict(paths, from, to, s, step, point, next, is_done)
+   !> Predicts z after a `step` along the tangent from the part `covered` of the way, by Runge and Kutta's rule of
+   !> fourth order.
+   subroutine predict(paths, from, to, covered, step, point, next, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(in) :: s, step        !< parts of the way
+      real(dp), intent(in) :: covered, step        !< parts of the way
       complex(dp), intent(in) :: point(:)
       complex(dp), intent(out) :: next(:)
       logical, intent(out) :: is_done
@@ -319,7 +319,7 @@ contains
          x = point + part(k)*step*tangent
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
-         call find_t(from, to, s + part(k)*step, t, rate)
+         call find_t(from, to, covered + part(k)*step, t, rate)
          call assemble(paths, t, x, a, r, tangent)
          call zgesv(size(point), 1, a, size(point), pivots, tangent, size(point), info)
          is_done = info == 0

@@ -293,27 +293,27 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> Gives the text of the remark `r` about the cards of `m`: CARD 7  COLUMN 9: "TIP" and a sentence.
-   function remark_text(m, r) result(text)
+   !> Gives the text of the `remark` about the cards of `m`: CARD 7  COLUMN 9: "TIP" and a sentence.
+   function remark_text(m, remark) result(text)
       type(mechanism_t), intent(in) :: m
-      type(remark_t), intent(in) :: r
+      type(remark_t), intent(in) :: remark
       character(:), allocatable :: text
       logical :: is_one
 
-      text = trim(phrase(remark_words(r%kind), m%polish)//' '//r%value)
-      if (r%kind == remark_more) then
-         text = text//' '//trim(r%text)
+      text = trim(phrase(remark_words(remark%kind), m%polish)//' '//remark%value)
+      if (remark%kind == remark_more) then
+         text = text//' '//trim(remark%text)
          return
       end if
-      if (any(r%kind == [remark_rest, remark_turns])) then
-         is_one = index(r%text, ', ') == 0
-         if (r%kind == remark_rest .and. .not. is_one) text = phrase(say_rest, m%polish)
-         text = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(r%text)//' '//text
-      else if (r%text /= '') then
-         text = '"'//trim(r%text)//'" '//text
+      if (any(remark%kind == [remark_rest, remark_turns])) then
+         is_one = index(remark%text, ', ') == 0
+         if (remark%kind == remark_rest .and. .not. is_one) text = phrase(say_rest, m%polish)
+         text = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(remark%text)//' '//text
+      else if (remark%text /= '') then
+         text = '"'//trim(remark%text)//'" '//text
       end if
-      text = phrase(say_card, m%polish)//' '//whole(r%card)//'  '//phrase(say_column, m%polish)//' ' &
-         //whole(r%column)//': '//text
+      text = phrase(say_card, m%polish)//' '//whole(remark%card)//'  '//phrase(say_column, m%polish)//' ' &
+         //whole(remark%column)//': '//text
    end function remark_text
 
    !> A line for each diagnostic of `list` that no mark has told.
