@@ -170,6 +170,8 @@ contains
       read (cell(3), '(f48.0)', iostat=status) rows%t
       if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
       rows%mark = cell(15)(:12)
+      ! An instant out of a stroke is complete.
+      if (rows%mark == 'STROKE') rows%mark = ''
       if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', 'UNKNOWN'])) &
          call blame(wrong, 'CSV: MARK: '//trim(line))
       call read_values(m, i, cell(6:14), rows%mark == 'UNKNOWN', value, known, wrong)

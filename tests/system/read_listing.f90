@@ -164,8 +164,8 @@ contains
       if (row%spread /= '') return
       if (cell(15) == 'UNKNOWN') then
          if (.not. any(has_no_digit(row%word))) call give_up('A NUMBER IS KNOWN: '//trim(line))
-      else if ((cell(15) == '') .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK' .or. row%word == 'COINCIDE' &
-         .or. row%word == 'POKRYCIE')) then
+      else if (any(cell(15) == [character(6) :: '', 'STROKE']) .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK' &
+         .or. row%word == 'COINCIDE' .or. row%word == 'POKRYCIE')) then
          call give_up('THE MARK DOES NOT FIT: '//trim(line))
       end if
    end subroutine compare_row
