@@ -167,6 +167,8 @@ contains
       call split(line, cell)
       if (cell(4) /= 'LINK') return
       read (cell(1:2), *) i, k
+      ! An instant out of a stroke is complete.
+      if (cell(15) == 'STROKE') cell(15) = ''
       if (any(at_change == name) .and. cell(15) == 'NO-RATES') cell(9:) = '0.0'
       link = findloc(sets(i)%links%name == cell(5), .true., dim=1)
       if (cell(15) == 'UNKNOWN' .and. (digits(1.0_wp) < bits_enough .or. name == 'dead_point_12')) then
