@@ -111,9 +111,9 @@ contains
       first = new_motion(size(turned%links))
       now = first
       call make_analysis(a, turned)
-      a%engine%cylinders = cylinders_of(turned, .true.)
+      a%geometry%cylinders = cylinders_of(turned, .true.)
       value = turned%drives(range%drive)%polynomial(1)
-      call lead(a%engine%path, range%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
+      call lead(a%path, range%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
       call advance(a, 0.0_wp, first)
       range%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=range%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return

@@ -1,16 +1,18 @@
-!> The diagnostics of the block engine: of the first motion, of a limit, and of singular positions.
+!> Diagnostics: of the first motion, of a limit, and of singular positions.
 module block_diagnostics
    use kinds, only: wp
-   use drive_path, only: drive_at
+   use drive_path, only: drive_path_t, drive_at
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_far_estimate, diagnostic_singular, &
       diagnostic_incomplete, diagnostic_change, singular_unclear, singular_change, motion_t
    use plane_vectors, only: wrap_angle
    use scales, only: is_length
-   use blocks, only: blocks_below, largest_known, own_unknowns
+   use blocks, only: blocks_t, geometry_t, blocks_below, largest_known, own_unknowns
    use block_rank, only: redundant_rows, moving_unknowns
-   use block_state, only: largest_drive_rate
-   use block_engine, only: block_engine_t, mark_singular_links
+   use block_state, only: state_t, largest_drive_rate
+   use predictor, only: history_t
+   use initial_estimate, only: guess_t
+   use block_motion, only: mark_singular_links
    use singular_position, only: block_singularity
    implicit none
    private
@@ -37,8 +39,11 @@ contains
    !> Tells what there is to say of the first motion `found`: which equations are redundant; what can still move
    !> where the Jacobian is `singular`; where another assembly is about as near to the initial guess or may be
    !> nearer; and the angle that was estimated the worst.
-   function start_diagnostics(e, found, singular) result(list)
-      type(block_engine_t), intent(inout) :: e
+   function start_diagnostics(b, x, guess, s, found, singular) result(list)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(guess_t), intent(in) :: guess
+      type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: found
       logical, intent(in) :: singular
       type(diagnostic_t), allocatable :: list(:)
@@ -48,50 +53,52 @@ contains
       integer :: k, link, same
 
       allocate (list(0))
-      if (e%blocks%redundant > 0) then
+      if (b%redundant > 0) then
          ! Each pair and drive with redundant equations, once, and how many it has.
-         rows = redundant_rows(e%blocks, e%geometry, 1, e%state)
+         rows = redundant_rows(b, x, 1, s)
          do k = size(rows), 1, -1
-            r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
-               drive=e%blocks%rows(rows(k))%drive)
+            r = diagnostic_t(kind=diagnostic_redundant, pair=b%rows(rows(k))%pair, &
+               drive=b%rows(rows(k))%drive)
             same = findloc(list%pair == r%pair .and. list%drive == r%drive, .true., dim=1)
             if (same > 0) list(same)%equations = list(same)%equations + 1
             if (same == 0) list = [list, r]
          end do
       end if
-      do k = 1, size(e%blocks%needed)
-         associate (i => e%blocks%needed(k))
-            if (e%blocks%list(i)%direct) cycle
+      do k = 1, size(b%needed)
+         associate (i => b%needed(k))
+            if (b%list(i)%direct) cycle
             if (singular) then
-               call add_mobility(e, i, list)
+               call add_mobility(b, x, s, i, list)
                cycle
             end if
-            if (e%choice(i)%is_close) list = [list, new_diagnostic(diagnostic_second, links_of(e, i))]
-            if (e%choice(i)%is_incomplete) list = [list, new_diagnostic(diagnostic_incomplete, links_of(e, i))]
+            if (guess%choice(i)%is_close) list = [list, new_diagnostic(diagnostic_second, links_of(b, x, i))]
+            if (guess%choice(i)%is_incomplete) list = [list, new_diagnostic(diagnostic_incomplete, links_of(b, x, i))]
          end associate
       end do
-      off = wrap_angle(found%position(3, :) - e%estimate(3, :))
-      link = maxloc(abs(off), mask=e%blocks%is_found, dim=1)
+      off = wrap_angle(found%position(3, :) - guess%links(3, :))
+      link = maxloc(abs(off), mask=b%is_found, dim=1)
       if (link == 0) return
       if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
 
    !> The links of block `i` that can move, and those that are moved by them.
-   subroutine add_mobility(e, i, list)
-      type(block_engine_t), intent(in) :: e
+   subroutine add_mobility(b, x, s, i, list)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       integer, intent(in) :: i
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       logical, allocatable :: moves(:), moved(:)
       integer :: k
 
-      moves = moving_unknowns(e%blocks, e%geometry, i, e%state)
+      moves = moving_unknowns(b, x, i, s)
       if (.not. any(moves)) return
-      associate (block => e%blocks%list(i))
-         moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
+      associate (block => b%list(i))
+         moved = links_with(b, pack(b%unknown(block%first:block%last), moves))
       end associate
-      do k = 1, e%geometry%chain%wanted
-         associate (h => e%geometry%chain%links(k))
+      do k = 1, x%chain%wanted
+         associate (h => x%chain%links(k))
             if (h%parent > 0) moved(h%link) = moved(h%link) .or. moved(h%parent)
          end associate
       end do
@@ -99,80 +106,85 @@ contains
    end subroutine add_mobility
 
    !> (links) Those whose angle is an unknown of block `i`; of a block of slides alone those that slide.
-   pure function links_of(e, i) result(chosen)
-      type(block_engine_t), intent(in) :: e
+   pure function links_of(b, x, i) result(chosen)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      logical :: chosen(size(e%blocks%tree%orientation))
+      logical :: chosen(size(b%tree%orientation))
       integer :: k
 
-      associate (unknowns => own_unknowns(e%blocks, i))
-         chosen = links_with(e, unknowns)
+      associate (unknowns => own_unknowns(b, i))
+         chosen = links_with(b, unknowns)
          if (any(chosen)) return
-         do k = 1, size(e%geometry%chain%links)
-            if (any(unknowns == e%geometry%chain%links(k)%slide)) chosen(e%geometry%chain%links(k)%link) = .true.
+         do k = 1, size(x%chain%links)
+            if (any(unknowns == x%chain%links(k)%slide)) chosen(x%chain%links(k)%link) = .true.
          end do
       end associate
    end function links_of
 
    !> (links) Those whose angle is among the `unknowns`.
-   pure function links_with(e, unknowns) result(chosen)
-      type(block_engine_t), intent(in) :: e
+   pure function links_with(b, unknowns) result(chosen)
+      type(blocks_t), intent(in) :: b
       integer, intent(in) :: unknowns(:)
-      logical :: chosen(size(e%blocks%tree%orientation))
+      logical :: chosen(size(b%tree%orientation))
       integer :: k
 
       chosen = .false.
       do k = 1, size(unknowns)
-         chosen = chosen .or. (e%blocks%tree%orientation == unknowns(k) .and. e%blocks%tree%orientation > 0)
+         chosen = chosen .or. (b%tree%orientation == unknowns(k) .and. b%tree%orientation > 0)
       end do
    end function links_with
 
    !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
    !> that comes to one; blocks that build on it come to it as well. `creeps`: the motion has come so near in so many
    !> substeps that the infinity of a slide is its limit, before `t` or after.
-   function limit_diagnostic(e, t, creeps) result(list)
-      type(block_engine_t), intent(in) :: e
+   function limit_diagnostic(b, x, path, h, s, t, creeps) result(list)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      type(history_t), intent(in) :: h
+      type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
       logical, intent(in) :: creeps
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left, f(3)
-      logical :: moves(0:size(e%path%laws))
+      logical :: moves(0:size(path%laws))
       integer :: d, k
 
       allocate (list(0))
-      if (e%history%filled == 0) return
-      do k = 1, size(e%blocks%moving)
-         if (e%blocks%list(e%blocks%moving(k))%direct) cycle
-         left = time_to_limit(e%blocks%moving(k))
-         if (abs(left) <= 0.0_wp) left = time_to_infinity(e%blocks%moving(k))
+      if (h%filled == 0) return
+      do k = 1, size(b%moving)
+         if (b%list(b%moving(k))%direct) cycle
+         left = time_to_limit(b%moving(k))
+         if (abs(left) <= 0.0_wp) left = time_to_infinity(b%moving(k))
          if (abs(left) <= 0.0_wp) cycle
-         associate (i => e%blocks%moving(k))
-            r = new_diagnostic(diagnostic_limit, links_of(e, e%blocks%moving(k)))
-            r%in_line = is_in_line(e, i, r, e%history%past%value)
-            r%t = e%history%t(0) + left
+         associate (i => b%moving(k))
+            r = new_diagnostic(diagnostic_limit, links_of(b, x, b%moving(k)))
+            r%in_line = is_in_line(b, x, i, r, h%past%value)
+            r%t = h%t(0) + left
          end associate
          exit
       end do
-      if (k > size(e%blocks%moving)) return
+      if (k > size(b%moving)) return
 
       ! The first drive that moves the block there, itself or through what it builds on; where all stand still, the
       ! first that could.
       moves = .false.
-      associate (below => blocks_below(e%blocks, e%blocks%moving(k)))
+      associate (below => blocks_below(b, b%moving(k)))
          do d = 1, size(below)
-            associate (block => e%blocks%list(below(d)))
-               moves(e%blocks%rows(block%first_row:block%last_row)%drive) = .true.
+            associate (block => b%list(below(d)))
+               moves(b%rows(block%first_row:block%last_row)%drive) = .true.
             end associate
          end do
       end associate
-      do d = 1, size(e%path%laws)
+      do d = 1, size(path%laws)
          if (.not. moves(d)) cycle
-         f = drive_at(e%path, d, r%t)
+         f = drive_at(path, d, r%t)
          if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          r%drive = d
          r%value = f(1)
-         r%is_angle = .not. is_length(e%path%laws(d))
+         r%is_angle = .not. is_length(path%laws(d))
          if (abs(f(2)) > 0.0_wp) exit
       end do
       list = [r]
@@ -188,14 +200,14 @@ contains
          integer :: fastest
 
          left = 0.0_wp
-         if (e%followed(i)%pivot > near_pivot*e%geometry%blocks(i)%lipschitz) return
-         associate (past => e%history%past, step => t - e%history%t(0), &
-                    u => own_unknowns(e%blocks, i))
+         if (h%jacobian(i)%pivot > near_pivot*x%blocks(i)%lipschitz) return
+         associate (past => h%past, step => t - h%t(0), &
+                    u => own_unknowns(b, i))
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
-            if (e%history%uncertain(0) > 0.0_wp .and. &
-               maxval(abs(past(u)%rate(0))) <= fast*largest_drive_rate(e%state)) return
+            if (h%uncertain(0) > 0.0_wp .and. &
+               maxval(abs(past(u)%rate(0))) <= fast*largest_drive_rate(s)) return
             left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
             if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
          end associate
@@ -211,16 +223,16 @@ contains
 
          left = 0.0_wp
          longest = far_slide
-         do k = e%blocks%list(i)%first, e%blocks%list(i)%last
-            associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
-               if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
-               if (abs(x%value) < longest) cycle
-               if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
-               to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
+         do k = b%list(i)%first, b%list(i)%last
+            associate (slide => h%past(b%unknown(k)), step => t - h%t(0))
+               if (b%unknown(k) <= b%orientations .or. .not. abs(slide%rate(0)) > 0.0_wp) cycle
+               if (abs(slide%value) < longest) cycle
+               if (abs(slide%value*slide%acceleration(0)/slide%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
+               to_go = 2.0_wp*slide%rate(0)/slide%acceleration(0)
                if (to_go*sign(1.0_wp, step) <= 0.0_wp) cycle
                if (abs(to_go) > (1.0_wp + near_part)*abs(step) .and. .not. creeps) cycle
                left = to_go
-               longest = abs(x%value)
+               longest = abs(slide%value)
             end associate
          end do
       end function time_to_infinity
@@ -230,85 +242,93 @@ contains
    !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
    !> is: a dead point if some block has one, else a change point if some block has one; its links, of the first such
    !> block, and whether they are in line. `all_at_once`: all equations are solved at once, and have one Jacobian.
-   subroutine get_link_flags(e, found, all_at_once)
-      type(block_engine_t), intent(in) :: e
-      type(motion_t), intent(inout) :: found
+   subroutine get_link_flags(b, x, s, all_at_once, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       logical, intent(in) :: all_at_once
+      type(motion_t), intent(inout) :: found
       type(diagnostic_t) :: r
-      integer :: kinds(size(e%blocks%list)), i
+      integer :: kinds(size(b%list)), i
 
-      call mark_singular_links(e, found, all_at_once)
-      kinds = judge_blocks(e)
+      call mark_singular_links(b, x, s, all_at_once, found)
+      kinds = judge_blocks(b, x, s)
       found%singularity = max(singular_unclear, maxval(kinds))
       if (maxval(kinds) < 0) return
       i = maxloc(kinds, dim=1)
-      r = new_diagnostic(diagnostic_singular, links_of(e, i))
-      r%in_line = is_in_line(e, i, r, e%state%u%value)
+      r = new_diagnostic(diagnostic_singular, links_of(b, x, i))
+      r%in_line = is_in_line(b, x, i, r, s%u%value)
       found%singular_links = r
    end subroutine get_link_flags
 
-   !> (blocks) Judges the position that `e` has found last for each block: one of singular_...; -1 if the block is not
+   !> (blocks) Judges the position `s` for each block: one of singular_...; -1 if the block is not
    !> singular, or builds on a singular one and so has no right-hand side of its own.
-   function judge_blocks(e) result(found)
-      type(block_engine_t), intent(in) :: e
-      integer :: found(size(e%blocks%list))
-      integer :: missing(0:e%blocks%unknowns), before, k
+   function judge_blocks(b, x, s) result(found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
+      integer :: found(size(b%list))
+      integer :: missing(0:b%unknowns), before, k
 
       found = -1
       missing = 0
-      do k = 1, size(e%blocks%needed)
-         associate (i => e%blocks%needed(k), b => e%blocks%list(e%blocks%needed(k)))
-            before = largest_known(e%blocks, i, missing)
-            if (before == 0 .and. e%is_singular(i)) found(i) = block_singularity(e%blocks, e%geometry, i, e%state)
-            missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
+      do k = 1, size(b%needed)
+         associate (i => b%needed(k))
+            before = largest_known(b, i, missing)
+            if (before == 0 .and. s%is_singular(i)) found(i) = block_singularity(b, x, i, s)
+            missing(own_unknowns(b, i)) = max(before, merge(1, 0, s%is_singular(i)))
          end associate
       end do
    end function judge_blocks
 
    !> A diagnostic for each block that has its change point at the instant `t`, at which the motion found last has no
    !> velocities: each of the two branches has its own. None if a block is singular there in another way.
-   function change_diagnostics(e, t) result(list)
-      type(block_engine_t), intent(in) :: e
+   function change_diagnostics(b, x, s, t) result(list)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
       type(diagnostic_t), allocatable :: list(:)
-      integer :: kinds(size(e%blocks%list)), i
+      integer :: kinds(size(b%list)), i
 
-      kinds = judge_blocks(e)
+      kinds = judge_blocks(b, x, s)
       allocate (list(0))
       if (any(kinds >= 0 .and. kinds /= singular_change)) return
       do i = 1, size(kinds)
-         if (kinds(i) == singular_change) list = [list, diagnostic_at_change(e, i, t)]
+         if (kinds(i) == singular_change) list = [list, diagnostic_at_change(b, x, i, t)]
       end do
    end function change_diagnostics
 
    !> The diagnostic of the change point of block `i` at the instant `t`.
-   type(diagnostic_t) function diagnostic_at_change(e, i, t) result(r)
-      type(block_engine_t), intent(in) :: e
+   type(diagnostic_t) function diagnostic_at_change(b, x, i, t) result(r)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       real(wp), intent(in) :: t
 
-      r = new_diagnostic(diagnostic_change, links_of(e, i))
+      r = new_diagnostic(diagnostic_change, links_of(b, x, i))
       r%t = t
       r%here = .true.
    end function diagnostic_at_change
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
    !> the unknowns have the values `value` (0:unknowns).
-   pure logical function is_in_line(e, i, r, value)
-      type(block_engine_t), intent(in) :: e
+   pure logical function is_in_line(b, x, i, r, value)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(diagnostic_t), intent(in) :: r
       real(wp), intent(in) :: value(0:)
       real(wp), allocatable :: angle(:)
       integer :: m, k
 
-      is_in_line = count(r%links > 0) == 2 .and. any([(all(e%blocks%joint(:, k) == r%links(:2)) &
-         .or. all(e%blocks%joint(:, k) == r%links(2:1:-1)), k=1, size(e%blocks%joint, 2))])
+      is_in_line = count(r%links > 0) == 2 .and. any([(all(b%joint(:, k) == r%links(:2)) &
+         .or. all(b%joint(:, k) == r%links(2:1:-1)), k=1, size(b%joint, 2))])
       allocate (angle(0))
-      do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
-         do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
-            angle = [angle, value(e%blocks%body_vectors(k)%orientation) &
-               + atan2(e%geometry%d(k)%y, e%geometry%d(k)%x)]
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         do k = b%loops(m)%first_own, b%loops(m)%last_vector
+            angle = [angle, value(b%body_vectors(k)%orientation) &
+               + atan2(x%d(k)%y, x%d(k)%x)]
          end do
       end do
       do k = 2, size(angle)

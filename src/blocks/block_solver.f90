@@ -15,16 +15,17 @@ module block_solver
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
       entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
-   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
+   use convergence, only: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, &
+      ended_limit, ended_diverged, ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
    use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
       slide_t, known_to, loop_projection
-   use block_state, only: state_t, set_direction
+   use block_state, only: state_t, jacobian_t, set_direction
+   use singular_position, only: settle
    use block_equations, only: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, solve_explicit, second_order_bounds
+   public :: workspace_t, new_workspace, solve_blocks, solve_block, solve_explicit, second_order_bounds
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -76,6 +77,27 @@ contains
       allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
+   !> Solves the blocks of the `list` in turn, up to the first without a position, at the drive values that `s` has; the
+   !> values of unknowns start from those of `s`. `c`: how that ended in the worst block. A block whose Jacobian there
+   !> has no inverse keeps its rates and accelerations.
+   subroutine solve_blocks(b, x, list, w, s, c)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in), contiguous :: list(:)
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(out) :: c
+      real(wp) :: ratio
+      integer :: k
+
+      c = nothing_gathered
+      k = 0
+      do while (k < size(list) .and. is_solved(c))
+         call solve_next(b, x, list, .true., w, s, k, ratio, c)
+         if (is_solved(c) .and. s%is_singular(list(k))) call settle(b, x, list(k), s)
+      end do
+   end subroutine solve_blocks
+
    !> Solves block `i` for rate and acceleration of its unknowns and, if it `moves`, first for their values, which start
    !> from those of `s`. If its Jacobian there has no inverse, c%singular says so, and rates and accelerations stay.
    subroutine solve_block(b, x, i, moves, w, s, c)
@@ -85,20 +107,32 @@ contains
       logical, intent(in) :: moves
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c    !< how it ended
+      type(convergence_t), intent(out) :: c      !< how it ended
+      real(wp) :: ratio
+      integer :: k
 
-      associate (block => b%list(i))
-         if (block%direct) then
-            call solve_explicit(b, x, i, s)
-            c%ended = ended_converged
-            return
-         end if
-         call solve_arrays(b, x, i, block, x%blocks(i), moves, b%unknown(block%first:block%last), b%loops, x%loops, &
-            b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, &
-            s%loop, w%a, w%r, w%scratch_t, c)
-         if (block%shape%pattern > 0) call release(w%sparse)
-      end associate
+      c = nothing_gathered
+      k = 0
+      call solve_next(b, x, [i], moves, w, s, k, ratio, c)
+      c%kantorovich_ratio = ratio
    end subroutine solve_block
+
+   !> Solves blocks of the `list` after number `k`, up to the first without a position or without rates.
+   subroutine solve_next(b, x, list, moves, w, s, k, ratio, c)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in), contiguous :: list(:)
+      logical, intent(in) :: moves               !< their values are solved for
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      integer, intent(inout) :: k                !< the number in the list of the block solved last
+      real(wp), intent(out) :: ratio             !< the Kantorovich ratio of that
+      type(convergence_t), intent(inout) :: c    !< how all have ended
+
+      call solve_list(b, x, size(list), list, moves, b%list, x%blocks, b%unknown, b%loops, x%loops, b%body_vectors, &
+         x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, s%jacobian, &
+         s%is_singular, w%a, w%r, w%scratch_t, k, ratio, c)
+   end subroutine solve_next
 
    !> Solves block `i`, a drive's own unknown: nothing to iterate.
    pure subroutine solve_explicit(b, x, i, s)
@@ -113,10 +147,65 @@ contains
       end associate
    end subroutine solve_explicit
 
-   !> Solves `block`, number `i`, which is not direct, by Newton's method: on plain arrays, whose descriptors are read
-   !> once. `solve_block` shows what they are of.
+   !> Solves blocks of the `list` (`n`) as `solve_next` does, which shows what the arrays are of: on plain arrays, whose
+   !> descriptors are read once for all blocks.
+   subroutine solve_list(b, x, n, list, moves, blocks, numbers, unknown, loops, loop_numbers, vectors, d, slides, e, &
+      equations, constants, values, excursion, u, own, guide, now, jacobian, is_singular, a, r, w, k, ratio, c)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in) :: n, list(n)
+      logical, intent(in) :: moves
+      type(block_t), intent(in) :: blocks(*)
+      type(block_numbers_t), intent(in) :: numbers(*)
+      integer, intent(in) :: unknown(*)
+      type(block_loop_t), intent(in) :: loops(*)
+      type(loop_numbers_t), intent(in) :: loop_numbers(*)
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(vector_t), intent(in) :: d(*), e(*)
+      type(equation_row_t), intent(in) :: equations(*)
+      type(row_numbers_t), intent(in) :: constants(*)
+      real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
+      type(unknown_t), intent(inout) :: u(0:*)
+      type(vector_t), intent(inout) :: own(*), guide(*)
+      type(loop_state_t), intent(inout) :: now(*)
+      type(jacobian_t), intent(inout) :: jacobian(*)
+      logical, intent(inout) :: is_singular(*)
+      real(wp), intent(inout) :: a(*), r(*)
+      type(scratch_t), intent(inout) :: w
+      integer, intent(inout) :: k
+      real(wp), intent(out) :: ratio
+      type(convergence_t), intent(inout) :: c
+      integer :: i
+
+      ratio = 0.0_wp
+      do while (k < n)
+         k = k + 1
+         i = list(k)
+         associate (block => blocks(i))
+            if (block%direct) then
+               associate (row => equations(block%first_row), f => u(unknown(block%first)))
+                  call find_direct(row, constants(block%first_row), values, u(row%other), f)
+                  if (unknown(block%first) <= b%orientations) then
+                     f%c = cos(f%value)
+                     f%s = sin(f%value)
+                  end if
+               end associate
+               cycle
+            end if
+            call solve_arrays(b, x, i, block, numbers(i), moves, unknown(block%first), loops, loop_numbers, vectors, &
+               d, slides, e, equations, constants, values, excursion, u, own, guide, now, a, r, w, jacobian(i), &
+               is_singular(i), ratio, c)
+            if (block%shape%pattern > 0) call release(w%sparse)
+         end associate
+         if (is_singular(i) .or. .not. is_solved(c)) return
+         c%kantorovich_ratio = max(c%kantorovich_ratio, ratio)
+      end do
+   end subroutine solve_list
+
+   !> Solves `block`, number `i`, which is not direct, by Newton's method.
    subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, d, slides, e, &
-      equations, constants, values, excursion, u, own, guide, now, a, r, w, c)
+      equations, constants, values, excursion, u, own, guide, now, a, r, w, jacobian, is_singular, ratio, c)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
@@ -137,10 +226,13 @@ contains
       type(loop_state_t), intent(inout) :: now(*)
       real(wp), intent(inout) :: a(*), r(block%shape%rows, 2)
       type(scratch_t), intent(inout) :: w
-      type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of, own_size, cosine
-      integer :: rows, n, info, iteration, side, k
-      logical :: is_closed, is_right
+      type(jacobian_t), intent(inout) :: jacobian   !< stays if it has no inverse, but for the sign
+      logical, intent(inout) :: is_singular      !< stays if there is no position
+      real(wp), intent(out) :: ratio             !< Kantorovich ratio
+      type(convergence_t), intent(inout) :: c    !< how the blocks so far have ended
+      real(wp) :: before, size_of, own_size, cosine, residual, step, change, least, bound
+      integer :: rows, n, info, ended, iteration, iterations, side, sign_of, k
+      logical :: is_closed, is_right, singular
 
       rows = block%shape%rows
       n = block%shape%n
@@ -160,22 +252,29 @@ contains
       call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, d, u, now)
       before = huge(before)
       w%near%distance = 0.0_wp
-      c = convergence_t(ended=ended_limit)
+      ended = ended_limit
+      singular = .false.
+      change = 0.0_wp
+      ratio = 0.0_wp
+      sign_of = 0
+      residual = 0.0_wp
+      step = 0.0_wp
+      iterations = 0
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
-            c%ended = ended_diverged
+            ended = ended_diverged
             exit
          end if
-         c%iterations = iteration
+         iterations = iteration
          call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, d, slides, e, equations, &
             constants, values, u, own, guide, now, a, r, r(1, 2))
          if (w%near%distance > 0.0_wp) then
             w%near%a = a(:4)
             a(:4) = w%near%factors
          end if
-         c%residual = largest_size(rows, r)
+         residual = largest_size(rows, r)
          if (rows > n) w%gap(:rows) = r(:, 1)
-         is_closed = c%residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
+         is_closed = residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
          side = merge(2, 1, is_closed)
          info = 0
          if (w%near%distance > 0.0_wp) then
@@ -184,50 +283,50 @@ contains
             call solve_first(block%shape, a, w%pivots, w%work, r(1, side), info, b%patterns, w%sparse)
          end if
          if (is_closed) then
-            c%step = 0.0_wp
-            c%ended = ended_converged
-            c%singular = info > 0
+            step = 0.0_wp
+            ended = ended_converged
+            singular = info > 0
             exit
          end if
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level*max(size_of, numbers%coarse), x%tolerance)
-            c%ended = merge(ended_stalled, ended_singular, c%singular)
+            singular = residual <= max(rounding_level*max(size_of, numbers%coarse), x%tolerance)
+            ended = merge(ended_stalled, ended_singular, singular)
             exit
          end if
-         c%step = largest_size(n, r)
+         step = largest_size(n, r)
          ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
          ! it is their gap. A step so small that no longer falls is rounding, whatever sums have left it.
-         if (c%step > 0.5_wp*before .and. (c%step <= small_turn .or. &
-            c%residual <= rounding_level*max(size_of, numbers%coarse))) then
-            c%ended = ended_stalled
+         if (step > 0.5_wp*before .and. (step <= small_turn .or. &
+            residual <= rounding_level*max(size_of, numbers%coarse))) then
+            ended = ended_stalled
          else
             ! The correction was right if it was at the rounding level of each value, or within the tolerance: beside a
             ! long slide an angle is not.
             size_of = 1.0_wp
             is_right = .true.
             do k = 1, n
-               associate (f => u(unknown(k)), step => r(k, 1))
-                  f%value = f%value - step
+               associate (f => u(unknown(k)), turn => r(k, 1))
+                  f%value = f%value - turn
                   own_size = max(1.0_wp, abs(f%value))
                   size_of = max(size_of, own_size)
                   is_right = is_right .and. &
-                     abs(step) <= max(step_tolerance*max(own_size, numbers%coarse), x%tolerance)
+                     abs(turn) <= max(step_tolerance*max(own_size, numbers%coarse), x%tolerance)
                   if (unknown(k) > b%orientations) cycle
-                  if (c%step > small_turn) then
+                  if (step > small_turn) then
                      f%c = cos(f%value)
                      f%s = sin(f%value)
                   else
                      cosine = f%c
-                     f%c = cosine + step*f%s
-                     f%s = f%s - step*cosine
+                     f%c = cosine + turn*f%s
+                     f%s = f%s - turn*cosine
                   end if
                end associate
             end do
-            if (is_right) c%ended = ended_converged
+            if (is_right) ended = ended_converged
          end if
-         before = c%step
-         if (c%ended == ended_limit) then
-            call stay_near(block%shape, a, w%pivots, numbers%lipschitz*c%step, w%near)
+         before = step
+         if (ended == ended_limit) then
+            call stay_near(block%shape, a, w%pivots, numbers%lipschitz*step, w%near)
             cycle
          end if
          do k = block%first_loop, block%last_loop
@@ -237,19 +336,29 @@ contains
          call solve_next_side(block%shape, a, w%pivots, w%work, w%near, w%sparse, r(1, 2))
          exit
       end do
-      if ((c%iterations > 1 .or. c%step > 0.0_wp) .and. c%ended /= ended_diverged) then
+      if ((iterations > 1 .or. step > 0.0_wp) .and. ended /= ended_diverged) then
          do k = 1, n
-            c%change = max(c%change, abs(u(unknown(k))%value - w%start(k)))
+            change = max(change, abs(u(unknown(k))%value - w%start(k)))
          end do
       end if
       if (rows > n .and. moves) then
-         if (c%iterations > 0) call note_closure_error(b, x, i, w%gap, c)
-         if (is_solved(c) .and. c%open%value > max(inconsistent_level*c%open%level, x%closing)) &
-            c%ended = ended_inconsistent
+         if (iterations > 0) call note_closure_error(b, x, i, w%gap, c)
+         if (any(ended == [ended_converged, ended_stalled]) .and. &
+            c%open%value > max(inconsistent_level*c%open%level, x%closing)) ended = ended_inconsistent
       end if
-      if (.not. is_solved(c)) return
-      if (moves .and. .not. c%singular) call judge()
-      if (c%singular) return
+      if (ended /= ended_converged) c%ended = ended
+      c%iterations = max(c%iterations, iterations)
+      c%residual = max(c%residual, residual)
+      c%step = max(c%step, step)
+      c%change = max(c%change, change)
+      if (.not. any(ended == [ended_converged, ended_stalled])) return
+      if (moves .and. .not. singular) call judge()
+      is_singular = singular
+      jacobian%sign_of = sign_of
+      c%determinant = c%determinant*sign_of
+      c%singular = c%singular .or. singular
+      if (singular) return
+      if (moves) jacobian = jacobian_t(sign_of, least, bound)
 
       do k = 1, n
          u(unknown(k))%rate = r(k, 2)
@@ -271,34 +380,34 @@ contains
       !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one
       !> root only where B L change is below 1/2.
       subroutine judge()
-         real(wp) :: least, largest, inverse
+         real(wp) :: largest, inverse
          logical :: suspicious
 
-         call pivot_range(block%shape, a, w%pivots, least, largest, c%determinant, w%sparse)
+         call pivot_range(block%shape, a, w%pivots, least, largest, sign_of, w%sparse)
          if (block%shape%pattern > 0) then
             ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
             inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
             least = 1.0_wp/inverse
          end if
-         c%min_pivot = 1.0_wp
+         bound = 0.0_wp
+         if (n == 0) least = 1.0_wp
          if (n == 0) return
-         c%min_pivot = least
          if (n == 1) largest = numbers%lipschitz
          ! All pivots may be small, where links are much shorter than the mechanism.
          suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
          if (n > 2) then
-            c%inverse = 1.0_wp/max(least, min_inverse)
-            c%kantorovich_ratio = c%change*numbers%lipschitz*c%inverse
-            if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
-               excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
+            bound = 1.0_wp/max(least, min_inverse)
+            ratio = change*numbers%lipschitz*bound
+            if (.not. suspicious .and. ratio <= small_kantorovich_ratio .and. &
+               excursion*numbers%lipschitz*bound**2*real(n, wp)**4 <= small_growth) return
          end if
          if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
-         c%inverse = min(inverse, 1.0_wp/min_inverse)
-         c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
+         bound = min(inverse, 1.0_wp/min_inverse)
+         ratio = change*numbers%lipschitz*inverse
          if (.not. suspicious) return
          size_of = max(numbers%coarse, maxval(abs(u(unknown(:n))%value)))
-         c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-         if (c%singular) c%singular = is_beyond_linear(b, x, i, n, u, now, a, w%pivots, w%work, w%sparse)
+         singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
+         if (singular) singular = is_beyond_linear(b, x, i, n, u, now, a, w%pivots, w%work, w%sparse)
       end subroutine judge
    end subroutine solve_arrays
 

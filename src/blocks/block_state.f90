@@ -3,20 +3,31 @@ module block_state
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, loop_state_t
    use plane_vectors, only: wrap_angle
+   use drive_path, only: drive_path_t, drive_at
    use blocks, only: blocks_t, geometry_t, loop_angles
    implicit none
    private
-   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, set_values, &
+   public :: unknown_t, loop_state_t, jacobian_t, state_t, new_state, set_drive_values, set_direction, set_values, &
       values_of, given, add_turns, largest_drive_rate
 
-   !> Values alone: no factors, no scratch.
+   !> What the factors of a block's Jacobian say.
+   type :: jacobian_t
+      integer :: sign_of = 1                         !< of the determinant
+      real(wp) :: pivot = 1.0_wp                     !< the least; 1 of a direct block
+      real(wp) :: inverse = 0.0_wp                   !< |J^-1|
+   end type jacobian_t
+
+   !> The motion found last: values alone, no factors, no scratch. A checkpoint is an assignment.
    type :: state_t
+      real(wp) :: t = 0.0_wp, change = 0.0_wp        !< its time; of a predicted value, at most
       type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's angle
       type(loop_state_t), allocatable :: loop(:)     !< (loops)
       type(vector_t), allocatable :: own(:)          !< (body vectors) R d, where the block's own angles rotate it
       type(vector_t), allocatable :: guide(:)        !< (slides) R e, their directions
       real(wp), allocatable :: drive_value(:, :)     !< (0:2, 0:drives) value, rate and acceleration of each drive
       real(wp) :: excursion = 0.0_wp                 !< of the drives from their straight lines in a substep, at most
+      type(jacobian_t), allocatable :: jacobian(:)   !< (blocks)
+      logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without rates; with a new sign of determinant
    end type state_t
 
 contains
@@ -29,7 +40,25 @@ contains
 
       allocate (s%u(0:b%unknowns), s%loop(size(b%loops)), s%own(size(b%body_vectors)), s%guide(size(b%slides)))
       allocate (s%drive_value(0:2, 0:drives), source=0.0_wp)
+      allocate (s%jacobian(size(b%list)))
+      allocate (s%crossed(size(b%list)), s%is_singular(size(b%list)), source=.false.)
    end function new_state
+
+   !> Puts the time of the state at `t`, the parameter of the `path` of its drives, with value, rate and acceleration of
+   !> each.
+   pure subroutine set_drive_values(path, t, s)
+      type(drive_path_t), intent(in) :: path
+      real(wp), intent(in) :: t
+      type(state_t), intent(inout) :: s
+      real(wp) :: f(3)
+      integer :: i
+
+      s%t = t
+      do i = 1, size(path%laws)
+         f = drive_at(path, i, t)
+         s%drive_value(0:2, i) = path%unit(i)*f
+      end do
+   end subroutine set_drive_values
 
    !> Cosine and sine of unknown `u`, if it is an angle.
    pure subroutine set_direction(b, u, s)

@@ -12,11 +12,13 @@ module branch_switching
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
-   use convergence, only: convergence_t, nothing_gathered, is_solved
-   use drive_path, only: time_at_part
-   use block_state, only: set_values, values_of, largest_drive_rate
+   use convergence, only: convergence_t, is_solved
+   use drive_path, only: drive_path_t, time_at_part
+   use blocks, only: blocks_t, geometry_t
+   use block_state, only: state_t, set_values, values_of, largest_drive_rate
    use block_rank, only: svd_t, decomposed, curvature_of
-   use block_engine, only: block_engine_t, solve_each
+   use block_solver, only: workspace_t, solve_blocks
+   use predictor, only: history_t, compare
    use block_diagnostics, only: links_of
    implicit none
    private
@@ -105,33 +107,37 @@ contains
       c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
    end subroutine decide
 
-   !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `list`: a diagnostic for each.
-   !> c%keeps_signs: the motion found last, with its record `c`, is that which goes on; otherwise the list says why
-   !> there is none, or is empty where a determinant has changed its sign without a change point.
-   subroutine pass(e, t, requests, c, list)
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
+   !> Passes the change points before the time of `s`, each as the BRANCH cards have it: `requests`. `list`: one for
+   !> each. c%keeps_signs: the motion found last, with its record `c`, is that which goes on; otherwise the list
+   !> says why there is none, or is empty where a determinant has changed its sign without a change point.
+   subroutine pass(b, x, path, h, w, s, requests, c, list)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      type(history_t), intent(inout) :: h
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
       type(branch_requests_t), intent(inout) :: requests
       type(convergence_t), intent(inout) :: c
       type(diagnostic_t), allocatable, intent(out) :: list(:)
       type(diagnostic_t) :: r
-      logical :: crossed(size(e%crossed)), passed
+      logical :: crossed(size(b%list)), passed
       integer :: k
 
       allocate (list(0))
-      crossed = e%crossed
+      crossed = s%crossed
       ! A prediction that leaps too far is not solved at all.
-      passed = any(crossed) .and. is_short_and_right(e, c%change)
-      do k = 1, size(e%blocks%moving)
+      passed = any(crossed) .and. is_short_and_right(b, x, h, s, c%change)
+      do k = 1, size(b%moving)
          if (.not. passed) exit
-         associate (i => e%blocks%moving(k), before => e%history%t(0))
+         associate (i => b%moving(k), before => h%t(0), t => s%t)
             if (.not. crossed(i)) cycle
-            r = new_diagnostic(diagnostic_change, links_of(e, i))
+            r = new_diagnostic(diagnostic_change, links_of(b, x, i))
             ! The least pivot goes through zero in proportion to the values of the drives.
-            r%t = time_at_part(e%path, before, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
+            r%t = time_at_part(path, before, t, h%jacobian(i)%pivot/(h%jacobian(i)%pivot + s%jacobian(i)%pivot))
             if (size(requests%cards) > 0) then
-               call decide(requests, i, links_of(e, i), before, t, r%t, r%other)
-               if (r%other) call take_other_branch(e, i, c, passed)
+               call decide(requests, i, links_of(b, x, i), before, t, r%t, r%other)
+               if (r%other) call take_other_branch(b, x, h, w, s, i, c, passed)
             end if
             if (.not. passed) r%kind = diagnostic_dead_end
             list = [list, r]
@@ -145,56 +151,63 @@ contains
    !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of what drives move by, where that is more
    !> than what is predicted does. A longer substep has to be right to a part that is smaller as its square, by which
    !> the same circuits are distinguished.
-   pure logical function is_short_and_right(e, correction) result(is)
-      type(block_engine_t), intent(in) :: e
+   pure logical function is_short_and_right(b, x, h, s, correction) result(is)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(history_t), intent(in) :: h
+      type(state_t), intent(in) :: s
       real(wp), intent(in) :: correction
-      real(wp), dimension(size(e%blocks%moving)) :: lipschitz, rounded
+      real(wp), dimension(size(b%moving)) :: lipschitz, rounded
       real(wp) :: right, driven
-      logical, dimension(size(e%blocks%moving)) :: crosses, is_short
+      logical, dimension(size(b%moving)) :: crosses, is_short
 
-      crosses = e%crossed(e%blocks%moving)
-      lipschitz = e%geometry%blocks(e%blocks%moving)%lipschitz
-      is_short = e%change <= short_step &
-         .or. e%followed(e%blocks%moving)%pivot + e%found(e%blocks%moving)%pivot <= short_pivots*lipschitz
+      crosses = s%crossed(b%moving)
+      lipschitz = x%blocks(b%moving)%lipschitz
+      is_short = s%change <= short_step &
+         .or. h%jacobian(b%moving)%pivot + s%jacobian(b%moving)%pivot <= short_pivots*lipschitz
       is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
       if (.not. is) return
-      driven = abs(e%t - e%history%t(0))*largest_drive_rate(e%state)
-      rounded = rounding*lipschitz/e%followed(e%blocks%moving)%pivot**2*max(e%change, driven)
-      right = right_part*(short_step/max(short_step, e%change))**2*e%change &
+      driven = abs(s%t - h%t(0))*largest_drive_rate(s)
+      rounded = rounding*lipschitz/h%jacobian(b%moving)%pivot**2*max(s%change, driven)
+      right = right_part*(short_step/max(short_step, s%change))**2*s%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
-      is = correction <= min(right, max_wrong*e%change)
+      is = correction <= min(right, max_wrong*s%change)
    end function is_short_and_right
 
    !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`:
    !> how that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are
    !> no guide to what comes.
-   subroutine take_other_branch(e, i, c, found)
-      type(block_engine_t), intent(inout) :: e
+   subroutine take_other_branch(b, x, h, w, s, i, c, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(history_t), intent(inout) :: h
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
       integer, intent(in) :: i
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
       type(svd_t) :: v
-      real(wp), dimension(e%blocks%list(i)%shape%n) :: direction, x
+      real(wp), dimension(b%list(i)%shape%n) :: direction, here
       real(wp) :: curvature, away, correction
-      logical :: same, crossed(size(e%crossed))
+      logical :: same, crossed(size(b%list))
 
-      crossed = e%crossed
-      x = values_of(e%blocks, i, e%state)
-      v = decomposed(e%blocks, e%geometry, i, e%state)
+      crossed = s%crossed
+      here = values_of(b, i, s)
+      v = decomposed(b, x, i, s)
       direction = v%right(v%n, :)
-      curvature = curvature_of(e%blocks, e%geometry, i, x, v%left(:, v%n), direction, e%state)
+      curvature = curvature_of(b, x, i, here, v%left(:, v%n), direction, s)
       found = abs(curvature)*furthest > 2.0_wp*v%s(v%n)
       if (.not. found) return
       away = -2.0_wp*v%s(v%n)/curvature
-      call set_values(e%blocks, i, x + away*direction, e%state)
-      c = nothing_gathered
-      call solve_each(e, e%blocks%moving, .true., c)
+      call set_values(b, i, here + away*direction, s)
+      call solve_blocks(b, x, b%moving, w, s, c)
+      if (is_solved(c)) call compare(b, x, b%moving, h, s, c)
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
-      correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
+      correction = maxval(abs(values_of(b, i, s) - (here + away*direction)))
       crossed(i) = .not. crossed(i)
-      same = .not. any(e%crossed .and. .not. crossed)
+      same = .not. any(s%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
          .and. c%open%value <= max_closure_part*abs(curvature)*away**2
-      e%history%filled = 0
+      h%filled = 0
    end subroutine take_other_branch
 end module branch_switching

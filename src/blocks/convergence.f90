@@ -51,10 +51,9 @@ module convergence
       real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
       real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
       integer :: determinant = 0               !< its sign
-      real(wp) :: min_pivot = 0.0_wp           !< of its factors; of METHOD DENSE, over the largest
+      real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: of its factors, over the largest
       real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
       real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
-      real(wp) :: inverse = 0.0_wp             !< |J^-1| there
       real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
       logical :: keeps_signs = .true.          !< the determinants have those of the motion that is followed

@@ -11,13 +11,14 @@ module initial_estimate
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
    use plane_vectors, only: direction, pi, wrap_angle
+   use bilinear, only: kept_start_t
    use pair_geometry, only: way_of, opening_of, slide_of
    use mechanism, only: mechanism_t, has_guide
    use spanning_tree, only: spanning_tree_t, axes_t
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
-   public :: estimated_values, estimated_directions
+   public :: guess_t, choice_t, put_guess, estimated_values, estimated_directions
 
    !> Angles from the places are taken where their largest closure error is below `closed_part` of the characteristic
    !> length and below `better_part` of that of the deck's angles, and where an angle differs by more than `far_angle`
@@ -33,7 +34,39 @@ module initial_estimate
    real(wp), parameter :: alike = 1.0e-9_wp
    integer, parameter :: max_sweeps = 20, samples = 36
 
+   !> How the position of a block at the first instant was chosen.
+   type :: choice_t
+      logical :: is_close = .false.              !< another one is about as near
+      logical :: is_incomplete = .false.         !< a nearer one may not have been found
+   end type choice_t
+
+   !> Where the first position is searched for.
+   type :: guess_t
+      real(wp), allocatable :: values(:)         !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: links(:, :)       !< (3, links) places from the chain's origin, angles of the deck
+      type(choice_t), allocatable :: choice(:)   !< (blocks)
+      type(kept_start_t), allocatable :: starts(:)   !< (blocks) near which the paths to all positions begin
+   end type guess_t
+
 contains
+
+   !> Makes `guess` that of `m`; paths that it has from a mechanism of the same structure stay.
+   subroutine put_guess(m, b, x, guess)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(guess_t), intent(inout) :: guess
+      integer :: i
+
+      if (.not. allocated(guess%values)) allocate (guess%values(0:b%unknowns), guess%links(3, size(m%links)), &
+         guess%choice(size(b%list)), guess%starts(size(b%list)))
+      guess%choice = choice_t()
+      do i = 1, size(m%links)
+         guess%links(:, i) = m%links(i)%position - [x%chain%origin, 0.0_wp]
+      end do
+      ! As a section: a function's result would bring its own lower bound.
+      guess%values(:) = estimated_values(m, b, x)
+   end subroutine put_guess
 
    !> Values (0:unknowns) of angles and slides of `m`, in the units of its blocks `b`.
    function estimated_values(m, b, x) result(value)

@@ -79,21 +79,19 @@ contains
          c%ground_position(:, i) = m%links(c%ground(i))%position - [x%equations%axes%origin, 0.0_wp]
       end do
       c%origin = x%equations%axes%origin
+      c%length = x%equations%length
    end subroutine put_chain
 
-   !> Puts the motion of the chain's wanted links, or of `all_links`, at state `s` into `q`; `length`: the
-   !> unit of the slides in the deck's unit. `finite`: no number is out of range; false may be said of sums alone.
-   pure subroutine move_links(c, s, length, q, finite, all_links)
+   !> Puts the motion of the first `n` links of the chain `c` at state `s` into `q`. `finite`: no number is out of
+   !> range; false may be said of sums alone.
+   pure subroutine move_links(c, n, s, q, finite)
       type(chain_t), intent(in) :: c
+      integer, intent(in) :: n               !< c%wanted, or all
       type(state_t), intent(in) :: s
-      real(wp), intent(in) :: length
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
-      logical, intent(in), optional :: all_links
-      integer :: links, i, k
+      integer :: i, k
 
-      links = c%wanted
-      if (present(all_links)) links = merge(size(c%links), links, all_links)
       q%origin = c%origin
       ! One by one, since a column at once would be a call of its own.
       do i = 1, size(c%ground)
@@ -102,7 +100,7 @@ contains
          q%position(2, k) = c%ground_position(2, i)
          q%position(3, k) = c%ground_position(3, i)
       end do
-      call move_chain(links, c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
+      call move_chain(n, c%links, s%u, c%length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
    !> Puts the motion of the `n` moving `links` into that of all links, on plain arrays, which cost no descriptors.

@@ -16,11 +16,17 @@
 module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
-   use blocks, only: blocks_t, geometry_t
-   use block_state, only: unknown_t, state_t, largest_drive_rate
+   use drive_path, only: drive_path_t
+   use convergence, only: convergence_t
+   use blocks, only: blocks_t, geometry_t, iterated_unknowns, own_unknowns
+   use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, set_direction, set_values, &
+      largest_drive_rate
+   use block_solver, only: solve_explicit
+   use block_rank, only: jacobian_of, relative_sign
    implicit none
    private
-   public :: history_t, begin_at, remember, predict, is_even, largest_change, order_weights, uncertain_part
+   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, is_even, largest_change, &
+      order_weights
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
    !> change may end at another assembly and still look right.
@@ -42,17 +48,146 @@ module predictor
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
    end type unknown_history_t
 
-   !> The last three motions.
+   !> The last three motions accepted, and what the Jacobians of the latest say.
    type :: history_t
       integer, allocatable :: predicted(:)              !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
       real(wp) :: uncertain(0:2) = 0.0_wp               !< their accelerations, in parts of velocities in a unit of time
-      type(unknown_history_t), allocatable :: past(:)              !< (0:unknowns)
+      type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns)
+      type(jacobian_t), allocatable :: jacobian(:)      !< (blocks) of the latest
+      real(wp), allocatable :: entries(:)               !< there, of the block with too many rows: (rows*n)
    end type history_t
 
 contains
+
+   !> The history of the blocks `b` before their first motion, for predictions of this `order`.
+   pure function new_history(b, order) result(h)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: order                      !< 0 to 3, or own_predictor
+      type(history_t) :: h
+
+      h%predicted = iterated_unknowns(b, b%moving)
+      h%order = order
+      allocate (h%past(0:b%unknowns), h%jacobian(size(b%list)))
+   end function new_history
+
+   !> Makes the motion `s` the latest: the one that is followed.
+   subroutine accept(b, x, s, h)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
+      type(history_t), intent(inout) :: h
+      real(wp) :: uncertain, least
+      integer :: k
+
+      if (h%filled == 0) h%jacobian = s%jacobian
+      call keep(size(b%moving), b%moving, s%jacobian, h%jacobian, least)
+      uncertain = 0.0_wp
+      if (least <= certain_pivot) then
+         do k = 1, size(b%moving)
+            uncertain = max(uncertain, uncertain_part(b, x, b%moving(k), h%jacobian(b%moving(k))%pivot, s))
+         end do
+      end if
+      call remember(h, s%t, s%u, uncertain)
+      if (b%redundant > 0) h%entries = jacobian_of(b, x, 1, s)
+   end subroutine accept
+
+   !> Puts the Jacobians `found` of the blocks of the `list` (`n`) among those `kept`, with their `least` pivot. Plain
+   !> arrays cost no descriptors at each block.
+   pure subroutine keep(n, list, found, kept, least)
+      integer, intent(in) :: n, list(n)
+      type(jacobian_t), intent(in) :: found(*)
+      type(jacobian_t), intent(inout) :: kept(*)
+      real(wp), intent(out) :: least
+      integer :: k
+
+      least = huge(least)
+      do k = 1, n
+         kept(list(k)) = found(list(k))
+         least = min(least, found(list(k))%pivot)
+      end do
+   end subroutine keep
+
+   !> Compares the motion `s`, for which the blocks of the `list` are solved, with the latest. `c` gets whether
+   !> determinants keep their signs, and how its Kantorovich ratio grows with the excursion of the drives.
+   subroutine compare(b, x, list, h, s, c)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in), contiguous :: list(:)
+      type(history_t), intent(in) :: h
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      logical :: crosses
+      integer :: k
+
+      if (allocated(h%entries)) then
+         s%jacobian(1)%sign_of = h%jacobian(1)%sign_of*relative_sign(b, x, 1, h%entries, s)
+         c%determinant = product(s%jacobian(list)%sign_of)
+      end if
+      call compare_signs(size(list), list, h%jacobian, s%jacobian, s%is_singular, s%crossed, crosses)
+      if (crosses) c%keeps_signs = .false.
+      if (.not. s%excursion > 0.0_wp) return
+      do k = 1, size(list)
+         associate (i => list(k))
+            if (.not. s%is_singular(i)) c%growth = max(c%growth, &
+               x%blocks(i)%lipschitz*max(s%jacobian(i)%inverse, h%jacobian(i)%inverse)**2)
+         end associate
+      end do
+   end subroutine compare
+
+   !> Finds which of the blocks of the `list` (`n`) have crossed: their signs are not those `before`. At a change point
+   !> itself the sign is that of rounding.
+   pure subroutine compare_signs(n, list, before, now, is_singular, crossed, crosses)
+      integer, intent(in) :: n, list(n)
+      type(jacobian_t), intent(in) :: before(*), now(*)
+      logical, intent(in) :: is_singular(*)
+      logical, intent(inout) :: crossed(*)
+      logical, intent(out) :: crosses            !< some block has
+      integer :: k
+
+      crosses = .false.
+      do k = 1, n
+         associate (i => list(k))
+            crossed(i) = now(i)%sign_of /= before(i)%sign_of .and. .not. is_singular(i)
+            crosses = crosses .or. crossed(i)
+         end associate
+      end do
+   end subroutine compare_signs
+
+   !> Makes `s`, the motion found last, the latest that was accepted; before the first that of the `estimated` values,
+   !> but for what drives alone give.
+   subroutine recall(b, x, path, h, estimated, s)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      type(history_t), intent(in) :: h
+      real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad, unit of the block
+      type(state_t), intent(inout) :: s
+      integer :: k
+
+      if (h%filled > 0) then
+         call set_drive_values(path, h%t(0), s)
+         do k = 1, size(h%predicted)
+            associate (i => h%predicted(k), past => h%past(h%predicted(k)))
+               s%u(i)%value = past%value
+               s%u(i)%rate = past%rate(0)
+               s%u(i)%acceleration = past%acceleration(0)
+               call set_direction(b, i, s)
+            end associate
+         end do
+      end if
+      do k = 1, size(b%needed)
+         associate (i => b%needed(k))
+            if (b%list(i)%direct) then
+               call solve_explicit(b, x, i, s)
+            else if (h%filled == 0) then
+               call set_values(b, i, estimated(own_unknowns(b, i)), s)
+            end if
+         end associate
+      end do
+   end subroutine recall
 
    !> Makes the motion `u` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities in a
    !> unit of time.

@@ -3,9 +3,9 @@
 !> The motion is followed by blocks, whatever the method: they give the limits, the certificate and the remarks. METHOD
 !> DENSE and METHOD MATRIX solve for the motion at each instant where the blocks have found one.
 !>
-!> After an instant the analysis is in one of five states. The motion may stand on a singular position (`singular`).
+!> After an instant the analysis is in one of five phases. The motion may stand on a singular position (`singular`).
 !>
-!> | state     | the last instant               | `reach` goes to the next instant by                               |
+!> | phase     | the last instant               | `reach` goes to the next instant by                               |
 !> |-----------|--------------------------------|-------------------------------------------------------------------|
 !> | not_begun | none had a position            | begin                                                             |
 !> | at_start  | none had a motion              | begin; rest, if it stands and no drive moves                      |
@@ -35,20 +35,21 @@ module analysis
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end, &
       diagnostic_stroke, mark_stroke
-   use convergence, only: convergence_t, nothing_gathered, is_solved, ended_inconsistent, ended_unsought, &
+   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, &
       ended_elsewhere
-   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine, get_blocks_motion => get_motion, &
-      get_ratios, get_driven_links, set_drive_values, solve_each
-   use initial_assembly, only: measure_closure_error
+   use block_state, only: set_drive_values
+   use block_solver, only: solve_blocks
+   use block_motion, only: put_geometry, get_ratios, get_driven_links
+   use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: go_by_value, leave
    use scales, only: is_length
    use cylinders, only: cylinder_length, is_out_of_stroke
-   use following, only: lengths_followed, following_t, &
-      step_record_t, step_blocked, step_creeps, step_there, step_stands, &
-      step_rests, begin_following, continue_to, go_on_from, go_back, place_t, note_place, return_to, passed_of, &
-      limit_t, limit_before, branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
+   use following, only: lengths_followed, following_t, step_record_t, step_blocked, step_creeps, step_there, &
+      step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
+      go_on_from, go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before, branch_t, &
+      certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -59,14 +60,14 @@ module analysis
    !> blocks.
    real(wp), parameter :: beside_start = 1.0e-3_wp
 
-   !> The states.
+   !> The phases.
    enum, bind(c)
       enumerator :: not_begun, at_start, on_motion, lost, beyond
    end enum
 
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
-      integer :: state = not_begun
+      integer :: phase = not_begun
       logical, allocatable :: singular(:)                  !< (blocks) that are, if it stands on such a position
       real(wp) :: last = 0.0_wp                            !< time of the last instant, but for those beyond a limit
       type(branch_t) :: branch                             !< of the last instant
@@ -84,37 +85,35 @@ module analysis
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
-   !> `make_block_engine`.
+   !> `begin_following`.
    subroutine make_analysis(a, m, structure)
       type(analysis_t), intent(out) :: a
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
-      type(block_engine_t), allocatable :: engine
 
-      allocate (engine)
       if (m%method == method_newton) then
-         call make_block_engine(engine, m, structure)
+         call begin_following(a%following_t, m, structure)
       else
-         call make_block_engine(engine, for_blocks(m), structure)
+         call begin_following(a%following_t, for_blocks(m), structure)
          allocate (a%dense)
          call make_dense(a%dense, m)
       end if
-      call begin_following(a%following_t, m, engine)
    end subroutine make_analysis
 
-   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the engine
-   !> that it has. `is_done`: that fits; otherwise `a` is of no use.
+   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the
+   !> structure that it has. `is_done`: that fits; otherwise `a` is of no use.
    subroutine renew_analysis(a, m, is_done)
       type(analysis_t), intent(inout) :: a
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: is_done
-      type(block_engine_t), allocatable :: engine
+      type(following_t) :: kept
 
-      call move_alloc(a%engine, engine)
-      call renew_block_engine(engine, m, is_done)
-      if (.not. is_done) return
+      call move_memory(a%following_t, kept)
       a = analysis_t()
-      call begin_following(a%following_t, m, engine)
+      call move_memory(kept, a%following_t)
+      is_done = a%blocks%solvable
+      if (is_done) call put_geometry(m, a%blocks, a%geometry, a%path, is_done)
+      if (is_done) call begin_motion(a%following_t, m)
    end subroutine renew_analysis
 
    !> Solves for the instant `t`; `found` is its motion in the deck's units, with what could not be found flagged. Links
@@ -139,7 +138,7 @@ contains
       call reach(a, t, step, list)
       if (step%ending >= step_there) then
          call arrive(a, step, list, found)
-         if (size(a%engine%cylinders) > 0) call flag_strokes(a, found)
+         if (size(a%geometry%cylinders) > 0) call flag_strokes(a, found)
       else
          call stop_at(a, t, step, found)
       end if
@@ -157,7 +156,7 @@ contains
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
 
       if (allocated(a%singular)) then
-         if (.not. any(moving_drives(a%engine%path, a%last, t))) then
+         if (.not. any(moving_drives(a%path, a%last, t))) then
             call rest(a, t, step)
             return
          end if
@@ -181,7 +180,7 @@ contains
       real(wp) :: beside
 
       if (allocated(a%singular)) then
-         beside = time_beside(a%engine%path, a%last, t, beside_start)
+         beside = time_beside(a%path, a%last, t, beside_start)
          call continue_to(a%following_t, beside, step)
          if (step%ending >= step_there .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
             call go_on_from(a%following_t, beside)
@@ -211,7 +210,7 @@ contains
 
       if ((a%t - a%last)*(t - a%last) < 0.0_wp) then
          call leave(a%following_t, a%last, t, &
-            pack(a%engine%blocks%moving, a%singular(a%engine%blocks%moving)), returns)
+            pack(a%blocks%moving, a%singular(a%blocks%moving)), returns)
          step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
          if (size(step%dead_end) > 0) then
             step%ending = step_blocked
@@ -231,11 +230,10 @@ contains
       type(step_record_t), intent(inout) :: step
 
       if (a%is_left) call return_to(a%following_t, a%left)
-      associate (e => a%engine)
-         e%t = t
-         call set_drive_values(e%path, t, e%state)
-         a%convergence = nothing_gathered
-         call solve_each(e, pack(e%blocks%moving, .not. e%is_singular(e%blocks%moving)), .true., a%convergence)
+      call set_drive_values(a%path, t, a%state)
+      associate (moving => a%blocks%moving)
+         call solve_blocks(a%blocks, a%geometry, pack(moving, .not. a%state%is_singular(moving)), a%work, a%state, &
+            a%convergence)
       end associate
       a%convergence%singular = .true.
       step%ending = step_rests
@@ -293,12 +291,12 @@ contains
       integer :: was
       logical :: had_missed, crosses, goes_on
 
-      was = min(a%state, on_motion)
+      was = min(a%phase, on_motion)
       had_missed = a%has_missed
       if (a%convergence%singular .and. step%ending == step_there) then
          call go_by_value(a%following_t, found%t, step, list)
          if (a%convergence%singular .and. a%follows .and. .not. allocated(list)) then
-            list = change_diagnostics(a%engine, found%t)
+            list = change_diagnostics(a%blocks, a%geometry, a%state, found%t)
             if (size(list) > 0) step%ending = step_stands
          end if
       end if
@@ -312,7 +310,7 @@ contains
       end if
       if (a%has_missed) then
          call cut(found, -1, mark_not_converged)
-         call get_driven_links(a%engine, found%t, found)
+         call get_driven_links(a%blocks, a%geometry, a%path, found%t, a%work, a%state, found)
          a%branch = branch_t()
          ! Of instants in a row this is said once.
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
@@ -323,22 +321,22 @@ contains
       end if
 
       goes_on = found%known == 2 .and. .not. found%rests
-      if (allocated(a%dense)) goes_on = .not. any(a%engine%is_singular(a%engine%blocks%needed))
+      if (allocated(a%dense)) goes_on = .not. any(a%state%is_singular(a%blocks%needed))
       if (allocated(a%singular)) deallocate (a%singular)
       if (goes_on) then
          call go_on_from(a%following_t, found%t)
       else
          call go_back(a%following_t, step)
-         if (any(a%engine%is_singular(a%engine%blocks%needed))) a%singular = a%engine%is_singular
+         if (any(a%state%is_singular(a%blocks%needed))) a%singular = a%state%is_singular
       end if
       if (a%follows) then
-         a%state = on_motion
+         a%phase = on_motion
       else if (.not. a%has_missed) then
-         a%state = at_start
+         a%phase = at_start
       end if
    end subroutine arrive
 
-   !> Notes what is verified of the position at the end of `step`, from the state `was`; `crosses`: change points lie
+   !> Notes what is verified of the position at the end of `step`, from the phase `was`; `crosses`: change points lie
    !> before it.
    subroutine certify(a, was, step, crosses)
       type(analysis_t), intent(inout) :: a
@@ -371,7 +369,8 @@ contains
          if (found%known < 2) return
          call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
       end if
-      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%engine, found, a%convergence%singular), found)
+      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%blocks, a%geometry, a%guess, a%state, found, &
+         a%convergence%singular), found)
    end subroutine tell_first
 
    !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
@@ -393,11 +392,11 @@ contains
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
          call cut(found, -1, mark_inconsistent)
          ! Not where the last substep has ended, but at the instant itself.
-         if (step%tries > 1) call measure_closure_error(a%engine, t, a%convergence)
+         if (step%tries > 1) call measure_closure_error(a%following_t, t)
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
-         call get_driven_links(a%engine, t, found)
+         call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
       end if
 
       allocate (list(0))
@@ -405,7 +404,7 @@ contains
          associate (open => a%convergence%open)
             call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
                is_angle=open%is_angle, value=open%value &
-               *merge(1.0_wp, a%engine%geometry%equations%length*open%unit, open%is_angle))], &
+               *merge(1.0_wp, a%geometry%equations%length*open%unit, open%is_angle))], &
                found)
          end associate
       else
@@ -413,10 +412,10 @@ contains
          ! To where a slide is infinite there are more substeps than are tried.
          if (step%ending == step_creeps) &
             ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-         list = limit_diagnostic(a%engine, ahead, step%ending == step_creeps)
+         list = limit_diagnostic(a%blocks, a%geometry, a%path, a%history, a%state, ahead, step%ending == step_creeps)
          if (.not. a%follows .and. a%convergence%ended == ended_elsewhere .and. a%convergence%open%pair > 0) &
             list = [diagnostic_t(kind=diagnostic_stroke, pair=a%convergence%open%pair)]
-         if (a%follows .and. size(a%engine%cylinders) > 0) call find_length_limit(a, t, list)
+         if (a%follows .and. size(a%geometry%cylinders) > 0) call find_length_limit(a, t, list)
          if (size(list) == 0 .and. a%follows .and. step%ending == step_blocked) &
             list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
       end if
@@ -425,13 +424,13 @@ contains
       else if (allocated(step%dead_end)) then
          if (size(step%dead_end) > 0) list = step%dead_end
       end if
-      if (a%state <= on_motion) call add_diagnostics(list, found)
+      if (a%phase <= on_motion) call add_diagnostics(list, found)
 
       if (a%follows .and. .not. inconsistent .and. abs(t - a%place%t) > 0.0_wp) &
          a%limits(merge(2, 1, t > a%place%t)) = limit_t(.true., &
          merge(a%t + near_part*(t - a%place%t), t, step%ending == step_blocked), list)
       call go_back(a%following_t, step)
-      if (a%follows) a%state = lost
+      if (a%follows) a%phase = lost
       if (allocated(a%singular)) deallocate (a%singular)
    end subroutine stop_at
 
@@ -443,19 +442,19 @@ contains
       integer :: side
 
       call cut(found, -1, mark_not_converged)
-      call get_driven_links(a%engine, t, found)
+      call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       side = limit_before(a%limits, t)
       associate (told => a%limits(side)%diagnostics)
-         if (a%state <= on_motion) then
+         if (a%phase <= on_motion) then
             call add_diagnostics(told, found)
          else if (any(told%kind == diagnostic_limit)) then
             call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
                t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
          end if
       end associate
-      a%state = beyond
+      a%phase = beyond
    end subroutine pass_over
 
    !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
@@ -478,18 +477,19 @@ contains
       logical :: finite
 
       if (allocated(a%dense)) then
-         call solve_all_links(a%dense, a%engine, found, a%convergence)
+         call solve_all_links(a%dense, a%blocks, a%geometry, a%path, a%guess%values, a%history, a%state, found, &
+            a%convergence)
          a%has_missed = .not. is_solved(a%convergence)
          finite = .false.
       else
-         call get_blocks_motion(a%engine, found, finite)
+         call move_links(a%geometry%chain, a%geometry%chain%wanted, a%state, found, finite)
       end if
-      if (size(a%engine%blocks%ratios) > 0) call get_ratios(a%engine%blocks, a%engine%geometry, &
-         a%engine%path, a%engine%is_singular, a%engine%state, a%engine%work, found)
+      if (size(a%blocks%ratios) > 0) call get_ratios(a%blocks, a%geometry, &
+         a%path, a%state%is_singular, a%state, a%work, found)
 
       call cut(found, 2, mark_none)
       found%rests = a%convergence%singular .and. a%follows
-      if (found%rests) found%rests = .not. any(moving_drives(a%engine%path, found%t, found%t))
+      if (found%rests) found%rests = .not. any(moving_drives(a%path, found%t, found%t))
       if (found%rests) then
          found%velocity = 0.0_wp
          found%acceleration = 0.0_wp
@@ -497,7 +497,7 @@ contains
          if (a%convergence%singular) call cut(found, 0, mark_singular)
          if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)
          ! Where rates contradict one another no link has any.
-         if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
+         if (found%mark == mark_singular) call get_link_flags(a%blocks, a%geometry, a%state, allocated(a%dense), found)
       end if
       if (finite) return
       ! What is out of the range of the real kind is not known.
@@ -537,7 +537,7 @@ contains
       type(analysis_t), intent(in) :: a
 
       redundancy_error = -1.0_wp
-      if (a%engine%blocks%redundant > 0) redundancy_error = a%max_closure_error
+      if (a%blocks%redundant > 0) redundancy_error = a%max_closure_error
    end function redundancy_error
 
    !> Puts the limit at which the length of a cylinder comes to its bound in the place of `list`, if the motion that is
@@ -547,13 +547,13 @@ contains
       real(wp), intent(in) :: t              !< time
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t) :: limit
-      real(wp) :: lengths(0:2, size(a%engine%cylinders)), f(3), left, nearest
+      real(wp) :: lengths(0:2, size(a%geometry%cylinders)), f(3), left, nearest
       integer :: d, k, side
 
       lengths = lengths_followed(a%following_t)
       nearest = near_part*abs(t - a%place%t)
-      do k = 1, size(a%engine%cylinders)
-         associate (bounds => a%engine%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
+      do k = 1, size(a%geometry%cylinders)
+         associate (bounds => a%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
             do side = 1, 2
                left = huge(left)
                if (abs(rate) > 0.0_wp .and. bounds(side) < huge(1.0_wp)) left = (bounds(side) - length)/rate
@@ -561,21 +561,21 @@ contains
                if ((length - bounds(1))*(length - bounds(2)) >= 0.0_wp .and. left < huge(left)) left = 0.0_wp
                if (left*sign(1.0_wp, t - a%t) < 0.0_wp .or. abs(left) > nearest) cycle
                nearest = abs(left)
-               limit = diagnostic_t(kind=diagnostic_limit, pair=a%engine%cylinders(k)%pair, t=a%t + left, &
+               limit = diagnostic_t(kind=diagnostic_limit, pair=a%geometry%cylinders(k)%pair, t=a%t + left, &
                   value=bounds(side), other=bounds(side) > 0.0_wp)
             end do
          end associate
       end do
       if (limit%pair == 0) return
-      do d = 1, size(a%engine%path%laws)
-         f = drive_at(a%engine%path, d, limit%t)
+      do d = 1, size(a%path%laws)
+         f = drive_at(a%path, d, limit%t)
          if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          limit%drive = d
          if (abs(f(2)) > 0.0_wp) exit
       end do
-      associate (law => a%engine%path%laws(limit%drive))
+      associate (law => a%path%laws(limit%drive))
          limit%is_angle = .not. is_length(law)
-         f = drive_at(a%engine%path, limit%drive, limit%t)
+         f = drive_at(a%path, limit%drive, limit%t)
          if (law%kind /= drive_slide .or. law%subject /= limit%pair) limit%value = f(1)
       end associate
       list = [limit]
@@ -588,9 +588,9 @@ contains
       integer :: k
 
       if (found%known < 2 .or. found%mark /= mark_none) return
-      do k = 1, size(a%engine%cylinders)
-         associate (one => a%engine%cylinders(k), length => cylinder_length(a%engine%cylinders(k), &
-               found%position(:, a%engine%cylinders(k)%i), found%position(:, a%engine%cylinders(k)%j)))
+      do k = 1, size(a%geometry%cylinders)
+         associate (one => a%geometry%cylinders(k), length => cylinder_length(a%geometry%cylinders(k), &
+               found%position(:, a%geometry%cylinders(k)%i), found%position(:, a%geometry%cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
             found%mark = mark_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)

@@ -6,11 +6,10 @@ module change_point_passage
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
    use predictor, only: begin_at
-   use initial_assembly, only: solve_instant
    use branch_switching, only: take_other_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
-   use following, only: following_t, step_record_t, step_there, step_stands, place_t, continue_to, go_on_from, &
-      go_back, follow_from, note_place, return_to, passed_of
+   use following, only: following_t, step_record_t, step_there, step_stands, place_t, solve_at, continue_to, &
+      go_on_from, go_back, follow_from, note_place, return_to, passed_of
    implicit none
    private
    public :: leave, go_by_value
@@ -42,12 +41,12 @@ contains
 
       allocate (list(size(blocks)))
       do k = 1, size(blocks)
-         list(k) = diagnostic_at_change(f%engine, blocks(k), last)
+         list(k) = diagnostic_at_change(f%blocks, f%geometry, blocks(k), last)
          list(k)%returns = .true.
       end do
       if (size(f%branch_requests%cards) == 0) return
 
-      beside = time_beside(f%engine%path, last, t, leaving)
+      beside = time_beside(f%path, last, t, leaving)
       f%branch_requests%stood_until = beside
       call note_place(f, before)
       call continue_to(f, beside, step)
@@ -58,9 +57,10 @@ contains
       end if
       call go_on_from(f, beside)
       do k = 1, size(blocks)
-         call decide(f%branch_requests, blocks(k), links_of(f%engine, blocks(k)), last, beside, last, list(k)%other)
+         call decide(f%branch_requests, blocks(k), links_of(f%blocks, f%geometry, blocks(k)), last, beside, last, &
+            list(k)%other)
          if (.not. list(k)%other) cycle
-         call take_other_branch(f%engine, blocks(k), f%convergence, found)
+         call take_other_branch(f%blocks, f%geometry, f%history, f%work, f%state, blocks(k), f%convergence, found)
          if (found) then
             call go_on_from(f, beside)
          else
@@ -87,7 +87,7 @@ contains
       logical :: arrived, stands
 
       if (.not. f%follows) return
-      drive = slow_drive(f%engine%path, merge(f%place%t, f%t, step%tries > 1), t, &
+      drive = slow_drive(f%path, merge(f%place%t, f%t, step%tries > 1), t, &
          merge(t, f%t, step%ending >= step_there), [f%drives%first, f%drives%last])
       if (drive == 0) return
 
@@ -95,7 +95,7 @@ contains
       call go_back(f, step)
       call note_place(f, before)
       call go_from_turn_to_turn(f, drive, t, passed, arrived, stands)
-      deallocate (f%engine%path%leg)
+      deallocate (f%path%leg)
       if (arrived .and. .not. stands) call take_up(f, t, arrived)
       f%place = before
       if (.not. arrived) then
@@ -107,7 +107,7 @@ contains
       step%ending = step_there
       step%passed = passed
       if (.not. stands) return
-      list = change_diagnostics(f%engine, t)
+      list = change_diagnostics(f%blocks, f%geometry, f%state, t)
       if (size(list) > 0) step%ending = step_stands
       call follow_from(f, before)
    end subroutine go_by_value
@@ -127,16 +127,16 @@ contains
 
       call note_place(f, first)
       turn = f%t
-      next = next_turn(f%engine%path, drive, turn, t)
-      associate (value => value_at(f%engine%path, drive, turn))
+      next = next_turn(f%path, drive, turn, t)
+      associate (value => value_at(f%path, drive, turn))
          call go_to(next, value - sign(short_step/f%drives%unit(drive), &
-            value_at(f%engine%path, drive, next) - value))
+            value_at(f%path, drive, next) - value))
       end associate
       if (.not. arrived .or. stands .or. passed_of(one) > 0) call return_to(f, first)
       allocate (passed(0))
       do while (abs(t - turn) > 0.0_wp)
-         next = next_turn(f%engine%path, drive, turn, t)
-         call go_to(next, value_at(f%engine%path, drive, next))
+         next = next_turn(f%path, drive, turn, t)
+         call go_to(next, value_at(f%path, drive, next))
          if (.not. arrived) return
          if (allocated(one%passed)) passed = [passed, one%passed]
          turn = next
@@ -150,8 +150,8 @@ contains
          real(wp), intent(in) :: to, value
          real(wp) :: now(3)
 
-         now = drive_at(f%engine%path, drive, f%t)
-         call lead(f%engine%path, drive, f%t, (value - now(1))/(to - turn), [turn, to])
+         now = drive_at(f%path, drive, f%t)
+         call lead(f%path, drive, f%t, (value - now(1))/(to - turn), [turn, to])
          call take_up(f, turn, arrived)
          stands = .false.
          if (.not. arrived) return
@@ -169,9 +169,9 @@ contains
       real(wp), intent(in) :: p
       logical, intent(out) :: passed
 
-      call begin_at(f%engine%history, p)
+      call begin_at(f%history, p)
       f%t = p
-      call solve_instant(f%engine, p, .true., f%convergence)
+      call solve_at(f, p)
       passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
       if (passed) call go_on_from(f, p)
    end subroutine take_up

@@ -9,20 +9,26 @@
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
+   use structure, only: structure_t, make_structure
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_dead_end
    use drive_deviation, only: drive_deviation_t, new_drive_excursion, limit_substep, examine
-   use drive_path, only: drive_at
-   use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
-   use block_engine, only: block_engine_t, engine_state_t, accept, followed_state
-   use block_state, only: state_t
+   use drive_path, only: drive_path_t, drive_at
+   use convergence, only: convergence_t, nothing_gathered, is_solved, ended_singular, ended_inconsistent, &
+      max_kantorovich_ratio
+   use blocks, only: blocks_t, geometry_t
+   use block_state, only: state_t, new_state, set_drive_values
+   use block_solver, only: workspace_t, new_workspace, solve_blocks
+   use block_motion, only: take_requests, put_path
+   use initial_estimate, only: guess_t, put_guess
+   use predictor, only: history_t, new_history, predict, compare, accept, recall, largest_change
    use link_motion, only: move_links
-   use cylinders, only: cylinder_t, cylinder_motion, stays_within
-   use initial_assembly, only: solve_instant
-   use branch_switching, only: pass, branch_requests_t, new_branch_requests
+   use cylinders, only: cylinders_of, cylinder_motion, stays_within
+   use initial_assembly, only: solve_first
+   use branch_switching, only: pass, is_short_and_right, branch_requests_t, new_branch_requests
    implicit none
    private
-   public :: following_t, step_record_t, begin_following, continue_to, go_on_from, go_back, follow_from, &
-      place_t, note_place, return_to, passed_of
+   public :: following_t, step_record_t, begin_following, move_memory, begin_motion, solve_at, measure_closure_error, &
+      continue_to, go_on_from, go_back, follow_from, place_t, note_place, return_to, passed_of
    public :: step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -77,14 +83,21 @@ module following
    !> A place of the motion that is followed: all that its continuation depends on.
    type :: place_t
       real(wp) :: t = 0.0_wp                     !< time
-      type(engine_state_t) :: engine             !< the engine's part
+      type(history_t) :: history                 !< the motions that are followed
+      type(state_t) :: state                     !< the motion found last
       type(branch_requests_t) :: branch_requests !< and how change points were passed
       type(convergence_t) :: convergence         !< of the position solved for last
    end type place_t
 
-   !> The engine, and how far it has come.
+   !> A mechanism as the solver has it, and how far its motion has come.
    type :: following_t
-      type(block_engine_t), allocatable :: engine !< solves single instants
+      type(blocks_t), allocatable :: blocks      !< its structure, constant
+      type(geometry_t), allocatable :: geometry
+      type(drive_path_t) :: path                 !< of its drives
+      type(guess_t), allocatable :: guess        !< where its first position is searched for
+      type(state_t) :: state                     !< the motion found last
+      type(workspace_t), allocatable :: work
+      type(history_t) :: history                 !< the motions that are followed
       type(branch_requests_t) :: branch_requests !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the position solved for last
       integer :: iterations = 0                  !< of all positions so far
@@ -112,20 +125,104 @@ module following
 
 contains
 
-   !> Makes `f` ready for the first instant of `m`; its `engine` is taken over.
-   subroutine begin_following(f, m, engine)
+   !> Makes `f` ready for the first instant of `m`. `structure`: that of `m`, whose blocks and geometry it takes over;
+   !> without it one is made.
+   subroutine begin_following(f, m, structure)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), allocatable, intent(inout) :: engine
+      type(structure_t), intent(inout), optional :: structure
+      type(structure_t) :: own
+
+      if (present(structure)) then
+         call move_alloc(structure%blocks, f%blocks)
+         call move_alloc(structure%geometry, f%geometry)
+      else
+         call make_structure(m, own)
+         call move_alloc(own%blocks, f%blocks)
+         call move_alloc(own%geometry, f%geometry)
+      end if
+      call take_requests(m, f%blocks, f%geometry)
+      if (f%blocks%solvable) then
+         f%work = new_workspace(f%blocks)
+         allocate (f%guess)
+         call put_path(m, f%blocks, f%geometry, f%path)
+      end if
+      call begin_motion(f, m)
+   end subroutine begin_following
+
+   !> Moves the structure, and all that has been allocated for it, from `old` to `new`.
+   subroutine move_memory(old, new)
+      type(following_t), intent(inout) :: old, new
+
+      call move_alloc(old%blocks, new%blocks)
+      call move_alloc(old%geometry, new%geometry)
+      call move_alloc(old%guess, new%guess)
+      call move_alloc(old%work, new%work)
+   end subroutine move_memory
+
+   !> Gives `f`, which has the structure and the geometry of `m`, the state in which nothing is solved yet.
+   subroutine begin_motion(f, m)
+      type(following_t), intent(inout) :: f
+      type(mechanism_t), intent(in) :: m
       logical :: depends
 
-      call move_alloc(engine, f%engine)
-      f%branch_requests = new_branch_requests(m)
-      ! Some unknown is searched for from its value before.
+      f%geometry%cylinders = cylinders_of(m, .false.)
       depends = .true.
-      if (allocated(f%engine%history%predicted)) depends = size(f%engine%history%predicted) > 0
+      if (f%blocks%solvable) then
+         call put_guess(m, f%blocks, f%geometry, f%guess)
+         f%state = new_state(f%blocks, size(m%drives))
+         f%history = new_history(f%blocks, m%predictor)
+         ! Some unknown is searched for from its value before.
+         depends = size(f%history%predicted) > 0
+      end if
+      f%branch_requests = new_branch_requests(m)
       f%drives = new_drive_excursion(m, depends)
-   end subroutine begin_following
+   end subroutine begin_motion
+
+   !> Solves for the motion at `t`, from the one that is followed or, if none is, nearest to the initial guess.
+   subroutine solve_at(f, t)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t              !< parameter of the path: the time, mostly
+
+      associate (b => f%blocks, x => f%geometry, s => f%state, c => f%convergence)
+         if (.not. b%solvable) then
+            c = convergence_t(ended=ended_singular)
+            return
+         end if
+         call set_drive_values(f%path, t, s)
+         if (.not. f%follows) then
+            call solve_first(b, x, f%guess, f%work, s, c)
+            return
+         end if
+         call predict(f%history, t, s%u, s%change)
+         if (s%change > largest_change) then
+            c = nothing_gathered
+            c%keeps_signs = .false.
+            s%crossed = .false.
+            return
+         end if
+         call solve_blocks(b, x, b%moving, f%work, s, c)
+         if (.not. is_solved(c)) return
+         call compare(b, x, b%moving, f%history, s, c)
+         if (s%excursion > 0.0_wp) c%is_certain = is_short_and_right(b, x, f%history, s, c%change)
+      end associate
+   end subroutine solve_at
+
+   !> Finds the closure error at `t` itself, from the motion that is followed or, if that is too far, from the initial
+   !> guess. If neither search ends there, the record stays but for its closure error, which is 0.
+   subroutine measure_closure_error(f, t)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t
+      type(convergence_t) :: before
+
+      before = f%convergence
+      call solve_at(f, t)
+      if (f%convergence%ended == ended_inconsistent) return
+      call solve_first(f%blocks, f%geometry, f%guess, f%work, f%state, f%convergence)
+      if (f%convergence%ended == ended_inconsistent) return
+      f%convergence = before
+      f%convergence%open%value = 0.0_wp
+   end subroutine measure_closure_error
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
    subroutine continue_to(f, t, step)
@@ -146,7 +243,7 @@ contains
          is_last = .not. f%follows
          if (f%follows) then
             substep = sign(min(abs(substep), abs(t - f%t)), substep)
-            call limit_substep(f%drives, f%engine%path, f%t, substep, allowed, f%engine%state%excursion)
+            call limit_substep(f%drives, f%path, f%t, substep, allowed, f%state%excursion)
             if (abs(allowed) < abs(substep)) longest = max(abs(allowed), shortest)
             substep = allowed
             is_last = abs(substep) >= abs(t - f%t)
@@ -178,20 +275,20 @@ contains
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
 
-      call solve_instant(f%engine, t, f%follows, f%convergence)
+      call solve_at(f, t)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
       accepted = accepted .and. f%convergence%change <= largest_correction
       ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
       ! becomes small: no substep would come across.
-      if (accepted .and. f%engine%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
+      if (accepted .and. f%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
          call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       ! Before a change point is passed: at the length 0 links may be in line.
-      if (accepted .and. size(f%engine%cylinders) > 0) call keep_lengths(f, t, accepted)
+      if (accepted .and. size(f%geometry%cylinders) > 0) call keep_lengths(f, t, accepted)
       if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
-         call pass_change_points(f, t, step)
+         call pass_change_points(f, step)
       accepted = accepted .and. f%convergence%keeps_signs
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
@@ -201,33 +298,32 @@ contains
    !> Finds the lengths (0:2, cylinders) at the motion that is followed, with their derivatives.
    function lengths_followed(f) result(lengths)
       type(following_t), intent(in) :: f
-      real(wp) :: lengths(0:2, size(f%engine%cylinders))
+      real(wp) :: lengths(0:2, size(f%geometry%cylinders))
       type(state_t) :: s
 
-      call followed_state(f%engine, s)
-      lengths = lengths_of(f, s)
+      s = f%state
+      call recall(f%blocks, f%geometry, f%path, f%history, f%guess%values, s)
+      lengths = lengths_of(f%geometry, s)
    end function lengths_followed
 
    !> Finds the lengths (0:2, cylinders) in the state `s`.
-   function lengths_of(f, s) result(lengths)
-      type(following_t), intent(in) :: f
+   function lengths_of(x, s) result(lengths)
+      type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      real(wp) :: lengths(0:2, size(f%engine%cylinders))
+      real(wp) :: lengths(0:2, size(x%cylinders))
       type(motion_t) :: q
       logical :: finite
       integer :: k
 
-      associate (e => f%engine)
-         q = new_motion(size(e%estimate, 2))
-         call move_links(e%geometry%chain, s, e%geometry%equations%length, q, finite, .true.)
-         do k = 1, size(e%cylinders)
-            associate (i => e%cylinders(k)%i, j => e%cylinders(k)%j)
-               lengths(:, k) = cylinder_motion(e%cylinders(k), &
-                  reshape([q%position(:, i), q%velocity(:, i), q%acceleration(:, i)], [3, 3]), &
-                  reshape([q%position(:, j), q%velocity(:, j), q%acceleration(:, j)], [3, 3]))
-            end associate
-         end do
-      end associate
+      q = new_motion(size(x%equations%axes%angle_offset))
+      call move_links(x%chain, size(x%chain%links), s, q, finite)
+      do k = 1, size(x%cylinders)
+         associate (i => x%cylinders(k)%i, j => x%cylinders(k)%j)
+            lengths(:, k) = cylinder_motion(x%cylinders(k), &
+               reshape([q%position(:, i), q%velocity(:, i), q%acceleration(:, i)], [3, 3]), &
+               reshape([q%position(:, j), q%velocity(:, j), q%acceleration(:, j)], [3, 3]))
+         end associate
+      end do
    end function lengths_of
 
    !> Finds whether the substep to `t` keeps all cylinders within the bounds of their lengths, also between its ends:
@@ -236,16 +332,16 @@ contains
       type(following_t), intent(in) :: f
       real(wp), intent(in) :: t              !< time
       logical, intent(inout) :: accepted
-      real(wp), dimension(0:2, size(f%engine%cylinders)) :: first, last
+      real(wp), dimension(0:2, size(f%geometry%cylinders)) :: first, last
       real(wp) :: away
       integer :: k
 
       first = lengths_followed(f)
-      last = lengths_of(f, f%engine%state)
+      last = lengths_of(f%geometry, f%state)
       if (f%convergence%singular) last(1:, :) = 0.0_wp
-      away = off_chord*f%engine%state%excursion*f%engine%geometry%equations%length
-      do k = 1, size(f%engine%cylinders)
-         associate (bounds => f%engine%cylinders(k)%bounds)
+      away = off_chord*f%state%excursion*f%geometry%equations%length
+      do k = 1, size(f%geometry%cylinders)
+         associate (bounds => f%geometry%cylinders(k)%bounds)
             accepted = stays_within(bounds, first(:1, k), last(:1, k), t - f%t)
             if (accepted .and. away > 0.0_wp) accepted = min(first(0, k), last(0, k)) - away > bounds(1) &
                .and. max(first(0, k), last(0, k)) + away < bounds(2)
@@ -263,8 +359,8 @@ contains
       real(wp) :: ratio, change, away, off, h, first(3), last(3)
       integer :: i
 
-      associate (c => f%convergence, path => f%engine%path)
-         ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
+      associate (c => f%convergence, path => f%path)
+         ratio = c%kantorovich_ratio + c%growth*f%state%excursion
          if (ratio > max_kantorovich_ratio) then
             call examine(f%drives, path, f%t, t, change, away)
             h = t - f%t
@@ -280,17 +376,16 @@ contains
       end associate
    end subroutine add_excursion
 
-   !> A determinant has changed its sign before `t`. At change points beyond which the motion goes on that is none.
+   !> A determinant has changed its sign in the substep. At change points beyond which the motion goes on that is none.
    !> Apart, since a plain substep has no room to make for the list.
-   subroutine pass_change_points(f, t, step)
+   subroutine pass_change_points(f, step)
       type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable :: list(:)
       type(branch_requests_t) :: before
 
       before = f%branch_requests
-      call pass(f%engine, t, f%branch_requests, f%convergence, list)
+      call pass(f%blocks, f%geometry, f%path, f%history, f%work, f%state, f%branch_requests, f%convergence, list)
       if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio) then
          if (.not. allocated(step%passed)) allocate (step%passed(0))
          step%passed = [step%passed, list]
@@ -316,7 +411,7 @@ contains
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
 
-      call accept(f%engine)
+      call accept(f%blocks, f%geometry, f%state, f%history)
       f%t = t
       f%follows = .true.
    end subroutine go_on_from
@@ -339,7 +434,7 @@ contains
       type(place_t), intent(in) :: p
 
       f%t = p%t
-      f%engine%followed_t = p%engine%followed_t
+      f%history = p%history
    end subroutine follow_from
 
    !> Notes in `p` where the motion is followed.
@@ -348,7 +443,8 @@ contains
       type(place_t), intent(inout) :: p
 
       p%t = f%t
-      p%engine = f%engine%engine_state_t
+      p%history = f%history
+      p%state = f%state
       p%branch_requests = f%branch_requests
       p%convergence = f%convergence
    end subroutine note_place
@@ -359,7 +455,8 @@ contains
       type(place_t), intent(in) :: p
 
       f%t = p%t
-      f%engine%engine_state_t = p%engine
+      f%history = p%history
+      f%state = p%state
       f%branch_requests = p%branch_requests
       f%convergence = p%convergence
       call note_place(f, f%place)

@@ -12,9 +12,10 @@ module dense_method
    use linear_solver, only: factors_t, new_factors, solve_factored => solve
    use block_matrix, only: shape_t, pivot_range
    use convergence, only: convergence_t, is_solved, ended_elsewhere
-   use predictor, only: order_weights
+   use drive_path, only: drive_path_t
+   use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
-   use block_engine, only: block_engine_t, get_motion, followed_state
+   use predictor, only: history_t, order_weights, recall
    use link_motion, only: move_links
    use configuration, only: system_t, configuration_t, new_system, new_configuration, add_to_links
    use closure_equations, only: find_drive_values, remainder
@@ -70,35 +71,42 @@ contains
       own%tolerance = 0.0_wp
    end function for_blocks
 
-   !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks of `e` have found
-   !> one. `convergence`: how the last try ended, or the first if none found the position of the blocks; iterations are
-   !> those of all tries. convergence%singular: the position has no velocities but of links that drives alone move.
-   subroutine solve_all_links(dense, e, found, convergence)
+   !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks `b` have found one,
+   !> `s`, after the motions `h`. `convergence`: how the last try ended, or the first if none found the position of the
+   !> blocks; iterations are those of all tries. convergence%singular: the position has no velocities but of links that
+   !> drives alone move.
+   subroutine solve_all_links(dense, b, x, path, estimated, h, s, found, convergence)
       type(dense_t), intent(inout) :: dense
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) see `recall`
+      type(history_t), intent(in) :: h
+      type(state_t), intent(in) :: s
       type(motion_t), intent(inout) :: found
       type(convergence_t), intent(out) :: convergence
       type(convergence_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
       type(motion_t) :: before
-      type(state_t) :: s
-      real(wp) :: w(3), b(dense%system%n), least, largest
+      type(state_t) :: latest
+      real(wp) :: w(3), v(dense%system%n), least, largest
       logical :: finite
       integer :: k, iterations
 
       iterations = 0
-      call find_drive_values(dense%system, e%path, found%t, dense%drive_values)
-      call get_motion(e, found, finite)
+      call find_drive_values(dense%system, path, found%t, dense%drive_values)
+      call move_links(x%chain, x%chain%wanted, s, found, finite)
       there = found%position
       there(:2, :) = there(:2, :)/dense%system%length
 
       ! It begins at the position that the blocks follow, corrected through its velocities and accelerations; at first
       ! at the deck's estimate.
-      call followed_state(e, s)
+      latest = s
+      call recall(b, x, path, h, estimated, latest)
       before = new_motion(size(there, 2))
-      call move_links(e%geometry%chain, s, e%geometry%equations%length, before, finite, .true.)
+      call move_links(x%chain, size(x%chain%links), latest, before, finite)
       w = 0.0_wp
-      if (e%history%filled > 0) w = order_weights(dense%order, found%t - e%history%t(0), 0.0_wp)
+      if (h%filled > 0) w = order_weights(dense%order, found%t - h%t(0), 0.0_wp)
       start = before%position + w(1)*before%velocity + w(2)*before%acceleration
       start(:2, :) = start(:2, :)/dense%system%length
 
@@ -115,7 +123,7 @@ contains
          end if
          iterations = iterations + convergence%iterations
          if (is_solved(convergence)) then
-            if (.not. is_found_by_blocks(dense, e, there)) convergence%ended = ended_elsewhere
+            if (.not. is_found_by_blocks(dense, b, x, s, there)) convergence%ended = ended_elsewhere
          end if
          if (is_solved(convergence)) exit
          if (k == 1) first = convergence
@@ -125,23 +133,23 @@ contains
       convergence%iterations = iterations
       if (.not. is_solved(convergence)) return
 
-      convergence%singular = convergence%singular .or. any(e%is_singular(e%blocks%needed))
+      convergence%singular = convergence%singular .or. any(s%is_singular(b%needed))
       found%position = dense%configuration%q
       if (.not. convergence%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
          ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f' and f'' are zero in the rows of pairs.
-         associate (s => dense%system, first => dense%system%n - size(dense%drive_values, 2) + 1)
-            b = 0.0_wp
-            b(first:) = dense%drive_values(2, :)
-            call solve_factored(dense%factors, b)
+         associate (all => dense%system, first => dense%system%n - size(dense%drive_values, 2) + 1)
+            v = 0.0_wp
+            v(first:) = dense%drive_values(2, :)
+            call solve_factored(dense%factors, v)
             found%velocity = 0.0_wp
-            call add_to_links(s, b, found%velocity)
-            call remainder(s, dense%configuration, found%velocity, b)
-            b = -b
-            b(first:) = b(first:) + dense%drive_values(3, :)
-            call solve_factored(dense%factors, b)
+            call add_to_links(all, v, found%velocity)
+            call remainder(all, dense%configuration, found%velocity, v)
+            v = -v
+            v(first:) = v(first:) + dense%drive_values(3, :)
+            call solve_factored(dense%factors, v)
             found%acceleration = 0.0_wp
-            call add_to_links(s, b, found%acceleration)
+            call add_to_links(all, v, found%acceleration)
          end associate
          found%velocity(:2, :) = dense%system%length*found%velocity(:2, :)
          found%acceleration(:2, :) = dense%system%length*found%acceleration(:2, :)
@@ -149,25 +157,27 @@ contains
       found%position(:2, :) = dense%system%length*found%position(:2, :)
    end subroutine solve_all_links
 
-   !> The position of `dense` is the one that the blocks of `e` have found, where all links are `there` (3, links), in
-   !> the unit of the system: no other is as near to that (Newton and Kantorovich).
-   pure logical function is_found_by_blocks(dense, e, there) result(is)
+   !> The position of `dense` is the one that the blocks have found, `s`, where all links are `there` (3, links), in the
+   !> unit of the system: no other is as near to that (Newton and Kantorovich).
+   pure logical function is_found_by_blocks(dense, b, x, s, there) result(is)
       type(dense_t), intent(in) :: dense
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       real(wp), intent(in) :: there(:, :)
       real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 
       off = abs(dense%configuration%q - there)
-      off(:2, :) = off(:2, :)*(dense%system%length/e%geometry%span)
+      off(:2, :) = off(:2, :)*(dense%system%length/x%span)
       largest = maxval(off)
       is = .true.
-      do k = 1, size(e%blocks%needed)
-         associate (i => e%blocks%needed(k))
-            if (e%is_singular(i)) then
+      do k = 1, size(b%needed)
+         associate (i => b%needed(k))
+            if (s%is_singular(i)) then
                is = is .and. largest <= same_place
             else
-               is = is .and. largest*e%geometry%blocks(i)%lipschitz*e%found(i)%inverse <= certain
+               is = is .and. largest*x%blocks(i)%lipschitz*s%jacobian(i)%inverse <= certain
             end if
          end associate
       end do

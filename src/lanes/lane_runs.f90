@@ -201,13 +201,11 @@ contains
          call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
-         associate (e => a%engine)
-            if (.not. is_covered(e)) return
-            if (.not. is_even(e%history, step)) return
-            if (.not. allocated(l%moving)) call make_lanes(l, e)
-            call load_lane(l, i, e, is_done)
-            l%excursion(i) = away
-         end associate
+         if (.not. is_covered(a%following_t)) return
+         if (.not. is_even(a%history, step)) return
+         if (.not. allocated(l%moving)) call make_lanes(l, a%following_t)
+         call load_lane(l, i, a%following_t, is_done)
+         l%excursion(i) = away
       end associate
    end subroutine load_run
 
@@ -239,9 +237,9 @@ contains
       integer :: u, k
 
       call come_back(r%s%list(1))
-      associate (e => r%s%list(1)%engine)
-         do u = 1, e%blocks%unknowns
-            associate (x => e%state%u(u))
+      associate (s => r%s%list(1)%state)
+         do u = 1, ubound(s%u, 1)
+            associate (x => s%u(u))
                x%value = l%u(u)%value(i)
                x%rate = l%u(u)%rate(i)
                x%acceleration = l%u(u)%acceleration(i)
@@ -250,7 +248,7 @@ contains
             end associate
          end do
          do k = 1, size(l%moving)
-            e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
+            s%jacobian(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
       end associate
       call take_state(r%s, t, is_done)
@@ -265,9 +263,9 @@ contains
 
       associate (a => r%s%list(1))
          call come_back(a)
-         call unload_lane(l, i, a%engine)
+         call unload_lane(l, i, a%following_t)
          r%s%is_in_lane = .false.
-         a%t = a%engine%history%t(0)
+         a%t = a%history%t(0)
       end associate
    end subroutine give_back
 end module lane_runs

@@ -1,6 +1,6 @@
-!> The motions of several mechanisms of one structure, each in a lane: what `block_engine` has of one, as arrays whose
-!> first index is the lane. A lane takes over from an engine that has followed three motions at equal steps, and gives
-!> back to it the motion of its last instant.
+!> The motions of several mechanisms of one structure, each in a lane: what `state_t` and `history_t` have of one, as
+!> arrays whose first index is the lane. A lane takes over from a mechanism whose last three motions are at equal steps,
+!> and gives back to it the motion of its last instant.
 #define NUMBER real(wp), dimension(width)
 #define IS(value)
 module lane_state
@@ -8,7 +8,7 @@ module lane_state
    use mechanism, only: own_predictor
    use drive_path, only: drive_path_t
    use blocks, only: blocks_t
-   use block_engine, only: block_engine_t
+   use following, only: following_t
    use lane_sines, only: width
    use lane_elimination, only: max_order
    implicit none
@@ -26,7 +26,7 @@ module lane_state
    type :: lane_block_t
       real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
       logical :: has_right_sides = .false.              !< in any lane not all its equations are = 0
-      real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
+      real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `jacobian_t`, by slots
    end type lane_block_t
 
    !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own engine. Of `blocks` all that
@@ -56,32 +56,32 @@ module lane_state
 
 contains
 
-   !> The lanes can take over from `e`: its blocks are of at most `max_order` unknowns, as many as equations, and it
+   !> The lanes can take over from `f`: its blocks are of at most `max_order` unknowns, as many as equations, and it
    !> follows three motions at equal steps.
-   pure logical function is_covered(e)
-      type(block_engine_t), intent(in) :: e
+   pure logical function is_covered(f)
+      type(following_t), intent(in) :: f
       integer :: k
 
-      is_covered = digits(1.0_wp) == 53 .and. e%blocks%redundant == 0 .and. size(e%history%predicted) > 0
+      is_covered = digits(1.0_wp) == 53 .and. f%blocks%redundant == 0 .and. size(f%history%predicted) > 0
       if (.not. is_covered) return
-      is_covered = e%history%filled == 3 .and. e%history%order == own_predictor &
-         .and. .not. e%geometry%tolerance > 0.0_wp
-      do k = 1, size(e%blocks%moving)
-         associate (shape => e%blocks%list(e%blocks%moving(k))%shape)
+      is_covered = f%history%filled == 3 .and. f%history%order == own_predictor &
+         .and. .not. f%geometry%tolerance > 0.0_wp
+      do k = 1, size(f%blocks%moving)
+         associate (shape => f%blocks%list(f%blocks%moving(k))%shape)
             is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
          end associate
       end do
    end function is_covered
 
-   !> Lanes for engines with the structure of `e`.
-   subroutine make_lanes(l, e)
+   !> Makes lanes for mechanisms with the structure of `f`.
+   subroutine make_lanes(l, f)
       type(lanes_t), intent(out) :: l
-      type(block_engine_t), intent(in) :: e
+      type(following_t), intent(in) :: f
 
-      l%blocks = e%blocks
-      l%moving = e%blocks%moving
-      l%predicted = e%history%predicted
-      associate (b => l%blocks, drives => size(e%path%laws))
+      l%blocks = f%blocks
+      l%moving = f%blocks%moving
+      l%predicted = f%history%predicted
+      associate (b => l%blocks, drives => size(f%path%laws))
          allocate (l%polynomial(width, 3, drives), l%unit(width, drives))
          allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
          allocate (l%block(size(b%list)))
@@ -97,32 +97,32 @@ contains
       end associate
    end subroutine make_lanes
 
-   !> Fills `lane` with the mechanism and the motions of `e`, a variant of that for which `l` was made; `is_alike` is
+   !> Fills `lane` with the mechanism and the motions of `f`, a variant of that for which `l` was made; `is_alike` is
    !> false if its numbers put other body vectors or slides into the equations. What follows from the time step is the
    !> caller's.
-   subroutine load_lane(l, lane, e, is_alike)
+   subroutine load_lane(l, lane, f, is_alike)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: lane
-      type(block_engine_t), intent(in) :: e
+      type(following_t), intent(in) :: f
       logical, intent(out) :: is_alike
       integer :: i, k
 
-      associate (a => l%blocks%equations, b => e%blocks%equations)
+      associate (a => l%blocks%equations, b => f%blocks%equations)
          ! What cannot be solved has none.
          is_alike = a%count == b%count
          if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
       end associate
       if (.not. is_alike) return
-      l%path(lane) = e%path
+      l%path(lane) = f%path
       l%is_polynomial = .true.
-      do i = 1, size(e%path%laws)
-         associate (law => e%path%laws(i))
+      do i = 1, size(f%path%laws)
+         associate (law => f%path%laws(i))
             l%polynomial(lane, :, i) = law%polynomial
             if (allocated(law%terms)) l%is_polynomial = l%is_polynomial .and. size(law%terms) == 0
          end associate
-         l%unit(lane, i) = e%path%unit(i)
+         l%unit(lane, i) = f%path%unit(i)
       end do
-      associate (x => e%geometry, u => e%state%u)
+      associate (x => f%geometry, u => f%state%u)
          l%block%lipschitz(lane) = x%blocks%lipschitz
          l%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
          l%block%has_right_sides = l%block%has_right_sides .or. x%blocks%has_right_sides
@@ -142,45 +142,45 @@ contains
          l%u%s(lane) = u%s
       end associate
 
-      ! Of motions before the latest the engine has no values.
+      ! Of motions before the latest there are no values.
       do k = 0, 2
          associate (slot => l%slot(k))
-            l%t(lane, slot) = e%history%t(k)
+            l%t(lane, slot) = f%history%t(k)
             do i = 1, size(l%predicted)
-               associate (past => e%history%past(l%predicted(i)))
+               associate (past => f%history%past(l%predicted(i)))
                   l%past(lane, :, slot, l%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
                end associate
             end do
          end associate
       end do
-      l%block%sign_of(lane) = e%followed%sign_of
-      l%block%pivot(lane, l%slot(0)) = e%followed%pivot
-      l%block%inverse(lane, l%slot(0)) = e%followed%inverse
+      l%block%sign_of(lane) = f%history%jacobian%sign_of
+      l%block%pivot(lane, l%slot(0)) = f%history%jacobian%pivot
+      l%block%inverse(lane, l%slot(0)) = f%history%jacobian%inverse
    end subroutine load_lane
 
-   !> Gives `e` the latest motion of `lane`: as the one that it follows.
-   subroutine unload_lane(l, lane, e)
+   !> Gives `f` the latest motion of `lane`: as the one that it follows.
+   subroutine unload_lane(l, lane, f)
       type(lanes_t), intent(in) :: l
       integer, intent(in) :: lane
-      type(block_engine_t), intent(inout) :: e
+      type(following_t), intent(inout) :: f
       integer :: k, i, u
 
       do k = 0, 2
          associate (slot => l%slot(k))
-            e%history%t(k) = l%t(lane, slot)
+            f%history%t(k) = l%t(lane, slot)
             do i = 1, size(l%predicted)
                u = l%predicted(i)
-               if (k == 0) e%history%past(u)%value = l%past(lane, 1, slot, u)
-               e%history%past(u)%rate(k) = l%past(lane, 2, slot, u)
-               e%history%past(u)%acceleration(k) = l%past(lane, 3, slot, u)
+               if (k == 0) f%history%past(u)%value = l%past(lane, 1, slot, u)
+               f%history%past(u)%rate(k) = l%past(lane, 2, slot, u)
+               f%history%past(u)%acceleration(k) = l%past(lane, 3, slot, u)
             end do
          end associate
       end do
-      e%history%filled = 3
+      f%history%filled = 3
       associate (slot => l%slot(0))
-         e%followed%sign_of = nint(l%block%sign_of(lane))
-         e%followed%pivot = l%block%pivot(lane, slot)
-         e%followed%inverse = l%block%inverse(lane, slot)
+         f%history%jacobian%sign_of = nint(l%block%sign_of(lane))
+         f%history%jacobian%pivot = l%block%pivot(lane, slot)
+         f%history%jacobian%inverse = l%block%inverse(lane, slot)
       end associate
    end subroutine unload_lane
 end module lane_state

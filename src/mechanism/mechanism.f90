@@ -306,8 +306,12 @@ contains
       class(settings_t), intent(in) :: settings
       real(wp), intent(out) :: first, last   !< earliest and latest time, in the deck's unit
 
-      first = minval(settings%at)
-      last = maxval(settings%at)
+      first = huge(first)
+      last = -huge(last)
+      if (allocated(settings%at)) then
+         first = minval(settings%at)
+         last = maxval(settings%at)
+      end if
       if (settings%steps < 0) return
       first = min(first, settings%t0, settings%t1)
       last = max(last, settings%t0, settings%t1)

@@ -6,14 +6,13 @@ module changed_rows
    use motion, only: motion_t, turned_t, new_motion, forget_links
    use points, only: row_t, find_row
    use blocks, only: blocks_t, geometry_t, largest_known, own_unknowns
-   use block_state, only: unknown_t, state_t, new_state
+   use block_state, only: unknown_t, state_t, new_state, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_block
    use block_matrix, only: solve_first, solve_again
    use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t, make_structure
    use drive_path, only: drive_path_t
-   use block_engine, only: block_engine_t, take_requests, put_geometry, put_path, set_drive_values, get_ratios, &
-      slide_unit
+   use block_motion, only: take_requests, put_geometry, put_path, get_ratios, slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
    use link_motion, only: move_links, mark_links, missing_nothing, missing_rates, missing_all
@@ -66,9 +65,11 @@ module changed_rows
 
 contains
 
-   !> Finds the place of the motion `q`, which the engine `e` has found: from now on rows are solved from it.
-   subroutine find_place(e, q, place)
-      type(block_engine_t), intent(in) :: e
+   !> Finds the place of the motion `q`, the state `s` of the blocks `b`: from now on rows are solved from it.
+   subroutine find_place(b, x, s, q, place)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(base_position_t), intent(inout) :: place
       integer :: k
@@ -77,14 +78,14 @@ contains
       place%is_singular = q%known == 0
       if (allocated(q%turned)) place%turned = q%turned
       if (.not. allocated(place%start)) then
-         allocate (place%start(0:e%blocks%unknowns))
-         call make_room(e%blocks, size(e%path%laws), place)
+         allocate (place%start(0:b%unknowns))
+         call make_room(b, ubound(s%drive_value, 2), place)
          place%q = new_motion(size(q%position, 2))
          place%q%known = 2
       end if
-      place%start(:) = e%state%u
+      place%start(:) = s%u
       do k = 1, ubound(place%start, 1)
-         place%start(k)%value = place%start(k)%value*slide_unit(e%blocks, e%geometry, k)
+         place%start(k)%value = place%start(k)%value*slide_unit(b, x, k)
       end do
    end subroutine find_place
 
@@ -98,13 +99,13 @@ contains
       place%work = new_workspace(b)
    end subroutine make_room
 
-   !> Makes number `i` of `list` ready for direction `k` of changes of `m`, whose engine is `e`, if it is not yet; its
+   !> Makes number `i` of `list` ready for direction `k` of changes of `m`, whose geometry is `x`, if it is not yet; its
    !> numbers are still others.
-   subroutine make_ready(list, k, m, e, i)
+   subroutine make_ready(list, k, m, x, i)
       type(perturbed_t), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: k
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
+      type(geometry_t), intent(in) :: x
       integer, intent(out) :: i
 
       if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
@@ -114,7 +115,7 @@ contains
          p%is_ready = .true.
          p%direction = -1
          p%m = m
-         p%geometry = e%geometry
+         p%geometry = x
       end associate
    end subroutine make_ready
 
@@ -197,7 +198,6 @@ contains
                if (worst > missing_nothing) lack = largest_known(b, i, missing)
                if (place%only_driven .and. .not. block%direct) lack = missing_all
                if (lack < missing_all) then
-                  c = convergence_t()
                   call solve_block(b, x, i, .true., w, s, c)
                   place%ratio = max(place%ratio, c%kantorovich_ratio)
                   place%opened = max(place%opened, c%open%value/c%open%level)
@@ -220,7 +220,7 @@ contains
          do k = 1, ubound(s%u, 1)
             place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))
          end do
-         call move_links(x%chain, s, x%equations%length, q, finite)
+         call move_links(x%chain, x%chain%wanted, s, q, finite)
          if (size(b%ratios) > 0) call get_ratios(b, x, path, [(missing(b%unknown(max(1, b%list(k)%first))) &
             > missing_nothing, k=1, size(b%list))], s, w, q)
          call forget_links(q)

@@ -8,7 +8,8 @@ module error_estimate
    use instant_centres, only: centre_finite, centre_starting, points_coincide
    use masked_numbers, only: nothing_known, errors_a_digit
    use significance_check, only: sizes_t, sizes_of, find_amplification
-   use block_engine, only: block_engine_t
+   use blocks, only: blocks_t, geometry_t
+   use block_state, only: state_t
    use changed_rows, only: perturbed_t, base_position_t, find_place, make_ready, put_changes, rows_with
    use rounded_numbers, only: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
       put_off, put_sums_off
@@ -67,12 +68,14 @@ contains
       if (allocated(s%perturbed)) s%perturbed%is_ready = .false.
    end subroutine make_estimator
 
-   !> How far the motion `q` of `m` is known, which the `engine` has found. `always`: also where no digit of a table is
+   !> How far the motion `q` of `m` is known, the `state` of the blocks `b`. `always`: also where no digit of a table is
    !> in doubt. `told`: its errors are told themselves (--errors).
-   subroutine estimate_errors(s, m, engine, q, always, told, found)
+   subroutine estimate_errors(s, m, b, x, state, q, always, told, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: engine
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: state
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always, told
       type(error_estimate_t), intent(inout) :: found
@@ -80,7 +83,7 @@ contains
 
       found%taken = .false.
       found%asked = always
-      call find_amplification(s%sizes, m, engine, q, found%growth, found%in_doubt)
+      call find_amplification(s%sizes, m, b, x, state, q, found%growth, found%in_doubt)
       found%in_doubt = found%in_doubt .or. s%closure > 0.0_wp
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
@@ -90,7 +93,7 @@ contains
          found%solved(size(m%requests)))
       found%sizes = s%sizes
       found%taken = .true.
-      call find_place(engine, q, s%place)
+      call find_place(b, x, state, q, s%place)
       s%place%stays = s%place%is_singular
       call find_changed(0, many, 0.0_wp, found%solved)
       s%place%stays = .false.
@@ -120,18 +123,18 @@ contains
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
-         call make_ready(s%perturbed, k, m, engine, i)
+         call make_ready(s%perturbed, k, m, x, i)
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
-               associate (axes => engine%geometry%equations%axes)
-                  call put_off(m, engine%blocks%tree, axes, k, roundings, length, p%m, p%time_off)
+               associate (axes => x%equations%axes)
+                  call put_off(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
                end associate
-               call put_changes(engine%blocks, p, by_roundings=.true.)
+               call put_changes(b, p, by_roundings=.true.)
                p%direction = k
                p%roundings = roundings
                p%length = length
             end if
-            call rows_with(engine%blocks, p, q%t + p%time_off*q%t, s%place, rows)
+            call rows_with(b, p, q%t + p%time_off*q%t, s%place, rows)
          end associate
       end subroutine find_changed
 
@@ -222,7 +225,7 @@ contains
          do k = 1, directions
             other = q
             ! By one they could be hidden by the roundings of the rows.
-            call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, other)
+            call put_sums_off(b%tree, s%sizes%length, k, few, other)
             if (allocated(q%by)) call put_ratios_off(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
@@ -255,7 +258,7 @@ contains
             unit%known = 2
             unit%link_known = merge(2, -1, q%by(d)%is_known)
             unit%origin = q%origin
-            call put_sums_off(engine%blocks%tree, s%sizes%length, k, few, unit)
+            call put_sums_off(b%tree, s%sizes%length, k, few, unit)
             other%by(d)%velocity = unit%velocity
             other%by(d)%acceleration = unit%acceleration
          end do

@@ -10,7 +10,8 @@ module sensitivities
    use motion, only: motion_t
    use points, only: row_t, find_row
    use instant_centres, only: points_coincide
-   use block_engine, only: block_engine_t
+   use blocks, only: blocks_t, geometry_t
+   use block_state, only: state_t
    use significance_check, only: sizes_t
    use rounded_numbers, only: safety_factor
    use error_estimate, only: error_estimate_t, estimator_t
@@ -54,12 +55,14 @@ module sensitivities
 
 contains
 
-   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found. `estimate`: how far
+   !> The sensitivities of all requests of `m` at its motion `q`, whose `state` the blocks `b` have. `estimate`: how far
    !> `s` has found the motion to be known.
-   subroutine find_sensitivities(s, m, e, q, estimate, found)
+   subroutine find_sensitivities(s, m, b, x, state, q, estimate, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: state
       type(motion_t), intent(in) :: q
       type(error_estimate_t), intent(in) :: estimate
       type(sensitivities_t), intent(inout) :: found
@@ -76,8 +79,8 @@ contains
       found%of = 0.0_wp
       found%error = 0.0_wp
       found%jams = .false.
-      call find_place(e, q, s%place)
-      call make_ready(s%perturbed, 0, m, e, i)
+      call find_place(b, x, state, q, s%place)
+      call make_ready(s%perturbed, 0, m, x, i)
       s%place%room = huge(1.0_wp)
       call find_rows(middle)
       ! Within a closing tolerance a change that opens redundant equations more than they are open jams all the same.
@@ -137,8 +140,8 @@ contains
          associate (p => s%perturbed(0))
             p%m = m
             if (present(one)) call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
-            call put_changes(e%blocks, p, by_roundings=.false.)
-            call rows_with(e%blocks, p, q%t, s%place, rows)
+            call put_changes(b, p, by_roundings=.false.)
+            call rows_with(b, p, q%t, s%place, rows)
          end associate
          if (present(one)) found%jams(d) = found%jams(d) .or. s%place%jams
       end subroutine find_rows

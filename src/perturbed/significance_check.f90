@@ -9,7 +9,8 @@ module significance_check
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
    use points, only: row_t, find_row, growth_in_measure
    use instant_centres, only: centre_finite
-   use block_engine, only: block_engine_t
+   use blocks, only: blocks_t, geometry_t
+   use block_state, only: state_t
    implicit none
    private
    public :: sizes_t, sizes_of, find_amplification, growth_in_centres, safe_growth
@@ -60,14 +61,16 @@ contains
       end do
    end function sizes_of
 
-   !> Finds by how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks of `e` is small;
+   !> Finds by how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks `b` is small;
    !> without limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found
    !> the position to the last digits all the same; all equations at once have lost up to half of them. These have one
    !> unit of length for large links and small ones: pivots of blocks say nothing of them, and they always are in doubt.
-   pure subroutine find_amplification(s, m, e, q, growth, in_doubt)
-      type(sizes_t), intent(in) :: s
+   pure subroutine find_amplification(sizes, m, b, x, s, q, growth, in_doubt)
+      type(sizes_t), intent(in) :: sizes
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
@@ -75,7 +78,7 @@ contains
       real(wp) :: largest(2, 0:2)
       integer :: k
 
-      law = s%law(0) + s%law(1)*abs(q%t)
+      law = sizes%law(0) + sizes%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. m%method /= method_newton)
       in_doubt = growth > 0.0_wp .or. law > safe_angle
       if (q%known < 2 .or. q%rests) return
@@ -84,10 +87,12 @@ contains
       call find_largest(size(q%position, 2), q%position, q%velocity, q%acceleration, largest)
       angle = max(largest(2, 0), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(1.0_wp, largest(1, 0)/s%length, maxval(abs(q%origin))/s%length, &
-         max(largest(1, 1)/s%length, largest(2, 1))/s%rate, max(largest(1, 2)/s%length, largest(2, 2))/s%rate**2, &
-         growth_in_measures(m, q, s%rate))
-      if (s%has_centres) size_of = max(size_of, growth_in_centres(m, q))
+      associate (length => sizes%length, rate => sizes%rate)
+         size_of = max(1.0_wp, largest(1, 0)/length, maxval(abs(q%origin))/length, &
+            max(largest(1, 1)/length, largest(2, 1))/rate, max(largest(1, 2)/length, largest(2, 2))/rate**2, &
+            growth_in_measures(m, q, rate))
+      end associate
+      if (sizes%has_centres) size_of = max(size_of, growth_in_centres(m, q))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
       ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
@@ -95,10 +100,10 @@ contains
       ! over `rate_digits`, by C L^2/p^3 in accelerations.
       growth = 0.0_wp
       of_angles = 1.0_wp
-      do k = 1, size(e%blocks%needed)
-         associate (block => e%geometry%blocks(e%blocks%needed(k)))
-            if (e%blocks%list(e%blocks%needed(k))%direct) cycle
-            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%blocks%needed(k))%pivot), smallest_pivot)
+      do k = 1, size(b%needed)
+         associate (block => x%blocks(b%needed(k)))
+            if (b%list(b%needed(k))%direct) cycle
+            inverse = 1.0_wp/max(min(1.0_wp, s%jacobian(b%needed(k))%pivot), smallest_pivot)
             associate (turned => block%lipschitz*inverse)
                growth = max(growth, turned*inverse)
                if (block%coarse > usual_coarse) growth = max(growth, block%coarse*inverse*max(1.0_wp, turned))

@@ -9,8 +9,9 @@ module assemblies
    use separations, only: separation
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
-   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
-   use initial_assembly, only: solve_first, places_of, squared_distances, is_nearer, same_place => alike
+   use block_state, only: set_drive_values
+   use following, only: following_t, begin_following, solve_at
+   use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => alike
    use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -65,18 +66,18 @@ contains
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
       type(assemblies_t), intent(out) :: a
-      type(block_engine_t) :: e
+      type(following_t) :: f
       type(assembly_block_t) :: one
       integer :: i, k, places(2, size(m%links))
 
       allocate (a%list(0), a%blocks(0))
-      call make_block_engine(e, m)
-      if (.not. e%blocks%solvable) return
-      call set_drive_values(e%path, t, e%state)
-      places = places_of(e)
-      do i = 1, size(e%blocks%list)
-         associate (shape => e%blocks%list(i)%shape)
-            if (e%blocks%list(i)%direct .or. shape%n == 0) cycle
+      call begin_following(f, m)
+      if (.not. f%blocks%solvable) return
+      call set_drive_values(f%path, t, f%state)
+      places = places_of(f%blocks, f%geometry)
+      do i = 1, size(f%blocks%list)
+         associate (shape => f%blocks%list(i)%shape)
+            if (f%blocks%list(i)%direct .or. shape%n == 0) cycle
             one%block = i
             one%unknowns = shape%n
             one%is_redundant = shape%rows > shape%n
@@ -85,7 +86,7 @@ contains
          if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
          a%blocks = [a%blocks, one]
       end do
-      call search(m, e, t, a)
+      call search(m, f, a)
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
 
@@ -97,23 +98,23 @@ contains
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: t
       type(assemblies_t), intent(out) :: a
-      type(block_engine_t) :: e
-      type(convergence_t) :: c
+      type(following_t) :: f
       type(motion_t) :: q
       real(wp) :: apart, nearest
-      logical :: unused
+      logical :: unused, is_found
       integer :: i
 
       call find_assemblies(m, t, a)
-      call make_block_engine(e, m)
-      call solve_first(e, t, c)
-      if (is_solved(c)) then
+      call begin_following(f, m)
+      call solve_at(f, t)
+      is_found = is_solved(f%convergence)
+      if (is_found) then
          q = new_motion(size(m%links))
-         call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, unused, .true.)
+         call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, unused)
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
          do i = 1, size(a%list)
-            apart = maxval(separation(a%list(i)%position, q%position, e%geometry%span))
+            apart = maxval(separation(a%list(i)%position, q%position, f%geometry%span))
             if (apart > nearest) cycle
             nearest = apart
             a%chosen = i
@@ -128,7 +129,7 @@ contains
             end associate
          end do
       end if
-      a%is_missed = is_solved(c) .and. a%chosen == 0
+      a%is_missed = is_found .and. a%chosen == 0
       a%is_known = a%is_known .and. .not. a%is_missed
 
    contains
@@ -139,7 +140,7 @@ contains
          if (is) is = a%list(1)%is_proved
          if (.not. is) return
          if (a%chosen == 0) then
-            is = .not. is_solved(c) .or. any(a%blocks%moves)
+            is = .not. is_found .or. any(a%blocks%moves)
          else
             associate (distance => a%list(a%chosen)%distance)
                is = is_nearer(a%list(1)%distance, distance)
@@ -150,20 +151,19 @@ contains
 
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
    !> changed it last; `seen`: of each block the same, when it was solved.
-   subroutine search(m, e, t, a)
+   subroutine search(m, f, a)
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
+      type(following_t), intent(inout) :: f
       type(assemblies_t), intent(inout) :: a
-      type(block_positions_t) :: found(size(e%blocks%list))
+      type(block_positions_t) :: found(size(f%blocks%list))
       type(ball_numbers_t) :: p
       type(placed_t) :: q
-      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, failed, i, k
+      integer :: chosen(size(found)), seen(size(found)), changed(0:f%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
-      p = new_ball_numbers(m, e%blocks, e%geometry)
-      q = new_placed(e%blocks, size(m%drives))
-      e%blocks%needed = [(k, k=1, size(found))]
+      p = new_ball_numbers(m, f%blocks, f%geometry)
+      q = new_placed(f%blocks, size(m%drives))
+      f%blocks%needed = [(k, k=1, size(found))]
       chosen = 0
       seen = -1
       changed = 0
@@ -173,14 +173,14 @@ contains
          if (i > size(found)) then
             a%are_more = size(a%list) == max_assemblies
             if (a%are_more) exit
-            call prove_position(p, e, t, 0, q, failed)
+            call prove_position(p, f%blocks, f%path, f%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call note_assembly(e, found, chosen, is_proved, a)
+            call note_assembly(f, found, chosen, is_proved, a)
             i = i - 1
             cycle
          end if
-         if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
-            call find_positions(e%blocks, e%geometry, i, e%work, e%state, max_group, e%starts(i)%paths, found(i))
+         if (chosen(i) == 0 .and. largest_known(f%blocks, i, changed) > seen(i)) then
+            call find_positions(f%blocks, f%geometry, i, f%work, f%state, max_group, f%guess%starts(i)%paths, found(i))
             seen(i) = choice
          end if
          chosen(i) = chosen(i) + 1
@@ -189,9 +189,9 @@ contains
             i = i - 1
             cycle
          end if
-         call set_values(e%blocks, i, found(i)%x(:, chosen(i)), e%state)
+         call set_values(f%blocks, i, found(i)%x(:, chosen(i)), f%state)
          choice = choice + 1
-         changed(own_unknowns(e%blocks, i)) = choice
+         changed(own_unknowns(f%blocks, i)) = choice
          i = i + 1
       end do
       do k = 1, size(a%blocks)
@@ -199,10 +199,10 @@ contains
       end do
    end subroutine search
 
-   !> Puts the assembly that `e` has now among the others, the nearest first; of those that are alike in the order in
+   !> Puts the assembly that `f` has now among the others, the nearest first; of those that are alike in the order in
    !> which they were found.
-   subroutine note_assembly(e, found, chosen, is_proved, a)
-      type(block_engine_t), intent(in) :: e
+   subroutine note_assembly(f, found, chosen, is_proved, a)
+      type(following_t), intent(in) :: f
       type(block_positions_t), intent(in) :: found(:)
       integer, intent(in) :: chosen(:)
       logical, intent(in) :: is_proved
@@ -213,22 +213,22 @@ contains
       logical :: finite
       integer :: i, k
 
-      q = new_motion(size(e%estimate, 2))
-      call move_links(e%geometry%chain, e%state, e%geometry%equations%length, q, finite, .true.)
+      q = new_motion(size(f%guess%links, 2))
+      call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, finite)
       one%is_proved = is_proved
-      do i = 1, size(e%cylinders)
-         associate (c => e%cylinders(i))
+      do i = 1, size(f%geometry%cylinders)
+         associate (c => f%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
             ! A length of 0 within rounding is kept, and nothing is proved of its sign.
-            if (abs(length) <= zero_length*e%geometry%span) one%is_proved = .false.
+            if (abs(length) <= zero_length*f%geometry%span) one%is_proved = .false.
             one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, length)
          end associate
-         if (length < -zero_length*e%geometry%span) a%negative = a%negative + 1
-         if (length < -zero_length*e%geometry%span) return
+         if (length < -zero_length*f%geometry%span) a%negative = a%negative + 1
+         if (length < -zero_length*f%geometry%span) return
       end do
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
-      one%distance = sqrt(sum(squared_distances(one%position, e%estimate, e%geometry%span)))
+      one%distance = sqrt(sum(squared_distances(one%position, f%guess%links, f%geometry%span)))
       k = count(a%list%distance <= one%distance*(1.0_wp + alike))
       a%list = [a%list(:k), one, a%list(k + 1:)]
    end subroutine note_assembly

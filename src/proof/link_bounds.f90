@@ -4,7 +4,7 @@ module link_bounds
    use plane_vectors, only: real_vector_t => vector_t
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use block_engine, only: block_engine_t
+   use blocks, only: geometry_t
    use balls, only: ball_t, distance, operator(+), operator(*)
    use ball_equations, only: vector_t, unknown_t, ball_state_t, add_rotating
    use ball_numbers, only: angle_error, length_in_link, around, of_number, of_vector
@@ -18,13 +18,13 @@ contains
 
    !> The exact place from the origin of `q` and angle of each link and their derivatives lie in `links` (3, 0:2,
    !> links); the exact unknowns lie in `s`. 0 of the ground and of links that nothing asks for. `largest` (2, 0:2): the
-   !> largest distances of lengths and of angles from those of the motion `q` that the engine `e` of `m` has found.
-   pure subroutine bound_links(m, e, s, q, links, largest)
+   !> largest distances of lengths and of angles from those of the motion `q` of `m`, whose geometry is `x`.
+   pure subroutine bound_links(m, x, s, q, links, largest)
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
+      type(geometry_t), intent(in) :: x
       type(ball_state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
-      type(ball_t), intent(out) :: links(3, 0:2, size(e%blocks%tree%orientation))
+      type(ball_t), intent(out) :: links(3, 0:2, size(m%links))
       real(wp), intent(out) :: largest(2, 0:2)
       type(vector_t) :: here(0:2)
       real(wp) :: error(3, 0:2), slide(2), of_angle, of_direction, of_vectors
@@ -36,8 +36,8 @@ contains
          + maxval([0.0_wp, abs(m%pairs%offset)]))
       links = zero
       largest = 0.0_wp
-      do i = 1, e%geometry%chain%wanted
-         associate (chain => e%geometry%chain%links, length => e%geometry%equations%length)
+      do i = 1, x%chain%wanted
+         associate (chain => x%chain%links, length => x%chain%length)
             associate (h => chain(i), own => chain(i)%link, place => chain(i)%place, &
                p => s%u(chain(i)%parent_orientation), f => s%u(chain(i)%orientation))
                here = vector_t()

@@ -7,8 +7,11 @@ module motion_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use block_engine, only: block_engine_t, set_drive_values, solve_each
-   use convergence, only: convergence_t, nothing_gathered, is_solved
+   use drive_path, only: drive_path_t
+   use blocks, only: blocks_t, geometry_t
+   use convergence, only: convergence_t, is_solved
+   use block_state, only: state_t, set_drive_values
+   use block_solver, only: workspace_t, new_workspace, solve_blocks
    use balls, only: ball_t
    use ball_equations, only: ball_numbers_t
    use ball_numbers, only: new_ball_numbers
@@ -56,12 +59,15 @@ module motion_proof
 
 contains
 
-   !> Proves the motion `q` of `m` that the engine `e` has found, and the step to it. `bounded`: with bounds of all that
-   !> is computed; otherwise of positions alone, as the step needs them.
-   subroutine prove_motion(p, m, e, q, bounded, found)
+   !> Proves the motion `q` of `m`, the state `s` of the blocks `b`, and the step to it. `bounded`: with bounds of all
+   !> that is computed; otherwise of positions alone, as the step needs them.
+   subroutine prove_motion(p, m, b, x, path, s, q, bounded, found)
       type(motion_prover_t), intent(inout) :: p
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       logical, intent(in) :: bounded
       type(motion_proof_t), intent(inout) :: found
@@ -73,8 +79,8 @@ contains
       found%has_step = .false.
       found%step = step_proof_t()
       if (.not. allocated(found%links)) then
-         p%numbers = new_ball_numbers(m, e%blocks, e%geometry)
-         p%at(1) = new_placed(e%blocks, size(m%drives))
+         p%numbers = new_ball_numbers(m, b, x)
+         p%at(1) = new_placed(b, size(m%drives))
          p%at(2) = p%at(1)
          allocate (found%links(3, 0:2, size(m%links)))
       end if
@@ -82,13 +88,13 @@ contains
       if (q%known < 2) return
 
       associate (here => p%at(p%now), before => p%at(3 - p%now))
-         call prove_position(p%numbers, e, q%t, merge(2, 0, bounded), here, failed)
+         call prove_position(p%numbers, b, path, s, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
-            if (bounded) call bound_links(m, e, here%ball_state_t, q, found%links, found%largest)
+            if (bounded) call bound_links(m, x, here%ball_state_t, q, found%links, found%largest)
             found%gap = here%gap
             found%has_step = p%has_begun
-            if (found%has_step) call prove_step(p%numbers, e, before, here, found%step)
+            if (found%has_step) call prove_step(p%numbers, b, x, path, s, before, here, found%step)
             failed = found%step%block
          end if
       end associate
@@ -96,9 +102,9 @@ contains
       p%has_begun = p%has_begun .or. found%is_proved
       if (holds(found)) return
 
-      block_of = [0, e%blocks%block_of]
-      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + e%blocks%tree%orientation) == failed)
-      if (e%blocks%list(failed)%shape%n > max_unknowns) found%too_many = e%blocks%list(failed)%shape%n
+      block_of = [0, b%block_of]
+      found%failed = pack([(i, i=1, size(m%links))], block_of(1 + b%tree%orientation) == failed)
+      if (b%list(failed)%shape%n > max_unknowns) found%too_many = b%list(failed)%shape%n
    end subroutine prove_motion
 
    !> All is proved that is asked for.
@@ -108,17 +114,21 @@ contains
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of the blocks of `e` that are needed, with the numbers `p`, between the proved positions `from`
-   !> and `to`.
-   subroutine prove_step(p, e, from, to, proof)
+   !> Proves the motion of those of the blocks `b` that are needed, with the numbers `p`, between the proved positions
+   !> `from` and `to`, the state `s`.
+   subroutine prove_step(p, b, x, path, s, from, to, proof)
       type(ball_numbers_t), intent(in) :: p
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      type(state_t), intent(in) :: s
       type(placed_t), intent(in) :: from, to
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
-      type(block_engine_t), allocatable :: other        ! few steps need it
+      type(state_t), allocatable :: other               ! few steps need it
+      type(workspace_t) :: w
 
-      tube = new_tube(e%blocks, size(e%path%laws))
+      tube = new_tube(b, size(path%laws))
       proof%is_proved = .true.
       call prove_part(from, to, min_part*abs(to%t - from%t))
 
@@ -133,7 +143,7 @@ contains
          integer :: failed
 
          proof%tries = proof%tries + 1
-         call prove_tube(p, e, from, to, tube)
+         call prove_tube(p, b, path, from, to, tube)
          if (tube%block == 0) then
             proof%parts = proof%parts + 1
             proof%radius = max(proof%radius, maxval(tube%radius))
@@ -143,17 +153,18 @@ contains
          proof%is_proved = .false.
          if (abs(to%t - from%t) <= shortest .or. proof%tries >= max_tries) return
 
-         if (.not. allocated(other)) other = e
-         other%t = 0.5_wp*(from%t + to%t)
-         call set_drive_values(other%path, other%t, other%state)
-         other%state%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
+         if (.not. allocated(other)) then
+            other = s
+            w = new_workspace(b)
+         end if
+         call set_drive_values(path, 0.5_wp*(from%t + to%t), other)
+         other%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
             + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
-         c = nothing_gathered
-         call solve_each(other, other%blocks%needed, .false., c)
+         call solve_blocks(b, x, b%needed, w, other, c)
          if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          allocate (middle)
-         middle = new_placed(e%blocks, size(e%path%laws))
-         call prove_position(p, other, other%t, 0, middle, failed)
+         middle = new_placed(b, size(path%laws))
+         call prove_position(p, b, path, other, 0, middle, failed)
          proof%is_proved = failed == 0
          if (proof%is_proved) call prove_part(from, middle, shortest)
          if (proof%is_proved) call prove_part(middle, to, shortest)

@@ -22,7 +22,7 @@ module position_proof
    use blocks, only: blocks_t, own_unknowns
    use block_matrix, only: shape_t, entries_of, solve_first, solve_again, work_length
    use block_state, only: state_t
-   use block_engine, only: block_engine_t
+   use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
       assemble_balls, ball_accelerations, find_direct
@@ -75,13 +75,14 @@ contains
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
    end function new_placed
 
-   !> Proves the position of the blocks of `e` that are needed, at the time `t` and the values that it has, for the
-   !> numbers `p`; with `order` 2 instead of 0 velocities and accelerations as well. Result: `q`, and `failed`, the
+   !> Proves the position `s` of those of the blocks `b` that are needed, at its time and values, for the numbers `p`;
+   !> with `order` 2 instead of 0 velocities and accelerations as well. Result: `q`, and `failed`, the
    !> number of the first block that is not proved, where the proof ends; or 0.
-   subroutine prove_position(p, e, t, order, q, failed)
+   subroutine prove_position(p, b, path, s, order, q, failed)
       type(ball_numbers_t), intent(in) :: p
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t
+      type(blocks_t), intent(in) :: b
+      type(drive_path_t), intent(in) :: path
+      type(state_t), intent(in) :: s
       integer, intent(in) :: order
       type(placed_t), intent(inout) :: q
       integer, intent(out) :: failed
@@ -89,21 +90,21 @@ contains
       logical :: is_proved
       integer :: i, k
 
-      q%t = t
+      q%t = s%t
       q%gap = 0.0_wp
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       q%u(:) = unknown_t()
-      do i = 1, size(e%path%laws)
-         law = bounds_of(e%path%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
-         associate (value => e%state%drive_value(:, i), unit => e%path%unit(i))
+      do i = 1, size(path%laws)
+         law = bounds_of(path%laws(i), s%t - of_time*abs(s%t), s%t + of_time*abs(s%t), one_instant=.true.)
+         associate (value => s%drive_value(:, i), unit => path%unit(i))
             q%drive(:, i)%mid = value
             q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value))*room
          end associate
       end do
 
-      do k = 1, size(e%blocks%needed)
-         failed = e%blocks%needed(k)
-         call prove_block(p, e%blocks, failed, e%state, order, q, is_proved)
+      do k = 1, size(b%needed)
+         failed = b%needed(k)
+         call prove_block(p, b, failed, s, order, q, is_proved)
          if (.not. is_proved) return
       end do
       failed = 0

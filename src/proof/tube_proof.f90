@@ -17,7 +17,7 @@ module tube_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
-   use block_engine, only: block_engine_t
+   use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
       ball_accelerations
@@ -48,14 +48,15 @@ contains
       tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of the blocks of `e` that are needed, with the numbers `p`, between the positions `from` and
-   !> `to`.
-   subroutine prove_tube(p, e, from, to, tube)
+   !> Proves the motion of those of the blocks `b` that are needed, with the numbers `p`, between the positions `from`
+   !> and `to`.
+   subroutine prove_tube(p, b, path, from, to, tube)
       type(ball_numbers_t), intent(in) :: p
-      type(block_engine_t), intent(in) :: e
+      type(blocks_t), intent(in) :: b
+      type(drive_path_t), intent(in) :: path
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      logical :: unbounded(0:size(e%path%laws))
+      logical :: unbounded(0:size(path%laws))
       type(ball_t) :: c(0:2)
       real(wp) :: h, radius
       integer :: k, j
@@ -67,15 +68,15 @@ contains
       tube%balls%u(:) = unknown_t()
       call bound_drives()
 
-      do k = 1, size(e%blocks%needed)
-         tube%block = e%blocks%needed(k)
-         associate (block => e%blocks%list(tube%block), &
-            own => e%blocks%unknown(e%blocks%list(tube%block)%first:e%blocks%list(tube%block)%last))
-            if (any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))) return
+      do k = 1, size(b%needed)
+         tube%block = b%needed(k)
+         associate (block => b%list(tube%block), &
+            own => b%unknown(b%list(tube%block)%first:b%list(tube%block)%last))
+            if (any(unbounded(b%rows(block%first_row:block%last_row)%drive))) return
             do j = 1, size(own)
                associate (u => own(j))
                   c = cubic(h, [from%u(u)%value%mid, from%u(u)%rate%mid], [to%u(u)%value%mid, to%u(u)%rate%mid])
-                  call set_ball(e%blocks, u, c(0), tube%curve)
+                  call set_ball(b, u, c(0), tube%curve)
                   tube%curve%u(u)%rate = c(1)
                   tube%curve%u(u)%acceleration = c(2)
                   tube%balls%u(u) = tube%curve%u(u)
@@ -83,19 +84,19 @@ contains
             end do
             if (block%direct) then
                ! The unknown is another one and a drive, and so are their cubics.
-               associate (row => e%blocks%rows(block%first_row))
+               associate (row => b%rows(block%first_row))
                   radius = (ends_open(block%first_row) + tube%radius(row%other) &
                      + tube%balls%drive(1, row%drive)%radius)*room
                end associate
             else
-               call prove_block(e%blocks, tube%block, own, radius)
+               call prove_block(tube%block, own, radius)
             end if
             if (radius < 0.0_wp) return
 
             tube%radius(own) = radius
             do j = 1, size(own)
                associate (u => own(j))
-                  call set_radius(e%blocks, u, (tube%curve%u(u)%value%radius + radius)*room, tube%curve)
+                  call set_radius(b, u, (tube%curve%u(u)%value%radius + radius)*room, tube%curve)
                   tube%balls%u(u) = tube%curve%u(u)
                   tube%balls%u(u)%rate = ball_t(0.0_wp, radius)
                end associate
@@ -119,13 +120,13 @@ contains
          earliest = min(from%t, to%t)
          earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)
          unbounded(0) = .false.
-         do i = 1, size(e%path%laws)
-            law = bounds_of(e%path%laws(i), earliest, max(from%t, to%t) + late)
+         do i = 1, size(path%laws)
+            law = bounds_of(path%laws(i), earliest, max(from%t, to%t) + late)
             unbounded(i) = max(abs(law%low(2)), abs(law%high(2))) >= huge(1.0_wp)
             if (unbounded(i)) cycle
             c = cubic(h, from%drive(:1, i)%mid, to%drive(:1, i)%mid)
-            change = c(2)%radius + max(0.0_wp, law%high(2)*e%path%unit(i) - c(2)%mid, &
-               c(2)%mid - law%low(2)*e%path%unit(i))
+            change = c(2)%radius + max(0.0_wp, law%high(2)*path%unit(i) - c(2)%mid, &
+               c(2)%mid - law%low(2)*path%unit(i))
             tube%balls%drive(1, i) = ball_t(0.0_wp, (0.125_wp*h**2*change &
                + 4.0_wp*max(from%drive(0, i)%radius, to%drive(0, i)%radius) &
                + 2.0_wp*abs(h)*max(from%drive(1, i)%radius, to%drive(1, i)%radius) &
@@ -141,10 +142,9 @@ contains
             + 0.25_wp*abs(h)*max(from%open(1, row), to%open(1, row)))*room
       end function ends_open
 
-      !> Finds the `radius` of the tube of block `i` of the blocks `b`, with the unknowns `own`, whose earlier blocks
+      !> Finds the `radius` of the tube of block `i`, with the unknowns `own`, whose earlier blocks
       !> are proved; -1: none is proved.
-      subroutine prove_block(b, i, own, radius)
-         type(blocks_t), intent(in) :: b
+      subroutine prove_block(i, own, radius)
          integer, intent(in) :: i, own(:)
          real(wp), intent(out) :: radius
          type(block_work_t) :: w

@@ -10,7 +10,7 @@ module set_analysis
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use significance_check, only: safe_growth, find_amplification
-   use block_engine, only: get_motion
+   use link_motion, only: move_links
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
@@ -103,7 +103,7 @@ contains
       integer :: c, k
 
       do c = 1, s%now%count
-         if (.not. (s%now%closing > 0.0_wp .and. s%list(c)%engine%blocks%redundant > 0)) cycle
+         if (.not. (s%now%closing > 0.0_wp .and. s%list(c)%blocks%redundant > 0)) cycle
          trial = s%list(c)
          q = new_motion(size(s%now%parts(c)%links))
          do k = 0, instant_count(s%now) - 1
@@ -193,11 +193,12 @@ contains
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
       logical :: is_finite, in_doubt
 
-      associate (engine => s%list(1)%engine, q => s%now%motions(1))
+      associate (a => s%list(1), q => s%now%motions(1))
          q%t = t
          if (allocated(q%diagnostics)) deallocate (q%diagnostics)
-         call get_motion(engine, q, is_finite)
-         call find_amplification(s%estimators(1)%sizes, s%now%parts(1), engine, q, s%growth, in_doubt)
+         call move_links(a%geometry%chain, a%geometry%chain%wanted, a%state, q, is_finite)
+         call find_amplification(s%estimators(1)%sizes, s%now%parts(1), a%blocks, a%geometry, a%state, q, s%growth, &
+            in_doubt)
       end associate
       is_taken = is_finite .and. .not. in_doubt
       s%is_in_lane = .true.
@@ -274,7 +275,7 @@ contains
 
       if (s%told_drives(c)) return
       s%told_drives(c) = .true.
-      are = surplus_drives(s%list(c)%engine%blocks, s%list(c)%engine%geometry, size(are), s%list(c)%engine%state)
+      are = surplus_drives(s%list(c)%blocks, s%list(c)%geometry, size(are), s%list(c)%state)
       if (.not. any(are)) return
       associate (q => s%now%motions(c))
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
@@ -354,7 +355,7 @@ contains
                call find_row(own, q, own%requests(s%now%rows(list(i))%number), rows(i))
             end do
             if (.not. present(always)) return
-            call estimate_errors(s%estimators(c), own, a%engine, q, always, .false., estimate)
+            call estimate_errors(s%estimators(c), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
             if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
             do i = 1, size(list)
@@ -382,9 +383,11 @@ contains
 
       do c = 1, size(s%list)
          associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
-            call estimate_errors(s%estimators(c), own, a%engine, q, always, always, s%now%errors(c))
+            call estimate_errors(s%estimators(c), own, a%blocks, a%geometry, a%state, q, always, always, &
+               s%now%errors(c))
             if (allocated(own%tolerances)) &
-               call find_sensitivities(s%estimators(c), own, a%engine, q, s%now%errors(c), s%now%sensitivities(c))
+               call find_sensitivities(s%estimators(c), own, a%blocks, a%geometry, a%state, q, s%now%errors(c), &
+               s%now%sensitivities(c))
          end associate
       end do
    end subroutine sample_set
@@ -404,8 +407,10 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
-         call prove_motion(s%provers(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), bounded, &
-            s%now%proofs(c))
+         associate (a => s%list(c))
+            call prove_motion(s%provers(c), s%now%parts(c), a%blocks, a%geometry, a%path, a%state, s%now%motions(c), &
+               bounded, s%now%proofs(c))
+         end associate
       end do
    end subroutine prove_set
 

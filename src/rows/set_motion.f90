@@ -92,6 +92,7 @@ contains
 
       if (.not. b%solvable) return
       chain = new_chain(m, b, x, wanted_links(m))
+      chain%length = 1.0_wp
       do d = 1, size(m%drives)
          if (all(m%requests%drive /= d)) cycle
          state = new_state(b, size(m%drives))
@@ -116,7 +117,7 @@ contains
 
          q = new_motion(size(m%links))
          q%known = 2
-         call move_links(chain, state, 1.0_wp, q, finite)
+         call move_links(chain, chain%wanted, state, q, finite)
          largest = [maxval(abs(q%velocity(:2, :))), maxval(abs(q%velocity(3, :)))]
          do i = 1, size(m%requests)
             if (m%requests(i)%drive /= d) cycle

@@ -11,6 +11,7 @@
 module blocks
    use kinds, only: wp
    use number_types, only: vector_t, row_numbers_t, loop_numbers_t
+   use cylinders, only: cylinder_t
    use klu, only: pattern_t
    use block_matrix, only: shape_t
    use spanning_tree, only: spanning_tree_t, link_offset_t
@@ -96,6 +97,7 @@ module blocks
       integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
+      real(wp) :: length = 1.0_wp                       !< the unit of slides in the deck's
    end type chain_t
 
    !> What the numbers of the cards make of the blocks.
@@ -111,6 +113,7 @@ module blocks
       type(vector_t), allocatable :: e(:)         !< (slides) along the guide, with its sign in the loop
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
       type(chain_t) :: chain                      !< of the links: those that are asked for, then the others
+      type(cylinder_t), allocatable :: cylinders(:)
    end type geometry_t
 
    type :: blocks_t

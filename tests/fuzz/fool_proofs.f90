@@ -8,7 +8,8 @@ program fool_proofs
    use quad_jet, only: qp
    use arguments, only: argument, number
    use dice, only: dice_t, new_dice, throw, chance, between
-   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use following, only: following_t, begin_following
+   use block_state, only: set_drive_values
    use mechanism, only: mechanism_t
    use position_proof, only: placed_t, new_placed, prove_position
    use ball_equations, only: ball_numbers_t
@@ -52,7 +53,7 @@ contains
       integer, intent(in) :: i
       type(fool_t) :: f
       type(mechanism_t) :: m
-      type(block_engine_t), allocatable :: e
+      type(following_t), allocatable :: e
       type(ball_numbers_t) :: p
       type(placed_t) :: q(2)
       type(step_proof_t) :: proof
@@ -78,14 +79,14 @@ contains
       if (chance(dice, 0.25_wp)) sign_of(2) = -sign_of(2)
       m = new_mechanism(f)
       allocate (e)
-      call make_block_engine(e, m)
+      call begin_following(e, m)
       p = new_ball_numbers(m, e%blocks, e%geometry)
       call find_unknowns(m, e, f)
       wrong = .false.
       do k = 1, 2
          q(k) = new_placed(e%blocks, size(m%drives))
          call put_there(f, e, t(k), sign_of(k))
-         call prove_position(p, e, t(k), 2, q(k), failed(k))
+         call prove_position(p, e%blocks, e%path, e%state, 2, q(k), failed(k))
          if (failed(k) > 0) cycle
          positions = positions + 1
          if (is_false(f, q(k), sign_of(k))) then
@@ -94,7 +95,7 @@ contains
          end if
       end do
       if (all(failed == 0)) then
-         call prove_step(p, e, q(1), q(2), proof)
+         call prove_step(p, e%blocks, e%geometry, e%path, e%state, q(1), q(2), proof)
          if (proof%is_proved) steps = steps + 1
          if (proof%is_proved .and. (sign_of(1) /= sign_of(2) .or. .not. exists_between(f, t, sign_of(1)))) then
             print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE STEP IS PROVED, SCENE ', f%scene
@@ -150,7 +151,7 @@ contains
    !> Puts the engine where the assembly `s` is at `t`; `s` becomes 0 where that is wrong by more than a little.
    subroutine put_there(f, e, t, s)
       type(fool_t), intent(in) :: f
-      type(block_engine_t), intent(inout) :: e
+      type(following_t), intent(inout) :: e
       real(wp), intent(in) :: t
       integer, intent(inout) :: s
       type(convergence_t) :: c

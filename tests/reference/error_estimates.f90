@@ -81,7 +81,7 @@ contains
       call make_estimator(samples, m)
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
-         call estimate_errors(samples, m, a%engine, q, .true., .true., doubt)
+         call estimate_errors(samples, m, a%blocks, a%geometry, a%state, q, .true., .true., doubt)
          if (q%known == 2) call weigh_instant(m, q, doubt, closed_form(name, m%set_number, real(q%t, qp)), tally)
       end do
    end subroutine weigh_set

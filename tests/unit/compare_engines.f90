@@ -51,7 +51,7 @@ contains
          if (k == 1 .and. (q%mark /= mark_none .or. r%mark /= mark_none)) exit
          if (q%mark == mark_none .and. r%mark == mark_none) then
             c%solved = c%solved + 1
-            share = apart(q, r, wanted_links(m), dense%engine%geometry%equations%length, &
+            share = apart(q, r, wanted_links(m), dense%geometry%equations%length, &
                0.1_wp*dense%convergence%min_pivot)
             if (maxval(share) > maxval(c%share)) then
                c%time = t(k)

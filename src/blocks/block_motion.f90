@@ -1,0 +1,208 @@
+!> A mechanism solved block by block, in the order of `blocks`: all that a block needs is known before it is solved.
+!> Only blocks that a table needs are solved, and those that no drive moves only once. Structure (`blocks_t`, constant),
+!> geometry, drive values, state and workspace are arguments; there is no other object.
+module block_motion
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, wanted_links, has_guide
+   use scales, only: is_length
+   use motion, only: motion_t, new_motion
+   use drive_path, only: drive_path_t
+   use convergence, only: convergence_t
+   use blocks, only: blocks_t, geometry_t, moving_blocks, blocks_that_give, largest_known, own_unknowns
+   use block_numbers, only: put_numbers
+   use block_state, only: state_t, unknown_t, set_drive_values
+   use block_solver, only: workspace_t, solve_block, solve_explicit
+   use link_motion, only: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+      missing_all
+   implicit none
+   private
+   public :: take_requests, put_geometry, put_path, get_ratios, mark_singular_links, get_driven_links, &
+      slide_unit
+
+contains
+
+   !> Finds which of the blocks `b` of `m`, with the geometry `x`, are solved for its requests, and the chain of the
+   !> links that these ask for.
+   subroutine take_requests(m, b, x)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(inout) :: b
+      type(geometry_t), intent(inout) :: x
+      logical :: need(0:b%unknowns)
+      integer :: i
+
+      x%tolerance = m%tolerance
+      b%ratios = [integer ::]
+      if (any(m%requests%drive > 0)) b%ratios = pack([(i, i=1, size(m%drives))], &
+         [(any(m%requests%drive == i), i=1, size(m%drives))])
+      if (.not. b%solvable) return
+      x%chain = new_chain(m, b, x, wanted_links(m))
+      ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
+      need = .false.
+      do i = 1, x%chain%wanted
+         associate (h => x%chain%links(i))
+            need([h%orientation, h%slide, h%root, h%root + min(h%root, 1)]) = .true.
+         end associate
+      end do
+      b%needed = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
+      b%moving = pack(b%needed, moving_blocks(b, b%needed))
+      b%is_found = wanted_links(m) .and. b%tree%orientation > 0
+      do i = 1, size(m%links)
+         if (b%is_found(i)) b%is_found(i) = .not. b%list(b%block_of(b%tree%orientation(i)))%direct
+      end do
+      associate (revolute => .not. has_guide(m%pairs%kind))
+         b%joint = reshape([m%points(pack(m%pairs%point_i, revolute))%link, &
+            m%points(pack(m%pairs%point_j, revolute))%link], [2, count(revolute)], order=[2, 1])
+      end associate
+   end subroutine take_requests
+
+   !> Gives the geometry `x` and the `path` the numbers of `m`, a mechanism with the links, points, pairs and drives of
+   !> that of which the blocks `b` were made. `fits`: see `put_numbers`.
+   subroutine put_geometry(m, b, x, path, fits)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(inout) :: x
+      type(drive_path_t), intent(inout) :: path
+      logical, intent(out) :: fits   !< the structure serves for them, see `put_numbers`
+
+      call put_numbers(m, b, x, fits)
+      x%tolerance = m%tolerance
+      call put_chain(m, b, x, x%chain)
+      call put_path(m, b, x, path)
+   end subroutine put_geometry
+
+   !> Puts the laws of the drives of `m`, and the units of their values, into its `path`.
+   subroutine put_path(m, b, x, path)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(inout) :: path
+      integer :: i
+
+      path%laws = m%drives
+      path%unit = merge(1.0_wp/x%equations%length, 1.0_wp, is_length(m%drives))
+      do i = 1, size(b%rows)
+         associate (drive => b%rows(i)%drive)
+            if (drive > 0) path%unit(drive) = path%unit(drive)/x%rows(i)%unit
+         end associate
+      end do
+   end subroutine put_path
+
+   !> Finds the motions found%by in which one of the drives by which ratios are asked for has the rate 1 and the others
+   !> rest, at the position `here`: as the motion itself, with other values of drives.
+   subroutine get_ratios(b, x, path, is_lost, here, w, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      logical, intent(in) :: is_lost(:)      !< (blocks) without a position, or without unique rates
+      type(state_t), intent(in) :: here
+      type(workspace_t), intent(inout) :: w
+      type(motion_t), intent(inout) :: found
+      type(motion_t) :: unit
+      type(state_t) :: s
+      type(convergence_t) :: c
+      integer :: missing(0:b%unknowns), j, k
+      logical :: has_rates, finite
+
+      ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
+      if (.not. allocated(found%by)) allocate (found%by(size(path%laws)))
+      unit = new_motion(size(found%position, 2))
+      do j = 1, size(b%ratios)
+         s = here
+         s%drive_value(1:, :) = 0.0_wp
+         s%drive_value(1, b%ratios(j)) = path%unit(b%ratios(j))
+         missing = missing_nothing
+         do k = 1, size(b%needed)
+            associate (i => b%needed(k))
+               has_rates = .not. is_lost(i)
+               if (has_rates) has_rates = largest_known(b, i, missing) == missing_nothing
+               if (has_rates) then
+                  call solve_block(b, x, i, .false., w, s, c)
+                  has_rates = .not. (c%singular .or. c%rates_open)
+               end if
+               if (.not. has_rates) call note_block(b, i, missing_rates, missing)
+            end associate
+         end do
+         call move_links(x%chain, x%chain%wanted, s, unit, finite)
+         call mark_links(x%chain, missing, unit)
+         associate (by => found%by(b%ratios(j)))
+            by%velocity = unit%velocity
+            by%acceleration = unit%acceleration
+            by%is_known = unit%link_known == 2 .and. all(abs(unit%velocity) <= huge(1.0_wp) .and. &
+               abs(unit%acceleration) <= huge(1.0_wp), dim=1)
+         end associate
+      end do
+   end subroutine get_ratios
+
+   !> Tells which links have velocities in the motion `found` last, where not all have. `all_at_once`: with one Jacobian
+   !> for all equations, which has no inverse; then those alone that drives move.
+   subroutine mark_singular_links(b, x, s, all_at_once, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(state_t), intent(in) :: s
+      logical, intent(in) :: all_at_once   !< all equations have one Jacobian
+      type(motion_t), intent(inout) :: found
+      integer :: missing(0:b%unknowns), k
+
+      missing = missing_nothing
+      do k = 1, size(b%needed)
+         associate (i => b%needed(k))
+            call note_block(b, i, merge(missing_rates, missing_nothing, s%is_singular(i) .or. &
+               (all_at_once .and. .not. b%list(i)%direct)), missing)
+         end associate
+      end do
+      call mark_links(x%chain, missing, found)
+   end subroutine mark_singular_links
+
+   !> Finds what is certain at `t`, where there is no position: the motion of the links that drives alone move. `found`
+   !> has its mark already.
+   subroutine get_driven_links(b, x, path, t, w, s, found)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      type(drive_path_t), intent(in) :: path
+      real(wp), intent(in) :: t   !< time
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(motion_t), intent(inout) :: found
+      type(state_t) :: driven                           !< with numbers for what is lost, too
+      integer :: missing(0:b%unknowns), k, i
+      logical :: finite
+
+      if (.not. b%solvable) return
+      call set_drive_values(path, t, s)
+      missing = missing_nothing
+      do k = 1, size(b%needed)
+         i = b%needed(k)
+         call note_block(b, i, merge(missing_nothing, missing_all, b%list(i)%direct), missing)
+         if (.not. b%list(i)%direct) cycle
+         if (missing(b%unknown(b%list(i)%first)) == missing_nothing) &
+            call solve_explicit(b, x, i, s)
+      end do
+      driven = s
+      do k = 1, b%unknowns
+         if (missing(k) > missing_nothing) driven%u(k) = unknown_t()
+      end do
+      call mark_links(x%chain, missing, found)
+      call move_links(x%chain, x%chain%wanted, driven, found, finite)
+      if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%direct, s, w, found)
+   end subroutine get_driven_links
+
+   !> Notes what is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on
+   !> lacks.
+   subroutine note_block(b, i, own, missing)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, own   !< number of the block; what its own equations leave out
+      integer, intent(inout) :: missing(0:)   !< (0:unknowns) of missing_nothing, ...
+
+      missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
+   end subroutine note_block
+
+   !> The unit of unknown number `k` in the deck's, if it is a slide; 1 of an angle.
+   pure real(wp) function slide_unit(b, x, k) result(unit)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in) :: k   !< number of the unknown
+
+      unit = x%unit(k)
+      if (k > b%orientations) unit = unit*x%equations%length
+   end function slide_unit
+end module block_motion
