@@ -71,7 +71,7 @@ contains
          word = next_word()
          k = findloc(file_options == word, .true., dim=1)
          if (k > 0) then
-            call take_file(options%files(k))
+            call read_file_name(options%files(k))
             cycle
          end if
 
@@ -178,7 +178,7 @@ contains
       end subroutine reject
 
       !> Takes the name of a file from the word after `word`, its option: `-` is standard output.
-      subroutine take_file(file)
+      subroutine read_file_name(file)
          type(word_t), intent(inout) :: file
          character(:), allocatable :: path
 
@@ -191,7 +191,7 @@ contains
          end if
          if (path == '-') path = ''
          file%text = path
-      end subroutine take_file
+      end subroutine read_file_name
 
       !> Gives the word after word number `i`, '' if there is none, and increases `i` by 1.
       function next_word() result(next)

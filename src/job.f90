@@ -21,15 +21,15 @@ module job
    use solver_log, only: log_head
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use svg, only: page_t, begin_page, end_page
-   use dxf, only: point_path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
-   use picture, only: put_picture
-   use animation, only: put_animation
+   use dxf, only: point_path_t, new_paths, extend_paths, begin_dxf, write_dxf, end_dxf
+   use picture, only: draw_picture
+   use animation, only: draw_animation
    use circuits, only: circuits_t
    use set_circuits, only: find_all_circuits
-   use circuits_picture, only: put_circuits
+   use circuits_picture, only: draw_circuits
    use answers, only: answers_t
    use counts, only: counts_t
-   use phrases, only: say_broken_set, say_broken_variant
+   use phrases, only: text_broken_set, text_broken_variant
    use set_motion, only: new_set_motion
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    implicit none
@@ -204,9 +204,9 @@ contains
          end associate
          if (is_over(writers)) then
             if (before > writers%own_last) then
-               call break_off(writers, sets(i), say_broken_variant, writers%own_last - before + sets(i)%variants)
+               call break_off(writers, sets(i), text_broken_variant, writers%own_last - before + sets(i)%variants)
             else if (i < writers%last) then
-               call break_off(writers, sets(i), say_broken_set, sets(i)%set_number)
+               call break_off(writers, sets(i), text_broken_set, sets(i)%set_number)
             end if
             exit
          end if
@@ -219,7 +219,7 @@ contains
             call make_set_analysis(sets(i), a)
             call advance_set(a, instant(sets(i), 0))
             call find_all_circuits(a, found)
-            call put_circuits(pages(out_circuits), sets(i), a, found)
+            call draw_circuits(pages(out_circuits), sets(i), a, found)
          end if
       end do
 
@@ -251,8 +251,8 @@ contains
          call record_instant(d, a%now, k)
          if (signal_received() > 0) return
       end do
-      if (writers%asked(out_svg)) call put_picture(pages(out_svg), d)
-      if (writers%asked(out_animation)) call put_animation(pages(out_animation), d)
+      if (writers%asked(out_svg)) call draw_picture(pages(out_svg), d)
+      if (writers%asked(out_animation)) call draw_animation(pages(out_animation), d)
    end subroutine draw_set
 
    !> Exports the motion of a set at the instants of the deck to the file for CAD. If a signal comes, nothing is
@@ -272,10 +272,10 @@ contains
       do k = 0, merge(m%steps, instant_count(m) - 1, m%steps >= 0)
          call advance_set(a, instant(m, k))
          if (k == 0) call record_instant(d, a%now, k)
-         call note_paths(paths, a%now, k)
+         call extend_paths(paths, a%now, k)
          if (signal_received() > 0) return
       end do
-      call put_dxf(writers%files(out_dxf), d, paths, i)
+      call write_dxf(writers%files(out_dxf), d, paths, i)
    end subroutine export_set
 
    !> Solves and writes a set, or some of its variants. If the file of its table cannot be opened, the run is broken
@@ -305,7 +305,7 @@ contains
          call open_table(writers%options, writers%first, writers%last, i, .false., writers, failure)
          if (allocated(failure)) then
             call move_alloc(failure, writers%failure)
-            call break_off(writers, m, say_broken_set, m%set_number - 1)
+            call break_off(writers, m, text_broken_set, m%set_number - 1)
             return
          end if
          if (writers%asked(out_log) .and. m%variants == 0) call log_head(writers%files(out_log), m)

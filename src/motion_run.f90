@@ -6,10 +6,10 @@ module motion_run
    use outputs, only: is_over
    use shares, only: write_in_turn
    use writers, only: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off
-   use answers, only: answers_t, new_answers, take_instant, finish_answers
-   use answer_tables, only: put_answers
-   use counts, only: counts_t, note_flag
-   use phrases, only: say_broken_off
+   use answers, only: answers_t, new_answers, update_answers, finish_answers
+   use answer_tables, only: write_answers
+   use counts, only: counts_t, record_flag
+   use phrases, only: text_broken_off
    use motion_proof, only: holds
    use set_motion, only: has_words
    use set_analysis, only: set_analysis_t, begin_analysis, foresee_closure, advance_set, prove_set
@@ -44,21 +44,21 @@ contains
             call prove_set(set, due)
             if (.not. all(holds(set%now%proofs))) counts%unproved = counts%unproved + 1
          end if
-         call note_flag(counts, set)
+         call record_flag(counts, set)
 
          if (due .or. p%each .or. has_words(set%now)) call print_instant(p, writers, set, k, due)
          call write_in_turn(writers)
-         call take_instant(asked, set, p%rows, k, due)
+         call update_answers(asked, set, p%rows, k, due)
          if (.not. is_over(writers)) cycle
          call end_tables(p, writers, set)
-         if (set%now%variants == 0) call break_off(writers, set%now, say_broken_off, k)
+         if (set%now%variants == 0) call break_off(writers, set%now, text_broken_off, k)
          return
       end do
 
       call end_tables(p, writers, set)
       if (p%lists) then
          call finish_answers(asked, set)
-         call put_answers(writers%files(out_listing), writers%layout, asked, set)
+         call write_answers(writers%files(out_listing), writers%layout, asked, set)
       end if
       call print_end(p, writers, set, counts)
    end subroutine run_motion

@@ -17,11 +17,11 @@ module variant_runs
    use solver_log, only: log_head
    use answers, only: answers_t
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
-   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
-      put_variants_end
+   use variant_tables, only: summary_head, summary_row, write_variant, write_variant_heads, write_variant_row, &
+      write_variants_end
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
-   use phrases, only: say_broken_variant
+   use phrases, only: text_broken_variant
    use set_motion, only: new_set_motion
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis
    use kinds, only: wp
@@ -51,7 +51,7 @@ contains
       summary = new_summary(set, layout, variation)
       if (writers%asked(out_summary) .and. first == 1) call summary_head(writers%files(out_summary), summary)
       if (writers%asked(out_listing) .and. first == 1 .and. .not. full) then
-         call put_variant_heads(writers%files(out_listing), summary)
+         call write_variant_heads(writers%files(out_listing), summary)
       end if
 
       if (are_together(set, full .or. has_more, writers)) then
@@ -59,17 +59,17 @@ contains
       else
          do while (n <= last)
             row = new_row(summary, variation, n)
-            if (writers%asked(out_listing) .and. full) call put_variant(writers%files(out_listing), layout, summary, &
+            if (writers%asked(out_listing) .and. full) call write_variant(writers%files(out_listing), layout, summary, &
                set, row)
             call run_variant(variant, row)
             if (is_over(writers)) exit
-            if (writers%asked(out_listing) .and. full) call put_variant_heads(writers%files(out_listing), summary)
+            if (writers%asked(out_listing) .and. full) call write_variant_heads(writers%files(out_listing), summary)
             call write_row(row)
             n = n + 1
          end do
       end if
-      if (n <= last) call break_off(writers, set, say_broken_variant, n - 1)
-      if (n > variation%total .and. writers%asked(out_listing)) call put_variants_end(writers%files(out_listing), set)
+      if (n <= last) call break_off(writers, set, text_broken_variant, n - 1)
+      if (n > variation%total .and. writers%asked(out_listing)) call write_variants_end(writers%files(out_listing), set)
 
    contains
 
@@ -164,7 +164,7 @@ contains
          type(variant_row_t), intent(in) :: row
 
          if (writers%asked(out_summary)) call summary_row(writers%files(out_summary), summary, set, row)
-         if (writers%asked(out_listing)) call put_variant_row(writers%files(out_listing), layout, summary, set, row)
+         if (writers%asked(out_listing)) call write_variant_row(writers%files(out_listing), layout, summary, set, row)
          call write_in_turn(writers)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') writers%status = status_flagged
       end subroutine write_row

@@ -8,8 +8,8 @@ module writers
    use text_output, only: output_t, put
    use command_line, only: options_t, out_listing, out_csv, out_table, out_log
    use outputs, only: outputs_t
-   use listing, only: layout_t, listing_state_t, listing_instant, listing_end, put_untold
-   use column_table, only: column_table_t, new_column_table, note_columns, put_columns
+   use listing, only: layout_t, listing_state_t, listing_instant, listing_end, write_untold
+   use column_table, only: column_table_t, new_column_table, add_table_line, write_columns
    use csv, only: csv_instant, table_t, table_instant
    use solver_log, only: log_instant
    use counts, only: counts_t
@@ -103,7 +103,7 @@ contains
             call listing_instant(writers%files(out_listing), writers%layout, set%now, printing%rows, k, printing%state)
          end if
       end if
-      if (allocated(printing%columns%columns)) call note_columns(printing%columns, writers%layout, set%now, &
+      if (allocated(printing%columns%columns)) call add_table_line(printing%columns, writers%layout, set%now, &
          printing%rows)
 
       if (has_csv) call csv_instant(writers%files(out_csv), set%now, printing%rows, k, writers%varies)
@@ -124,11 +124,11 @@ contains
 
       if (.not. printing%lists) return
       if (printing%columns%alone) then
-         call put_untold(printing%columns%remarks, set%now%polish, printing%state)
+         call write_untold(printing%columns%remarks, set%now%polish, printing%state)
       else
-         call put_untold(writers%files(out_listing), set%now%polish, printing%state)
+         call write_untold(writers%files(out_listing), set%now%polish, printing%state)
       end if
-      call put_columns(writers%files(out_listing), printing%columns, set%now)
+      call write_columns(writers%files(out_listing), printing%columns, set%now)
    end subroutine end_tables
 
    !> Prints the end of the listing of a set: how its motion ended, with the counts of its instants.

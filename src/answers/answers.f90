@@ -5,20 +5,20 @@ module answers
    use set_analysis, only: set_analysis_t
    use rows, only: finished_row_t
    use extremes, only: extremes_t, new_extremes
-   use extreme_search, only: note_instant
+   use extreme_search, only: record_instant
    use dwells, only: dwell_t, find_dwells
-   use tolerance_contributions, only: shares_t, note_tolerances
+   use tolerance_contributions, only: shares_t, record_sensitivities
    use ranges, only: range_t
    use circuits, only: circuits_t
    use set_circuits, only: find_ranges, find_all_circuits
-   use proofs, only: proofs_t, note_proof
+   use proofs, only: proofs_t, record_proof
    implicit none
    private
-   public :: answers_t, new_answers, take_instant, finish_answers
+   public :: answers_t, new_answers, update_answers, finish_answers
 
    type :: answers_t
-      logical :: extremes_asked = .false.
-      logical :: shares_asked = .false.
+      logical :: wants_extremes = .false.
+      logical :: wants_contributions = .false.
       type(extremes_t) :: extremes
       type(dwell_t), allocatable :: dwells(:)       !< after the last instant
       type(shares_t) :: shares
@@ -38,37 +38,37 @@ contains
       type(answers_t), intent(out) :: answers
       integer :: c
 
-      answers%extremes_asked = any([(any(set%now%parts(c)%requests%extremes), c=1, set%now%count)])
-      answers%shares_asked = lists .and. set%now%largest_tolerance > 0.0_wp
+      answers%wants_extremes = any([(any(set%now%parts(c)%requests%extremes), c=1, set%now%count)])
+      answers%wants_contributions = lists .and. set%now%largest_tolerance > 0.0_wp
       if (set%now%assemblies) then
          if (all(set%assemblies%is_known)) answers%assemblies = sum([(size(set%assemblies(c)%list), c=1, &
             size(set%assemblies))])
       end if
       allocate (answers%ranges(0))
-      if (answers%extremes_asked) call new_extremes(set%now, answers%extremes)
+      if (answers%wants_extremes) call new_extremes(set%now, answers%extremes)
    end subroutine new_answers
 
    !> Takes instant number `k`, to which `set` has advanced, and what is asked for between it and those before. `due`:
    !> it is printed.
-   subroutine take_instant(answers, set, rows, k, due)
+   subroutine update_answers(answers, set, rows, k, due)
       type(answers_t), intent(inout) :: answers
       type(set_analysis_t), intent(inout) :: set
       type(finished_row_t), intent(in) :: rows(:)
       integer, intent(in) :: k               !< the number of the instant, from 0
       logical, intent(in) :: due             !< it is printed
 
-      if (set%now%proves) call note_proof(answers%proofs, set, k, due)
+      if (set%now%proves) call record_proof(answers%proofs, set, k, due)
       if (set%now%ranges .and. k == 0) call find_ranges(set, answers%ranges)
       if (set%now%circuits .and. set%now%variants == 0 .and. k == 0) call find_all_circuits(set, answers%circuits)
-      if (answers%shares_asked .and. due) call note_tolerances(answers%shares, set%now, rows)
-      if (answers%extremes_asked) call note_instant(answers%extremes, set, k)
-   end subroutine take_instant
+      if (answers%wants_contributions .and. due) call record_sensitivities(answers%shares, set%now, rows)
+      if (answers%wants_extremes) call record_instant(answers%extremes, set, k)
+   end subroutine update_answers
 
    !> Finds after the last instant what the whole run answers.
    subroutine finish_answers(answers, set)
       type(answers_t), intent(inout) :: answers
       type(set_analysis_t), intent(inout) :: set   !< after its last instant
 
-      if (answers%extremes_asked) call find_dwells(answers%extremes, set, answers%dwells)
+      if (answers%wants_extremes) call find_dwells(answers%extremes, set, answers%dwells)
    end subroutine finish_answers
 end module answers

@@ -17,7 +17,7 @@ module circuits
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
       of_size, of_gap, step_between, lies_between, same_place, same
    use circuit_trace, only: circuit_t, trace, least_step, end_closed
-   use ranges, only: held_at, put_estimate
+   use ranges, only: held_at, estimate_side
    implicit none
    private
    public :: circuits_t, circuit_branch_t, find_circuits, turns_of
@@ -246,7 +246,7 @@ contains
       ! A drive at rest leaves open which singular position that is.
       there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, point%value(0)), &
          merge(1.0_wp, found%curve%closure%length, found%curve%is_angle)]
-      call put_estimate(there, deck_position(found%curve, point%q))
+      call estimate_side(there, deck_position(found%curve, point%q))
       call make_analysis(a, there)
       q = new_motion(size(there%links))
       call advance(a, 0.0_wp, q)

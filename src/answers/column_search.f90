@@ -15,7 +15,7 @@ module column_search
    use set_analysis, only: set_analysis_t, rows_at
    use nodes, only: node_t, sample_t, beside_joint
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
-   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, note_velocity, note_interval, &
+   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, record_velocity, add_interval, &
       alike, never_better
    implicit none
    private
@@ -169,24 +169,24 @@ contains
          n = track%filled + 1
          if (.not. nodes(n)%is_known) then
             call search_waiting(extremes, set, place)
-            call take_node(extremes, place, nodes(n), .true.)
+            call record_node(extremes, place, nodes(n), .true.)
             ! Nothing is searched across it.
             track%filled = 0
             return
          end if
          track%filled = n
-         if (n == 1) call take_node(extremes, place, nodes(1), .true.)
+         if (n == 1) call record_node(extremes, place, nodes(1), .true.)
          if (n < 3) return
          if (track%turns) then
-            call take_node(extremes, place, nodes(1), .true.)
+            call record_node(extremes, place, nodes(1), .true.)
             if (is_pair(track, nodes(1), nodes(2), nodes(3))) then
                call search_part(extremes, set, place, nodes(1), nodes(3), nodes(2))
             else
                call search_part(extremes, set, place, nodes(1), nodes(2))
-               call take_node(extremes, place, nodes(2), .true.)
+               call record_node(extremes, place, nodes(2), .true.)
                call search_part(extremes, set, place, nodes(2), nodes(3))
             end if
-            call take_node(extremes, place, nodes(3), .true.)
+            call record_node(extremes, place, nodes(3), .true.)
          end if
          ! Into the room that there is: this is done at every instant.
          nodes(1)%t = nodes(3)%t
@@ -205,10 +205,10 @@ contains
 
       associate (track => extremes%tracks(part), nodes => extremes%tracks(part)%nodes)
          if (track%filled == 0) return
-         call take_node(extremes, part, nodes(1), .true.)
+         call record_node(extremes, part, nodes(1), .true.)
          if (track%filled == 1) return
          call search_part(extremes, set, part, nodes(1), nodes(2))
-         call take_node(extremes, part, nodes(2), .true.)
+         call record_node(extremes, part, nodes(2), .true.)
          nodes(1) = nodes(2)
          track%filled = 1
       end associate
@@ -304,7 +304,7 @@ contains
    end subroutine find_differences
 
    !> The values of `node` of mechanism `part` may be extremes; its velocities are the `next` along the run.
-   subroutine take_node(extremes, part, node, next)
+   subroutine record_node(extremes, part, node, next)
       type(extremes_t), intent(inout) :: extremes
       integer, intent(in) :: part
       type(node_t), intent(in) :: node
@@ -318,10 +318,10 @@ contains
             end do
             ! A length that is 0, since its points coincide, turns there.
             if (next .and. (sample%known == 2 .or. (sample%meets .and. sample%known == 0))) &
-               call note_velocity(one, sample)
+               call record_velocity(one, sample)
          end associate
       end do
-   end subroutine take_node
+   end subroutine record_node
 
    !> Searches between the nodes `before` and `after` of mechanism `part`, in halves where accelerations are not simple;
    !> `between`: a node in the middle.
@@ -343,9 +343,9 @@ contains
          if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(extremes%run, before%t))
          if (length <= shortest) then
             ! Near a joint there is nothing to be missed but the joint itself.
-            if (length > 0.5_wp*extremes%step) call note_interval(extremes%open, extremes%way, before%t, after%t, &
+            if (length > 0.5_wp*extremes%step) call add_interval(extremes%open, extremes%way, before%t, after%t, &
                shortest)
-            if (present(between)) call take_node(extremes, part, between, .true.)
+            if (present(between)) call record_node(extremes, part, between, .true.)
             return
          end if
          if (present(between)) then
@@ -354,7 +354,7 @@ contains
             call find_node(set, track, before%t + 0.5_wp*(after%t - before%t), middle, .false.)
          end if
          if (.not. middle%is_known) then
-            call note_interval(extremes%open, extremes%way, before%t, after%t, shortest)
+            call add_interval(extremes%open, extremes%way, before%t, after%t, shortest)
             return
          end if
          do i = 1, size(simple)
@@ -370,14 +370,14 @@ contains
                if (.not. simple(i) .and. length <= 2.0_wp*shortest) &
                   has_kink(i) = jumps(set, track%coordinates(i), before%samples(i), middle%samples(i), after%samples(i))
             end do
-            if (.not. all(simple .or. has_kink)) call note_interval(extremes%open, extremes%way, before%t, after%t, &
+            if (.not. all(simple .or. has_kink)) call add_interval(extremes%open, extremes%way, before%t, after%t, &
                shortest)
-            call take_node(extremes, part, middle, .false.)
+            call record_node(extremes, part, middle, .false.)
             call search_columns(extremes, set, part, before, middle, after, noise(3, :), has_kink)
          else
             track%halvings = track%halvings + 1
             call search_part(extremes, set, part, before, middle)
-            call take_node(extremes, part, middle, .false.)
+            call record_node(extremes, part, middle, .false.)
             call search_part(extremes, set, part, middle, after)
          end if
       end associate
@@ -455,7 +455,7 @@ contains
                .or. maxval(path%f(2)) - minval(path%f(2)) > 2.0_wp*max(alike*one%size_of(2), column%noise(2)))) then
                call find_turn(set, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
-               call take_found(2)
+               call accept_extreme(2)
             end if
             do order = merge(1, 2, has_kink(i)), 1, -1
                known = path
@@ -466,14 +466,14 @@ contains
                   if (last > 0) then
                      if (differ_in_sign(known(last)%f(order), known(k)%f(order))) then
                         call find_zero(set, column, order, 0.0_wp, known(last), known(k), found)
-                        call take_found(order - 1)
+                        call accept_extreme(order - 1)
                      end if
                   end if
                   last = k
                end do
             end do
             do k = 1, size(path)
-               call note_velocity(one, path(k))
+               call record_velocity(one, path(k))
             end do
          end associate
       end do
@@ -482,7 +482,7 @@ contains
 
       !> Derivative number `k` of the coordinate has an extreme where it is `found`: that is put in its place on the
       !> path.
-      subroutine take_found(k)
+      subroutine accept_extreme(k)
          integer, intent(in) :: k
          integer :: n
 
@@ -490,6 +490,6 @@ contains
          call offer_sample(extremes%tracks(part)%coordinates(i), k, found, .true., extremes%step)
          n = count((path%t - found%t)*(after%t - before%t) < 0.0_wp)
          path = [path(:n), found, path(n + 1:)]
-      end subroutine take_found
+      end subroutine accept_extreme
    end subroutine search_columns
 end module column_search

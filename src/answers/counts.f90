@@ -1,17 +1,17 @@
 !> How many instants of a run are solved, flagged and not proved, and why the first is flagged.
 module counts
    use kinds, only: wp
-   use motion, only: mark_none, diagnostic_t, diagnostic_limit
+   use motion, only: flag_none, diagnostic_t, diagnostic_limit
    use set_motion, only: is_flagged
    use set_analysis, only: set_analysis_t
    implicit none
    private
-   public :: counts_t, note_flag
+   public :: counts_t, record_flag
 
    type :: counts_t
       integer :: solved = 0, flagged = 0            !< instants
       integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
-      integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
+      integer :: mark = flag_none, singularity = 0  !< of the first flagged instant
       real(wp) :: t = 0.0_wp                        !< its time
       type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
    end type counts_t
@@ -19,7 +19,7 @@ module counts
 contains
 
    !> Takes the instant to which `set` has advanced: whether it is flagged, and of the first one why.
-   subroutine note_flag(counts, set)
+   subroutine record_flag(counts, set)
       type(counts_t), intent(inout) :: counts
       type(set_analysis_t), intent(in) :: set
       integer :: c, i
@@ -31,7 +31,7 @@ contains
       counts%flagged = counts%flagged + 1
       do c = 1, set%now%count
          associate (q => set%now%motions(c))
-            if (counts%mark == mark_none .and. q%mark /= mark_none) then
+            if (counts%mark == flag_none .and. q%mark /= flag_none) then
                counts%mark = q%mark
                counts%singularity = q%singularity
                counts%t = q%t
@@ -43,5 +43,5 @@ contains
             counts%limit%part = c
          end associate
       end do
-   end subroutine note_flag
+   end subroutine record_flag
 end module counts

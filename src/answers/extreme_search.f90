@@ -15,11 +15,11 @@ module extreme_search
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t, apart_from_first
    use nodes, only: node_t, extreme_t, times_between, beside_joint
-   use extremes, only: extremes_t, end_t, offer, badly_known, note_interval, settle_ratios
+   use extremes, only: extremes_t, end_t, offer, badly_known, add_interval, settle_ratios
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
    private
-   public :: note_instant, is_searched, search_instant
+   public :: record_instant, is_searched, search_instant
 
    !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
    !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
@@ -44,7 +44,7 @@ module extreme_search
 contains
 
    !> Takes instant number `k`, to which `set` has advanced. Only the instants of TIME count.
-   subroutine note_instant(extremes, set, k)
+   subroutine record_instant(extremes, set, k)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -56,7 +56,7 @@ contains
          call find_next(extremes, set, c, set%now%motions(c)%t, .false.)
          call search_instant(extremes, set, c, k, is_searched(extremes, set, c))
       end do
-   end subroutine note_instant
+   end subroutine record_instant
 
    !> Between the last instant of mechanism `part` and the one whose node is found something is searched for: a number
    !> may turn, or the step is divided.
@@ -104,7 +104,7 @@ contains
             track%closure = apart_from_first(set, part)
             call settle_ratios(track%coordinates, set%now%parts(part))
          end if
-         if (.not. known) call note_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
+         if (.not. known) call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
          track%last = end_t(t, .not. known, q%singularity == singular_change)
       end associate
 
@@ -129,7 +129,7 @@ contains
                call search_piece(times, from, to)
                from = end_t(ends(i), .true., .true.)
             end do
-            if (abs(t - from%t) > 0.0_wp) call note_interval(extremes%gaps, extremes%way, from%t, t, 0.0_wp)
+            if (abs(t - from%t) > 0.0_wp) call add_interval(extremes%gaps, extremes%way, from%t, t, 0.0_wp)
          end associate
       end subroutine search_step
 
@@ -173,15 +173,15 @@ contains
          if (from%is_open) then
             call search_waiting(extremes, set, part)
             extremes%tracks(part)%filled = 0
-            call take_limits(from, to%t, beside)
+            call accept_limits(from, to%t, beside)
             low = beside(places)
             call look_at(beside(1), .true.)
-            call note_interval(extremes%open, extremes%way, from%t, merge(beside(1), to%t, &
+            call add_interval(extremes%open, extremes%way, from%t, merge(beside(1), to%t, &
                extremes%tracks(part)%filled > 0), 0.0_wp)
             call look_at(low, .true.)
          end if
          if (to%is_open) then
-            call take_limits(to, from%t, beside)
+            call accept_limits(to, from%t, beside)
             high = beside(places)
          end if
          do i = 1, size(times)
@@ -194,12 +194,12 @@ contains
          call search_waiting(extremes, set, part)
          low = from%t
          if (extremes%tracks(part)%filled > 0) low = extremes%tracks(part)%nodes(1)%t
-         call note_interval(extremes%open, extremes%way, low, to%t, 0.0_wp)
+         call add_interval(extremes%open, extremes%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
       !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times
       !> `beside`: of those that were tried the ones from which the limits are known best.
-      subroutine take_limits(at, other, beside)
+      subroutine accept_limits(at, other, beside)
          type(end_t), intent(in) :: at
          real(wp), intent(in) :: other
          real(wp), intent(out) :: beside(places)
@@ -255,7 +255,7 @@ contains
                if (best(i, k)%exists) call offer(extremes%tracks(part)%coordinates(k), i, best(i, k), 0.0_wp)
             end do
          end do
-      end subroutine take_limits
+      end subroutine accept_limits
 
       !> Takes a node at the time `t`; `always`: with its errors.
       subroutine look_at(t, always)
@@ -267,7 +267,7 @@ contains
             if (track%nodes(track%filled + 1)%is_known) then
                call add_node(extremes, set, part)
             else
-               call note_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
+               call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
             end if
          end associate
       end subroutine look_at

@@ -9,22 +9,22 @@ module extremes
    use drives, only: joints_of, largest_frequency
    use points, only: row_t, is_fixed, column_of_ratio
    use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
-   use significance_check, only: safe_growth
+   use significance_check, only: max_amplification
    use independent, only: set_t
    use nodes, only: node_t, sample_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
    public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
-      rows_asked, new_extremes, offer, offer_sample, note_velocity, note_interval, is_cyclic, is_covered, &
+      requested_rows, new_extremes, offer, offer_sample, record_velocity, add_interval, is_cyclic, is_covered, &
       varies, strokes_t, strokes_of, settle_ratios, badly_known, alike, never_better
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
    !> errors below a table's last digit reach it.
-   real(wp), parameter :: alike = 10.0_wp*safe_growth*epsilon(1.0_wp)
+   real(wp), parameter :: alike = 10.0_wp*max_amplification*epsilon(1.0_wp)
    !> Derivatives that no estimate of errors is made for may be off by so much, in these units: with 1/p for the inverse
-   !> of a block's Jacobian, roundings grow by 1/p^2 < `safe_growth` in velocities and by 1/p^3 in accelerations.
-   real(wp), parameter :: unseen(0:2) = alike*[1.0_wp, 1.0_wp, sqrt(safe_growth)]
+   !> of a block's Jacobian, roundings grow by 1/p^2 < `max_amplification` in velocities and by 1/p^3 in accelerations.
+   real(wp), parameter :: unseen(0:2) = alike*[1.0_wp, 1.0_wp, sqrt(max_amplification)]
    !> A variation counts if it exceeds this many estimated errors; a smaller one has no digit in a table.
    real(wp), parameter :: above_errors = 10.0_wp
    !> A value with a larger error has no digits in a table.
@@ -117,7 +117,7 @@ module extremes
 contains
 
    !> The rows of `set` whose extremes are asked for, but those of the ground, which does not move.
-   pure function rows_asked(set) result(asked)
+   pure function requested_rows(set) result(asked)
       class(set_t), intent(in) :: set
       integer, allocatable :: asked(:)
       logical :: is_asked(size(set%rows))
@@ -129,11 +129,11 @@ contains
          end associate
       end do
       asked = pack([(i, i=1, size(is_asked))], is_asked)
-   end function rows_asked
+   end function requested_rows
 
    !> Makes the coordinate of a ratio: a search takes it as the velocity of a coordinate of which nothing is known, and
    !> the rate of the ratio as the acceleration.
-   pure subroutine take_ratio(coordinate, length, rate, degrees)
+   pure subroutine set_ratio(coordinate, length, rate, degrees)
       type(coordinate_t), intent(inout) :: coordinate   !< has the places of the numbers of its row
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
       real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
@@ -146,7 +146,7 @@ contains
       coordinate%size_of(0) = sqrt(huge(1.0_wp))
       coordinate%size_of(1) = usual_size(columns_of_rows(coordinate%columns(1))%dimension, 0, length, rate, degrees)
       coordinate%size_of(2) = coordinate%size_of(1)*rate
-   end subroutine take_ratio
+   end subroutine set_ratio
 
    !> Makes of the extremes of the rates of ratios those of their derivatives by the drive. Only of a drive with a
    !> constant rate they are at the same places; of another one they are not told.
@@ -191,7 +191,7 @@ contains
       logical :: sought(3)
       integer :: i, c, n, q, k
 
-      extremes%asked = rows_asked(set)
+      extremes%asked = requested_rows(set)
       extremes%run = set%t1 - set%t0
       extremes%way = sign(1.0_wp, extremes%run)
       extremes%step = abs(extremes%run)/real(set%steps, wp)
@@ -224,7 +224,7 @@ contains
                         one%is_measure = request%kind == request_measure
                         if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
                         one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
-                        if (is_ratio(one%form)) call take_ratio(one, length, rate, set%degrees)
+                        if (is_ratio(one%form)) call set_ratio(one, length, rate, set%degrees)
                         allocate (one%places(0), one%reversals(0))
                      end associate
                   end do
@@ -316,7 +316,7 @@ contains
 
    !> Takes the velocity of the `coordinate` in the next `sample` along the run: where its sign has changed the
    !> coordinate has reversed, at its slowest place between.
-   pure subroutine note_velocity(coordinate, sample)
+   pure subroutine record_velocity(coordinate, sample)
       type(coordinate_t), intent(inout) :: coordinate
       type(sample_t), intent(in) :: sample
       real(wp) :: speed
@@ -338,11 +338,11 @@ contains
       coordinate%last_sign = this
       coordinate%slowest = value_at_t(sample%t, sample%f(0))
       coordinate%speed = speed
-   end subroutine note_velocity
+   end subroutine record_velocity
 
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
    !> more than `apart_by` apart are one.
-   pure subroutine note_interval(list, way, from, to, apart_by)
+   pure subroutine add_interval(list, way, from, to, apart_by)
       type(uncovered_interval_t), allocatable, intent(inout) :: list(:)
       real(wp), intent(in) :: way, from, to, apart_by
       type(uncovered_interval_t), allocatable :: joined(:)
@@ -360,7 +360,7 @@ contains
       joined(n + 1) = uncovered_interval_t(way*low, way*high)
       joined(n + 2:) = list(size(list) - size(joined) + n + 2:)
       call move_alloc(joined, list)
-   end subroutine note_interval
+   end subroutine add_interval
 
    !> All of the motion is known, but for single instants.
    pure logical function is_covered(extremes)

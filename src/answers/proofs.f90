@@ -2,13 +2,13 @@
 !> are not proved; and the counts.
 module proofs
    use kinds, only: wp
-   use motion, only: mark_none
+   use motion, only: flag_none
    use following, only: branch_crossed
    use motion_proof, only: holds
    use set_analysis, only: set_analysis_t, set_bounds
    implicit none
    private
-   public :: proofs_t, reason_t, note_proof
+   public :: proofs_t, reason_t, record_proof
 
    !> Of a printed instant, and the steps to it from the last one.
    type :: line_t
@@ -23,7 +23,7 @@ module proofs
    type :: reason_t
       integer :: step = 0                        !< number of the instant
       integer :: part = 1                        !< the independent mechanism
-      integer :: mark = mark_none, singularity = 0   !< of its motion
+      integer :: mark = flag_none, singularity = 0   !< of its motion
       logical :: is_crossed = .false.            !< a change point may be in the step
       integer :: too_many = 0                    !< parts into which the step is divided, if these are too many
       integer, allocatable :: links(:)           !< whose position is not proved
@@ -43,7 +43,7 @@ module proofs
 contains
 
    !> Takes what is proved of instant number `k`, to which `set` has advanced; `due`: it is printed.
-   subroutine note_proof(proofs, set, k, due)
+   subroutine record_proof(proofs, set, k, due)
       type(proofs_t), intent(inout) :: proofs
       type(set_analysis_t), intent(in) :: set
       integer, intent(in) :: k               !< the number of the instant, from 0
@@ -77,5 +77,5 @@ contains
          line%bounds = set_bounds(set)
          proofs%count = proofs%count + 1
       end associate
-   end subroutine note_proof
+   end subroutine record_proof
 end module proofs

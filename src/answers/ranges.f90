@@ -15,7 +15,7 @@ module ranges
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
-   public :: range_t, find_range, held_at, put_estimate, low, high
+   public :: range_t, find_range, held_at, estimate_side, low, high
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -52,7 +52,7 @@ contains
 
       range%drive = drive
       d = held_at(m, start%t)
-      call put_estimate(d, start%position)
+      call estimate_side(d, start%position)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
@@ -82,7 +82,7 @@ contains
    end function held_at
 
    !> The links of `m` are expected at this `position` (3, links), in the deck's unit and from its origin.
-   subroutine put_estimate(m, position)
+   subroutine estimate_side(m, position)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: position(:, :)
       integer :: i
@@ -90,7 +90,7 @@ contains
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) m%links(i)%position = position(:, i) + [plane_origin(m), 0.0_wp]
       end do
-   end subroutine put_estimate
+   end subroutine estimate_side
 
    !> Follows the motion of `turned`, in which all drives rest, by the value of its drive to its end on one `side`: at
    !> the parameter t the drive has gone `rate` times t.

@@ -7,7 +7,7 @@ module tolerance_contributions
    use rows, only: finished_row_t, word_worst
    implicit none
    private
-   public :: shares_t, share_t, note_tolerances, alike
+   public :: shares_t, share_t, record_sensitivities, alike
 
    !> A quantity at the instant at which its root of squares is greatest so far.
    type :: share_t
@@ -26,7 +26,7 @@ module tolerance_contributions
 contains
 
    !> Takes the sensitivities of an instant: of each quantity the instant with the largest root of squares is kept.
-   subroutine note_tolerances(shares, motions, rows)
+   subroutine record_sensitivities(shares, motions, rows)
       type(shares_t), intent(inout) :: shares
       type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)
@@ -57,5 +57,5 @@ contains
             shares%jams(:n, c) = shares%jams(:n, c) .or. motions%sensitivities(c)%jams
          end associate
       end do
-   end subroutine note_tolerances
+   end subroutine record_sensitivities
 end module tolerance_contributions

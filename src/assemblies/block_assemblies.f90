@@ -103,7 +103,7 @@ contains
          associate (e => ends%list(k))
             if (all([(abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= level*maxval(abs(e%x))*maxval(abs(e%y)), &
                j=1, size(f%more, 3))])) then
-               call take_end(e)
+               call add_position(e)
             else
                call leave_out(found%partial)
             end if
@@ -115,7 +115,7 @@ contains
    contains
 
       !> Adds the position of block `i` at the solution `ending` to those `found`, if it is real and new.
-      subroutine take_end(ending)
+      subroutine add_position(ending)
          type(path_end_t), intent(in) :: ending
          type(convergence_t) :: c
          real(wp) :: place(size(f%turns)), residual
@@ -155,7 +155,7 @@ contains
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
          found%rates_open = [found%rates_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))
-      end subroutine take_end
+      end subroutine add_position
 
       !> The last of the finite ends belongs to those that `number` counts.
       subroutine leave_out(number)

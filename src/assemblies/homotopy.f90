@@ -204,7 +204,7 @@ contains
       t = near_end
       z = start
       do k = 0, max_tenths
-         call put_end(z)
+         call record_end(z)
          finite(k) = finiteness(bilinear, ending%x, ending%y)
          last = z
          call follow(paths, t, 0.0_dp, to_end, last, is_done)
@@ -218,10 +218,10 @@ contains
       end do
       ending%is_singular = .not. is_done .or. k >= max_tenths
       if (is_done) then
-         call put_end(last)
+         call record_end(last)
          is_infinite = finiteness(bilinear, ending%x, ending%y) <= infinity_level
       else
-         call put_end(z)
+         call record_end(z)
          k = min(k, max_tenths)
          is_infinite = falls(finite(:k))
          is_done = is_infinite .or. k >= least_tenths
@@ -230,12 +230,12 @@ contains
    contains
 
       !> Puts the homogeneous coordinates of `root` into `ending`.
-      subroutine put_end(root)
+      subroutine record_end(root)
          complex(dp), intent(in) :: root(:)
 
          ending%x = [1.0_dp + sum(chart(:, 1)*root(:paths%p)), root(:paths%p)]
          ending%y = [1.0_dp + sum(chart(:, 2)*root(paths%p + 1:)), root(paths%p + 1:)]
-      end subroutine put_end
+      end subroutine record_end
    end subroutine follow_to_end
 
    !> The values, one for each tenth of t, end at infinity, as a power of t. Few of them show it only if they fall fast.

@@ -299,7 +299,7 @@ contains
       start = guess%values(own_unknowns(b, i))
       call set_values(b, i, start, s)
       call solve_block(b, x, i, .true., w, s, found%ending)
-      if (is_solved(found%ending)) call note_position(values_of(b, i, s), found%ending%singular)
+      if (is_solved(found%ending)) call record_position(values_of(b, i, s), found%ending%singular)
       if (b%list(i)%direct) return
       if (size(found%distance) > 0) then
          found%beyond = separation_of(b, x, i, s) - angles
@@ -309,7 +309,7 @@ contains
 
       call find_positions(b, x, i, w, s, max_group, guess%starts(i)%paths, every)
       do k = 1, size(every%sign_of)
-         call note_position(every%x(:, k), every%sign_of(k) == 0)
+         call record_position(every%x(:, k), every%sign_of(k) == 0)
       end do
       ! There is one more if that of Newton's method is none of them.
       found%are_all = .not. (every%moves .or. every%is_wide .or. every%failed > 0) &
@@ -320,7 +320,7 @@ contains
       least = values_of(b, i, s)
       call solve_block(b, x, i, .true., w, s, found%ending)
       if (is_solved(found%ending)) then
-         call note_position(values_of(b, i, s), found%ending%singular)
+         call record_position(values_of(b, i, s), found%ending%singular)
          if (size(found%distance) == 0) then
             found%ending%ended = ended_elsewhere
             found%ending%open%pair = without_length(x, s, cylinders_here)
@@ -336,7 +336,7 @@ contains
       !> within half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that
       !> with the greater first value: rounding shall not choose. A position with a cylinder whose length is not above 0
       !> is none.
-      subroutine note_position(unknowns, is_singular)
+      subroutine record_position(unknowns, is_singular)
          real(wp), intent(in) :: unknowns(:)
          logical, intent(in) :: is_singular
          real(wp) :: y(size(unknowns)), square(2, size(places, 2)), distance
@@ -366,7 +366,7 @@ contains
          end do
          found%x = reshape([found%x(:, :k - 1), y, found%x(:, k:)], [size(y), size(found%x, 2) + 1])
          found%distance = [found%distance(:k - 1), distance, found%distance(k:)]
-      end subroutine note_position
+      end subroutine record_position
    end subroutine find_candidates
 
    !> (cylinders) The block after which the length of each cylinder is known; 0: ground alone.

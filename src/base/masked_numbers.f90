@@ -2,11 +2,12 @@
 module masked_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use number_format, only: nearest_whole, tens, put_fixed, put_with_point, put_minus, put_whole, put_exponent, &
+   use number_format, only: nearest_whole, tens, write_fixed, write_with_point, write_minus, write_whole, &
+      write_exponent, &
       numeral_length, max_decimals
    implicit none
    private
-   public :: put_known, unknown_digit, nothing_known, errors_a_digit
+   public :: write_known, unknown_digit, nothing_known, errors_a_digit
 
    !> In the place of a digit that is not known.
    character(1), parameter :: unknown_digit = '?'
@@ -19,8 +20,8 @@ module masked_numbers
 contains
 
    !> Writes a number with a limited number of known digits. It is rounded to its last known digit, and digits after
-   !> that one are masked. A number whose digits are all known is written as `put_fixed` writes it.
-   pure subroutine put_known(value, error, decimals, power, text, masked)
+   !> that one are masked. A number whose digits are all known is written as `write_fixed` writes it.
+   pure subroutine write_known(value, error, decimals, power, text, masked)
       real(wp), intent(in) :: value          !< the number, in any unit
       real(wp), intent(in) :: error          !< its estimated error, in the unit of `value`; 0: all digits are known
       integer, intent(in) :: decimals        !< decimals at most, 0 or more
@@ -35,7 +36,7 @@ contains
       is_known = error <= 0.0_wp
       if (.not. is_known) is_known = error*errors_a_digit <= 10.0_wp**(power - decimals)
       if (is_known) then
-         call put_fixed(value, decimals, power, text)
+         call write_fixed(value, decimals, power, text)
          return
       else if (.not. error <= 1.0e-6_wp*nothing_known) then
          text = repeat(' ', numeral_length - 1)//unknown_digit
@@ -47,12 +48,12 @@ contains
          text = masked_text(n, last - power, decimals, value < 0.0_wp .and. n > 0)
          if (text == '') then
             ! All that there is room for is known.
-            call put_fixed(value, decimals, power, text)
+            call write_fixed(value, decimals, power, text)
             return
          end if
       end if
       if (present(masked)) masked = .true.
-   end subroutine put_known
+   end subroutine write_known
 
    !> Gives n 10**last as text; digits worth less than 10**last are masked. The text has an exponent if fixed point has
    !> no room for it, and is blank if there is no room for a masked digit.
@@ -72,23 +73,23 @@ contains
          unknown = last + d
          if (n >= tens(max(0, room - unknown)) .and. n > 0) cycle
          text = ''
-         call put_with_point(n*tens(min(unknown, merge(room, 0, n > 0))), d, text, first)
+         call write_with_point(n*tens(min(unknown, merge(room, 0, n > 0))), d, text, first)
          do i = numeral_length, first, -1
             if (unknown == 0) exit
             if (text(i:i) == '.') cycle
             text(i:i) = unknown_digit
             unknown = unknown - 1
          end do
-         if (negative) call put_minus(d, first, text)
+         if (negative) call write_minus(d, first, text)
          return
       end do
       text = ''
       if (last <= 0) return
 
       ! With an exponent, as a number whose digits are known would have it; here n > 0.
-      call put_whole(n, digits, first)
+      call write_whole(n, digits, first)
       known = len(digits) - first + 1
-      call put_exponent(last + known - 1, shown)
+      call write_exponent(last + known - 1, shown)
       digits = digits(first:known + first - 1)//repeat(unknown_digit, len(digits) - known)
       do d = numeral_length - 8, known, -1
          line = merge('-', ' ', negative)//digits(1:1)//'.'//digits(2:d + 1)//'E'//shown

@@ -4,7 +4,7 @@ module name_table
    use kinds, only: label_length
    implicit none
    private
-   public :: name_table_t, put_name, find_name
+   public :: name_table_t, store_name, find_name
 
    !> Slots of an empty table. At most every second slot is filled.
    integer, parameter :: first_size = 64
@@ -24,7 +24,7 @@ module name_table
 contains
 
    !> Enters a name with its number. If the table has the name already, nothing changes.
-   subroutine put_name(table, name, number, earlier)
+   subroutine store_name(table, name, number, earlier)
       type(name_table_t), intent(inout) :: table
       character(*), intent(in) :: name       !< at most `label_length` characters count
       integer, intent(in) :: number          !< of the name, above 0
@@ -44,7 +44,7 @@ contains
       do i = 1, size(old)
          if (old(i)%number /= 0) table%slots(slot_of(table%slots, old(i)%name)) = old(i)
       end do
-   end subroutine put_name
+   end subroutine store_name
 
    !> Gives the number of a name, or 0 if the table does not have the name.
    pure integer function find_name(table, name) result(number)

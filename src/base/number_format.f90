@@ -13,8 +13,8 @@ module number_format
    use kinds, only: wp
    implicit none
    private
-   public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length
-   public :: put_whole, put_with_point, put_minus, put_exponent, max_decimals
+   public :: fixed, write_fixed, whole, rounded, full, write_full, numeral_length, full_length
+   public :: write_whole, write_with_point, write_minus, write_exponent, max_decimals
    public :: nearest_whole, tens
 
    !> Digits that tell any two reals apart: 17 for 53 bits.
@@ -78,11 +78,11 @@ contains
       integer, intent(in) :: power           !< of ten, by which the number is divided
       character(numeral_length) :: text
 
-      call put_fixed(value, decimals, power, text)
+      call write_fixed(value, decimals, power, text)
    end function fixed
 
    !> Writes value 10**-power into a text, with the digits of `fixed`. For the many numbers of a table this is faster.
-   pure subroutine put_fixed(value, decimals, power, text)
+   pure subroutine write_fixed(value, decimals, power, text)
       real(wp), intent(in) :: value          !< the number, in any unit
       integer, intent(in) :: decimals        !< decimals at most, 0 or more
       integer, intent(in) :: power           !< of ten, by which the number is divided
@@ -98,15 +98,15 @@ contains
          n = nearest_whole(abs(value), d - power)
          if (n >= tens(room)) cycle
          text = ''
-         call put_with_point(n, d, text, first)
-         if (negative .and. n > 0) call put_minus(d, first, text)
+         call write_with_point(n, d, text, first)
+         if (negative .and. n > 0) call write_minus(d, first, text)
          return
       end do
       text = with_exponent(value, power)
-   end subroutine put_fixed
+   end subroutine write_fixed
 
    !> Writes the minus sign of a number. The sign takes the place of the zero before the point if nothing else is free.
-   pure subroutine put_minus(decimals, first, text)
+   pure subroutine write_minus(decimals, first, text)
       integer, intent(in) :: decimals        !< decimals of the number
       integer, intent(in) :: first           !< the character at which the number begins
       character(numeral_length), intent(inout) :: text   !< the number without its sign, right-adjusted
@@ -115,7 +115,7 @@ contains
       place = first - 1
       if (decimals == max_decimals) place = first
       text(place:place) = '-'
-   end subroutine put_minus
+   end subroutine write_minus
 
    !> Gives value 10**-power with an exponent and as many digits as there is room for, right-adjusted.
    pure function with_exponent(value, power) result(text)
@@ -133,24 +133,24 @@ contains
       do d = numeral_length - 8, 0, -1
          call first_digits(abs(value), d + 1, n, e)
          ! The power changes the exponent only: no digit is lost.
-         call put_exponent(e - power, shown)
+         call write_exponent(e - power, shown)
          last = numeral_length - 1 - len_trim(shown)
          if (d + merge(3, 2, value < 0.0_wp) < last) exit
       end do
       text(last + 1:) = 'E'//shown
       text(:last) = ''
-      call put_with_point(n, d, text(:last), first)
+      call write_with_point(n, d, text(:last), first)
       if (value < 0.0_wp) text(first - 1:first - 1) = '-'
    end function with_exponent
 
    !> Writes an exponent with its sign and three digits, or four if it needs them.
-   pure subroutine put_exponent(exponent, text)
+   pure subroutine write_exponent(exponent, text)
       integer, intent(in) :: exponent        !< between -9999 and 9999
       character(table_exponent_length), intent(out) :: text   !< left-adjusted
 
       text = merge('-', '+', exponent < 0)
-      call put_digits(int(abs(exponent), int64), text(2:merge(4, table_exponent_length, abs(exponent) < 1000)))
-   end subroutine put_exponent
+      call write_digits(int(abs(exponent), int64), text(2:merge(4, table_exponent_length, abs(exponent) < 1000)))
+   end subroutine write_exponent
 
    !> Gives a number in a few digits, rounded and without blanks. It is in fixed point if its size is 0 or lies in the
    !> range of fixed point; otherwise it has an exponent.
@@ -183,7 +183,7 @@ contains
       character(12) :: field
       integer :: first
 
-      call put_whole(abs(int(i, int64)), field, first)
+      call write_whole(abs(int(i, int64)), field, first)
       if (i < 0) then
          first = first - 1
          field(first:first) = '-'
@@ -198,12 +198,12 @@ contains
       character(full_length) :: field
       integer :: length
 
-      call put_full(value, field, length)
+      call write_full(value, field, length)
       text = field(:length)
    end function full
 
    !> Writes a number with as many digits as it needs to read back unchanged. This is faster than `full`.
-   pure subroutine put_full(value, text, length)
+   pure subroutine write_full(value, text, length)
       real(wp), intent(in) :: value          !< any number; it may be infinite or NaN
       character(full_length), intent(out) :: text   !< left-adjusted
       integer, intent(out) :: length         !< characters of the number
@@ -225,12 +225,12 @@ contains
          if (sure) then
             ! No pair of digits of one half needs the result of the other: that is faster.
             upper = n/tens(8)
-            call put_digits(upper, number(3:10), first)
-            call put_digits(n - tens(8)*upper, number(11:18))
+            call write_digits(upper, number(3:10), first)
+            call write_digits(n - tens(8)*upper, number(11:18))
             number(1:1) = achar(48 + int(first))
             number(2:2) = '.'
             number(significant + 2:significant + 3) = merge('E-', 'E+', e < 0)
-            call put_digits(int(abs(e), int64), number(significant + 4:))
+            call write_digits(int(abs(e), int64), number(significant + 4:))
             return
          end if
       end associate
@@ -239,10 +239,10 @@ contains
       write (text, form) value
       text = adjustl(text)
       length = len_trim(text)
-   end subroutine put_full
+   end subroutine write_full
 
    !> Writes the last digits of a whole number, as many as the text is long.
-   pure subroutine put_digits(n, text, before)
+   pure subroutine write_digits(n, text, before)
       integer(int64), intent(in) :: n        !< 0 or more
       character(*), intent(inout) :: text    !< becomes digits only, with leading zeros
       integer(int64), intent(out), optional :: before   !< the number that the digits before those make
@@ -262,11 +262,11 @@ contains
          rest = next
       end if
       if (present(before)) before = rest
-   end subroutine put_digits
+   end subroutine write_digits
 
    !> Writes all digits of `n` >= 0 at the end of `text`, from its character `first` on.
    !> Writes all digits of a whole number at the end of a text. The characters before them stay.
-   pure subroutine put_whole(n, text, first)
+   pure subroutine write_whole(n, text, first)
       integer(int64), intent(in) :: n        !< 0 or more
       character(*), intent(inout) :: text    !< as long as the digits at least
       integer, intent(out) :: first          !< the character at which the digits begin
@@ -280,11 +280,11 @@ contains
          if (rest == 0) return
       end do
       text(first:first) = achar(48 + int(rest))
-   end subroutine put_whole
+   end subroutine write_whole
 
    !> Writes n 10**-decimals at the end of a text, with at least one digit before the point. The characters before it
    !> stay.
-   pure subroutine put_with_point(n, decimals, text, first)
+   pure subroutine write_with_point(n, decimals, text, first)
       integer(int64), intent(in) :: n        !< 0 or more
       integer, intent(in) :: decimals        !< how many, 0 to 10
       character(*), intent(inout) :: text    !< as long as the number at least
@@ -293,10 +293,10 @@ contains
       integer(int64) :: rest
 
       point = len(text) - decimals
-      call put_digits(n, text(point + 1:), rest)
+      call write_digits(n, text(point + 1:), rest)
       text(point:point) = '.'
-      call put_whole(rest, text(:point - 1), first)
-   end subroutine put_with_point
+      call write_whole(rest, text(:point - 1), first)
+   end subroutine write_with_point
 
    !> Gives the whole number nearest to value 10**k, the even one of two equally near. If the number has more than 12
    !> digits, the result is 10**12 at least.

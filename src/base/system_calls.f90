@@ -261,7 +261,7 @@ contains
       integer :: i
 
       do i = 1, size(watched)
-         before = signal(watched(i), c_funloc(note_signal))
+         before = signal(watched(i), c_funloc(record_signal))
          if (address(before) == ignored) before = signal(watched(i), before)
       end do
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
@@ -271,7 +271,7 @@ contains
 
    !> Handles a signal by what is safe at any moment: keeps its number, and restores the usual actions unless all are
    !> noted.
-   subroutine note_signal(number) bind(c)
+   subroutine record_signal(number) bind(c)
       integer(c_int), value :: number   !< of the signal
       type(c_funptr) :: before
       integer :: i
@@ -281,7 +281,7 @@ contains
       do i = 1, size(watched)
          before = signal(watched(i), c_null_funptr)
       end do
-   end subroutine note_signal
+   end subroutine record_signal
 
    !> Gives the number of the signal that was noted; 0: none.
    integer function signal_received()

@@ -12,7 +12,7 @@ module block_diagnostics
    use block_state, only: state_t, largest_drive_rate
    use predictor, only: history_t
    use initial_estimate, only: guess_t
-   use block_motion, only: mark_singular_links
+   use block_motion, only: flag_singular_links
    use singular_position, only: block_singularity
    implicit none
    private
@@ -251,7 +251,7 @@ contains
       type(diagnostic_t) :: r
       integer :: kinds(size(b%list)), i
 
-      call mark_singular_links(b, x, s, all_at_once, found)
+      call flag_singular_links(b, x, s, all_at_once, found)
       kinds = judge_blocks(b, x, s)
       found%singularity = max(singular_unclear, maxval(kinds))
       if (maxval(kinds) < 0) return

@@ -9,21 +9,21 @@ module block_motion
    use drive_path, only: drive_path_t
    use convergence, only: convergence_t
    use blocks, only: blocks_t, geometry_t, moving_blocks, blocks_that_give, largest_known, own_unknowns
-   use block_numbers, only: put_numbers
+   use block_numbers, only: evaluate_geometry
    use block_state, only: state_t, unknown_t, set_drive_values
    use block_solver, only: workspace_t, solve_block, solve_explicit
-   use link_motion, only: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+   use link_motion, only: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, &
       missing_all
    implicit none
    private
-   public :: take_requests, put_geometry, put_path, get_ratios, mark_singular_links, get_driven_links, &
+   public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, flag_singular_links, get_driven_links, &
       slide_unit
 
 contains
 
    !> Finds which of the blocks `b` of `m`, with the geometry `x`, are solved for its requests, and the chain of the
    !> links that these ask for.
-   subroutine take_requests(m, b, x)
+   subroutine select_solved_blocks(m, b, x)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(inout) :: b
       type(geometry_t), intent(inout) :: x
@@ -53,25 +53,25 @@ contains
          b%joint = reshape([m%points(pack(m%pairs%point_i, revolute))%link, &
             m%points(pack(m%pairs%point_j, revolute))%link], [2, count(revolute)], order=[2, 1])
       end associate
-   end subroutine take_requests
+   end subroutine select_solved_blocks
 
    !> Gives the geometry `x` and the `path` the numbers of `m`, a mechanism with the links, points, pairs and drives of
-   !> that of which the blocks `b` were made. `fits`: see `put_numbers`.
-   subroutine put_geometry(m, b, x, path, fits)
+   !> that of which the blocks `b` were made. `fits`: see `evaluate_geometry`.
+   subroutine assign_geometry(m, b, x, path, fits)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(inout) :: x
       type(drive_path_t), intent(inout) :: path
-      logical, intent(out) :: fits   !< the structure serves for them, see `put_numbers`
+      logical, intent(out) :: fits   !< the structure serves for them, see `evaluate_geometry`
 
-      call put_numbers(m, b, x, fits)
+      call evaluate_geometry(m, b, x, fits)
       x%tolerance = m%tolerance
-      call put_chain(m, b, x, x%chain)
-      call put_path(m, b, x, path)
-   end subroutine put_geometry
+      call assign_chain(m, b, x, x%chain)
+      call assign_path(m, b, x, path)
+   end subroutine assign_geometry
 
    !> Puts the laws of the drives of `m`, and the units of their values, into its `path`.
-   subroutine put_path(m, b, x, path)
+   subroutine assign_path(m, b, x, path)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -85,7 +85,7 @@ contains
             if (drive > 0) path%unit(drive) = path%unit(drive)/x%rows(i)%unit
          end associate
       end do
-   end subroutine put_path
+   end subroutine assign_path
 
    !> Finds the motions found%by in which one of the drives by which ratios are asked for has the rate 1 and the others
    !> rest, at the position `here`: as the motion itself, with other values of drives.
@@ -119,11 +119,11 @@ contains
                   call solve_block(b, x, i, .false., w, s, c)
                   has_rates = .not. (c%singular .or. c%rates_open)
                end if
-               if (.not. has_rates) call note_block(b, i, missing_rates, missing)
+               if (.not. has_rates) call record_missing(b, i, missing_rates, missing)
             end associate
          end do
          call move_links(x%chain, x%chain%wanted, s, unit, finite)
-         call mark_links(x%chain, missing, unit)
+         call flag_links(x%chain, missing, unit)
          associate (by => found%by(b%ratios(j)))
             by%velocity = unit%velocity
             by%acceleration = unit%acceleration
@@ -135,7 +135,7 @@ contains
 
    !> Tells which links have velocities in the motion `found` last, where not all have. `all_at_once`: with one Jacobian
    !> for all equations, which has no inverse; then those alone that drives move.
-   subroutine mark_singular_links(b, x, s, all_at_once, found)
+   subroutine flag_singular_links(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
@@ -146,12 +146,12 @@ contains
       missing = missing_nothing
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
-            call note_block(b, i, merge(missing_rates, missing_nothing, s%is_singular(i) .or. &
+            call record_missing(b, i, merge(missing_rates, missing_nothing, s%is_singular(i) .or. &
                (all_at_once .and. .not. b%list(i)%direct)), missing)
          end associate
       end do
-      call mark_links(x%chain, missing, found)
-   end subroutine mark_singular_links
+      call flag_links(x%chain, missing, found)
+   end subroutine flag_singular_links
 
    !> Finds what is certain at `t`, where there is no position: the motion of the links that drives alone move. `found`
    !> has its mark already.
@@ -172,7 +172,7 @@ contains
       missing = missing_nothing
       do k = 1, size(b%needed)
          i = b%needed(k)
-         call note_block(b, i, merge(missing_nothing, missing_all, b%list(i)%direct), missing)
+         call record_missing(b, i, merge(missing_nothing, missing_all, b%list(i)%direct), missing)
          if (.not. b%list(i)%direct) cycle
          if (missing(b%unknown(b%list(i)%first)) == missing_nothing) &
             call solve_explicit(b, x, i, s)
@@ -181,20 +181,20 @@ contains
       do k = 1, b%unknowns
          if (missing(k) > missing_nothing) driven%u(k) = unknown_t()
       end do
-      call mark_links(x%chain, missing, found)
+      call flag_links(x%chain, missing, found)
       call move_links(x%chain, x%chain%wanted, driven, found, finite)
       if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%direct, s, w, found)
    end subroutine get_driven_links
 
    !> Notes what is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on
    !> lacks.
-   subroutine note_block(b, i, own, missing)
+   subroutine record_missing(b, i, own, missing)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, own   !< number of the block; what its own equations leave out
       integer, intent(inout) :: missing(0:)   !< (0:unknowns) of missing_nothing, ...
 
       missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
-   end subroutine note_block
+   end subroutine record_missing
 
    !> The unit of unknown number `k` in the deck's, if it is a slide; 1 of an angle.
    pure real(wp) function slide_unit(b, x, k) result(unit)

@@ -16,7 +16,7 @@ module block_solver
       entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use convergence, only: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, &
-      ended_limit, ended_diverged, ended_inconsistent, is_solved, note_closure_error, inconsistent_level, contradict
+      ended_limit, ended_diverged, ended_inconsistent, is_solved, record_closure_error, inconsistent_level, contradict
    use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
       slide_t, known_to, loop_projection
@@ -40,7 +40,7 @@ module block_solver
    !> Kantorovich ratio from which the inverse is estimated. The ratio takes 1/(least pivot) for |J^-1|: with more than
    !> two unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
    !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
-   real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_growth = 0.1_wp
+   real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_amplification = 0.1_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
@@ -342,7 +342,7 @@ contains
          end do
       end if
       if (rows > n .and. moves) then
-         if (iterations > 0) call note_closure_error(b, x, i, w%gap, c)
+         if (iterations > 0) call record_closure_error(b, x, i, w%gap, c)
          if (any(ended == [ended_converged, ended_stalled]) .and. &
             c%open%value > max(inconsistent_level*c%open%level, x%closing)) ended = ended_inconsistent
       end if
@@ -399,7 +399,7 @@ contains
             bound = 1.0_wp/max(least, min_inverse)
             ratio = change*numbers%lipschitz*bound
             if (.not. suspicious .and. ratio <= small_kantorovich_ratio .and. &
-               excursion*numbers%lipschitz*bound**2*real(n, wp)**4 <= small_growth) return
+               excursion*numbers%lipschitz*bound**2*real(n, wp)**4 <= small_amplification) return
          end if
          if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
          bound = min(inverse, 1.0_wp/min_inverse)

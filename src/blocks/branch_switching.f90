@@ -22,7 +22,7 @@ module branch_switching
    use block_diagnostics, only: links_of
    implicit none
    private
-   public :: pass, take_other_branch, is_short_and_right, branch_requests_t, new_branch_requests, decide
+   public :: pass, switch_branch, is_short_and_right, branch_requests_t, new_branch_requests, decide
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
@@ -137,7 +137,7 @@ contains
             r%t = time_at_part(path, before, t, h%jacobian(i)%pivot/(h%jacobian(i)%pivot + s%jacobian(i)%pivot))
             if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(b, x, i), before, t, r%t, r%other)
-               if (r%other) call take_other_branch(b, x, h, w, s, i, c, passed)
+               if (r%other) call switch_branch(b, x, h, w, s, i, c, passed)
             end if
             if (.not. passed) r%kind = diagnostic_dead_end
             list = [list, r]
@@ -177,7 +177,7 @@ contains
    !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`:
    !> how that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are
    !> no guide to what comes.
-   subroutine take_other_branch(b, x, h, w, s, i, c, found)
+   subroutine switch_branch(b, x, h, w, s, i, c, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(history_t), intent(inout) :: h
@@ -209,5 +209,5 @@ contains
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
          .and. c%open%value <= max_closure_part*abs(curvature)*away**2
       h%filled = 0
-   end subroutine take_other_branch
+   end subroutine switch_branch
 end module branch_switching

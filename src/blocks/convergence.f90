@@ -7,7 +7,7 @@ module convergence
    private
    public :: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
-      note_closure_error, contradict
+      record_closure_error, contradict
 
    !> The largest change of a predicted position over the distance of the next root, by the Jacobian and its Lipschitz
    !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
@@ -101,7 +101,7 @@ contains
 
    !> The pair or drive that is open the most by the residuals `r`: a revolute pair by the distance of its points. Of
    !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
-   pure subroutine note_closure_error(b, x, i, r, c)
+   pure subroutine record_closure_error(b, x, i, r, c)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
@@ -130,7 +130,7 @@ contains
             c%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
-   end subroutine note_closure_error
+   end subroutine record_closure_error
 
    !> Tells whether equations that leave `open` of their rates contradict one another.
    pure logical function contradict(open, size_of, coarse, closing)

@@ -18,7 +18,7 @@ module initial_estimate
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
-   public :: guess_t, choice_t, put_guess, estimated_values, estimated_directions
+   public :: guess_t, choice_t, assign_guess, estimated_values, estimated_directions
 
    !> Angles from the places are taken where their largest closure error is below `closed_part` of the characteristic
    !> length and below `better_part` of that of the deck's angles, and where an angle differs by more than `far_angle`
@@ -51,7 +51,7 @@ module initial_estimate
 contains
 
    !> Makes `guess` that of `m`; paths that it has from a mechanism of the same structure stay.
-   subroutine put_guess(m, b, x, guess)
+   subroutine assign_guess(m, b, x, guess)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -66,7 +66,7 @@ contains
       end do
       ! As a section: a function's result would bring its own lower bound.
       guess%values(:) = estimated_values(m, b, x)
-   end subroutine put_guess
+   end subroutine assign_guess
 
    !> Values (0:unknowns) of angles and slides of `m`, in the units of its blocks `b`.
    function estimated_values(m, b, x) result(value)

@@ -4,7 +4,7 @@
 module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, work_length, solve_first
-   use convergence, only: convergence_t, note_closure_error
+   use convergence, only: convergence_t, record_closure_error
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense
@@ -79,7 +79,7 @@ contains
 
       if (size(best) == 0 .or. size(best) > max_unknowns) return
       best = values_of(b, i, s)
-      call note_closure_error(b, x, i, residual_of(b, x, i, best, s), c)
+      call record_closure_error(b, x, i, residual_of(b, x, i, best, s), c)
       if (size(r) > size(best)) return
 
       c%open%value = 0.0_wp
@@ -97,7 +97,7 @@ contains
             call descend(b, x, i, merge(1.0_wp, stiff(m), own(1:)), s)
          end do
          r = residual_of(b, x, i, values_of(b, i, s), s)
-         call note_closure_error(b, x, i, r, one)
+         call record_closure_error(b, x, i, r, one)
          if (any(.not. own(1:) .and. .not. stiff(2)*abs(r) <= one%open%value)) cycle
          if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
       end do

@@ -7,13 +7,13 @@ module link_motion
    use kinds, only: wp
    use plane_vectors, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
+   use motion, only: motion_t, flag_none, flag_not_converged, flag_singular
    use spanning_tree, only: place_on_tree
    use blocks, only: blocks_t, geometry_t, chain_t, chain_link_t
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: new_chain, put_chain, move_links, mark_links, missing_nothing, missing_rates, &
+   public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, &
       missing_all
 
    !> What is missing of an unknown, the worst last: nothing, its derivatives, its value as well.
@@ -45,11 +45,11 @@ contains
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground)
       allocate (c%links(size(links)), c%ground_position(3, size(c%ground)))
       c%links%link = links
-      call put_chain(m, b, x, c)
+      call assign_chain(m, b, x, c)
    end function new_chain
 
    !> Gives the chain `c` the numbers of `m`, whose blocks are `b`.
-   subroutine put_chain(m, b, x, c)
+   subroutine assign_chain(m, b, x, c)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -80,7 +80,7 @@ contains
       end do
       c%origin = x%equations%axes%origin
       c%length = x%equations%length
-   end subroutine put_chain
+   end subroutine assign_chain
 
    !> Puts the motion of the first `n` links of the chain `c` at state `s` into `q`. `finite`: no number is out of
    !> range; false may be said of sums alone.
@@ -165,7 +165,7 @@ contains
 
    !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
    !> unknowns by which it and its parents move; links that are not wanted count as known.
-   subroutine mark_links(c, missing, found)
+   subroutine flag_links(c, missing, found)
       type(chain_t), intent(in) :: c
       integer, intent(in) :: missing(0:)
       type(motion_t), intent(inout) :: found
@@ -180,8 +180,8 @@ contains
       end do
       associate (links => of_link(1:))
          found%link_known = merge(2, merge(0, -1, links == missing_rates), links == missing_nothing)
-         found%link_mark = merge(mark_none, merge(mark_singular, mark_not_converged, links == missing_rates), &
+         found%link_mark = merge(flag_none, merge(flag_singular, flag_not_converged, links == missing_rates), &
             links == missing_nothing)
       end associate
-   end subroutine mark_links
+   end subroutine flag_links
 end module link_motion

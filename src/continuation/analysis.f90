@@ -31,15 +31,15 @@ module analysis
    use mechanism, only: mechanism_t, method_newton, drive_slide
    use structure, only: structure_t
    use drive_path, only: moving_drives, time_beside, drive_at
-   use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
+   use motion, only: motion_t, forget_links, known_of, flag_none, flag_not_converged, flag_singular, flag_overflow, &
+      flag_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end, &
-      diagnostic_stroke, mark_stroke
+      diagnostic_stroke, flag_stroke
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, &
       ended_elsewhere
    use block_state, only: set_drive_values
    use block_solver, only: solve_blocks
-   use block_motion, only: put_geometry, get_ratios, get_driven_links
+   use block_motion, only: assign_geometry, get_ratios, get_driven_links
    use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
@@ -48,7 +48,7 @@ module analysis
    use cylinders, only: cylinder_length, is_out_of_stroke
    use following, only: lengths_followed, following_t, step_record_t, step_blocked, step_creeps, step_there, &
       step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
-      go_on_from, go_back, place_t, note_place, return_to, passed_of, limit_t, limit_before, branch_t, &
+      go_on_from, go_back, place_t, record_checkpoint, return_to, passed_of, limit_t, limit_before, branch_t, &
       certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
@@ -112,7 +112,7 @@ contains
       a = analysis_t()
       call move_memory(kept, a%following_t)
       is_done = a%blocks%solvable
-      if (is_done) call put_geometry(m, a%blocks, a%geometry, a%path, is_done)
+      if (is_done) call assign_geometry(m, a%blocks, a%geometry, a%path, is_done)
       if (is_done) call begin_motion(a%following_t, m)
    end subroutine renew_analysis
 
@@ -253,7 +253,7 @@ contains
       is_found = .false.
       if (.not. a%follows .or. limit_before(a%limits, t) > 0) return
       if (.not. a%is_left) then
-         call note_place(a%following_t, a%left)
+         call record_checkpoint(a%following_t, a%left)
          a%left_iterations = a%iterations
          a%is_left = .true.
       end if
@@ -261,7 +261,7 @@ contains
       if (step%ending >= step_there .and. (step%ending == step_rests &
          .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
          found%t = t
-         call take_motion(a, found)
+         call accept_motion(a, found)
          is_found = found%known == 2 .and. is_solved(a%convergence)
       end if
       if (.not. is_found) then
@@ -300,7 +300,7 @@ contains
             if (size(list) > 0) step%ending = step_stands
          end if
       end if
-      call take_motion(a, found)
+      call accept_motion(a, found)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       crosses = passed_of(step) > 0
       if (crosses) call add_diagnostics(step%passed, found)
@@ -309,7 +309,7 @@ contains
          crosses = crosses .or. any(list%other)
       end if
       if (a%has_missed) then
-         call cut(found, -1, mark_not_converged)
+         call cut(found, -1, flag_not_converged)
          call get_driven_links(a%blocks, a%geometry, a%path, found%t, a%work, a%state, found)
          a%branch = branch_t()
          ! Of instants in a row this is said once.
@@ -390,12 +390,12 @@ contains
       inconsistent = a%convergence%ended == ended_inconsistent
       if (inconsistent) then
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
-         call cut(found, -1, mark_inconsistent)
+         call cut(found, -1, flag_inconsistent)
          ! Not where the last substep has ended, but at the instant itself.
          if (step%tries > 1) call measure_closure_error(a%following_t, t)
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
-         call cut(found, -1, mark_not_converged)
+         call cut(found, -1, flag_not_converged)
          call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
       end if
 
@@ -441,7 +441,7 @@ contains
       type(motion_t), intent(inout) :: found
       integer :: side
 
-      call cut(found, -1, mark_not_converged)
+      call cut(found, -1, flag_not_converged)
       call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
@@ -470,7 +470,7 @@ contains
    !> Takes the motion at found%t, where the blocks have found one, by the method, and flags what does not exist. If all
    !> drives rest, a motion that has come to a singular position rests there, too. A first position says less: undriven
    !> links may move.
-   subroutine take_motion(a, found)
+   subroutine accept_motion(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
       integer :: link, last
@@ -487,17 +487,17 @@ contains
       if (size(a%blocks%ratios) > 0) call get_ratios(a%blocks, a%geometry, &
          a%path, a%state%is_singular, a%state, a%work, found)
 
-      call cut(found, 2, mark_none)
+      call cut(found, 2, flag_none)
       found%rests = a%convergence%singular .and. a%follows
       if (found%rests) found%rests = .not. any(moving_drives(a%path, found%t, found%t))
       if (found%rests) then
          found%velocity = 0.0_wp
          found%acceleration = 0.0_wp
       else
-         if (a%convergence%singular) call cut(found, 0, mark_singular)
-         if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)
+         if (a%convergence%singular) call cut(found, 0, flag_singular)
+         if (a%convergence%rates_open) call cut(found, 0, flag_inconsistent)
          ! Where rates contradict one another no link has any.
-         if (found%mark == mark_singular) call get_link_flags(a%blocks, a%geometry, a%state, allocated(a%dense), found)
+         if (found%mark == flag_singular) call get_link_flags(a%blocks, a%geometry, a%state, allocated(a%dense), found)
       end if
       if (finite) return
       ! What is out of the range of the real kind is not known.
@@ -512,11 +512,11 @@ contains
             allocate (found%link_mark(size(found%position, 2)), source=found%mark)
          end if
          found%link_known(link) = last
-         found%link_mark(link) = mark_overflow
-         if (last < found%known) found%mark = mark_overflow
+         found%link_mark(link) = flag_overflow
+         if (last < found%known) found%mark = flag_overflow
          found%known = min(found%known, last)
       end do
-   end subroutine take_motion
+   end subroutine accept_motion
 
    !> Keeps only derivatives up to number `known` of all links; `mark` says why.
    pure subroutine cut(found, known, mark)
@@ -524,7 +524,7 @@ contains
       integer, intent(in) :: known, mark
 
       call forget_links(found)
-      if (found%mark /= mark_none) then
+      if (found%mark /= flag_none) then
          found%singularity = singular_unclear
          found%singular_links = diagnostic_t()
       end if
@@ -587,12 +587,12 @@ contains
       type(motion_t), intent(inout) :: found
       integer :: k
 
-      if (found%known < 2 .or. found%mark /= mark_none) return
+      if (found%known < 2 .or. found%mark /= flag_none) return
       do k = 1, size(a%geometry%cylinders)
          associate (one => a%geometry%cylinders(k), length => cylinder_length(a%geometry%cylinders(k), &
                found%position(:, a%geometry%cylinders(k)%i), found%position(:, a%geometry%cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
-            found%mark = mark_stroke
+            found%mark = flag_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)
          end associate
       end do

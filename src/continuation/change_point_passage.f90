@@ -6,10 +6,10 @@ module change_point_passage
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
    use predictor, only: begin_at
-   use branch_switching, only: take_other_branch, decide
+   use branch_switching, only: switch_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use following, only: following_t, step_record_t, step_there, step_stands, place_t, solve_at, continue_to, &
-      go_on_from, go_back, follow_from, note_place, return_to, passed_of
+      go_on_from, go_back, follow_from, record_checkpoint, return_to, passed_of
    implicit none
    private
    public :: leave, go_by_value
@@ -48,7 +48,7 @@ contains
 
       beside = time_beside(f%path, last, t, leaving)
       f%branch_requests%stood_until = beside
-      call note_place(f, before)
+      call record_checkpoint(f, before)
       call continue_to(f, beside, step)
       if (step%ending < step_there) call go_by_value(f, beside, step, at_end)
       if (step%ending < step_there .or. passed_of(step) > 0 .or. f%convergence%singular) then
@@ -60,7 +60,7 @@ contains
          call decide(f%branch_requests, blocks(k), links_of(f%blocks, f%geometry, blocks(k)), last, beside, last, &
             list(k)%other)
          if (.not. list(k)%other) cycle
-         call take_other_branch(f%blocks, f%geometry, f%history, f%work, f%state, blocks(k), f%convergence, found)
+         call switch_branch(f%blocks, f%geometry, f%history, f%work, f%state, blocks(k), f%convergence, found)
          if (found) then
             call go_on_from(f, beside)
          else
@@ -91,12 +91,12 @@ contains
          merge(t, f%t, step%ending >= step_there), [f%drives%first, f%drives%last])
       if (drive == 0) return
 
-      call note_place(f, reached)
+      call record_checkpoint(f, reached)
       call go_back(f, step)
-      call note_place(f, before)
+      call record_checkpoint(f, before)
       call go_from_turn_to_turn(f, drive, t, passed, arrived, stands)
       deallocate (f%path%leg)
-      if (arrived .and. .not. stands) call take_up(f, t, arrived)
+      if (arrived .and. .not. stands) call resume_motion(f, t, arrived)
       f%place = before
       if (.not. arrived) then
          ! As the step has ended: that tells where the limit is, and which.
@@ -125,7 +125,7 @@ contains
       type(place_t) :: first
       real(wp) :: turn, next
 
-      call note_place(f, first)
+      call record_checkpoint(f, first)
       turn = f%t
       next = next_turn(f%path, drive, turn, t)
       associate (value => value_at(f%path, drive, turn))
@@ -152,7 +152,7 @@ contains
 
          now = drive_at(f%path, drive, f%t)
          call lead(f%path, drive, f%t, (value - now(1))/(to - turn), [turn, to])
-         call take_up(f, turn, arrived)
+         call resume_motion(f, turn, arrived)
          stands = .false.
          if (.not. arrived) return
          call continue_to(f, to, one)
@@ -164,7 +164,7 @@ contains
 
    !> The motion that is followed becomes that at the parameter `p`, where the drives have the same values. `passed`: so
    !> it does.
-   subroutine take_up(f, p, passed)
+   subroutine resume_motion(f, p, passed)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: p
       logical, intent(out) :: passed
@@ -174,5 +174,5 @@ contains
       call solve_at(f, p)
       passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
       if (passed) call go_on_from(f, p)
-   end subroutine take_up
+   end subroutine resume_motion
 end module change_point_passage

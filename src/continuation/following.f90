@@ -18,8 +18,8 @@ module following
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, new_state, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_blocks
-   use block_motion, only: take_requests, put_path
-   use initial_estimate, only: guess_t, put_guess
+   use block_motion, only: select_solved_blocks, assign_path
+   use initial_estimate, only: guess_t, assign_guess
    use predictor, only: history_t, new_history, predict, compare, accept, recall, largest_change
    use link_motion, only: move_links
    use cylinders, only: cylinders_of, cylinder_motion, stays_within
@@ -28,7 +28,7 @@ module following
    implicit none
    private
    public :: following_t, step_record_t, begin_following, move_memory, begin_motion, solve_at, measure_closure_error, &
-      continue_to, go_on_from, go_back, follow_from, place_t, note_place, return_to, passed_of
+      continue_to, go_on_from, go_back, follow_from, place_t, record_checkpoint, return_to, passed_of
    public :: step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -141,11 +141,11 @@ contains
          call move_alloc(own%blocks, f%blocks)
          call move_alloc(own%geometry, f%geometry)
       end if
-      call take_requests(m, f%blocks, f%geometry)
+      call select_solved_blocks(m, f%blocks, f%geometry)
       if (f%blocks%solvable) then
          f%work = new_workspace(f%blocks)
          allocate (f%guess)
-         call put_path(m, f%blocks, f%geometry, f%path)
+         call assign_path(m, f%blocks, f%geometry, f%path)
       end if
       call begin_motion(f, m)
    end subroutine begin_following
@@ -169,7 +169,7 @@ contains
       f%geometry%cylinders = cylinders_of(m, .false.)
       depends = .true.
       if (f%blocks%solvable) then
-         call put_guess(m, f%blocks, f%geometry, f%guess)
+         call assign_guess(m, f%blocks, f%geometry, f%guess)
          f%state = new_state(f%blocks, size(m%drives))
          f%history = new_history(f%blocks, m%predictor)
          ! Some unknown is searched for from its value before.
@@ -254,7 +254,7 @@ contains
             step%ending = step_there
             return
          end if
-         if (step%tries == 1) call note_place(f, f%place)
+         if (step%tries == 1) call record_checkpoint(f, f%place)
          grows = accepted .and. (longer < max_longer .or. .not. f%convergence%singular)
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
@@ -438,7 +438,7 @@ contains
    end subroutine follow_from
 
    !> Notes in `p` where the motion is followed.
-   subroutine note_place(f, p)
+   subroutine record_checkpoint(f, p)
       type(following_t), intent(in) :: f
       type(place_t), intent(inout) :: p
 
@@ -447,7 +447,7 @@ contains
       p%state = f%state
       p%branch_requests = f%branch_requests
       p%convergence = f%convergence
-   end subroutine note_place
+   end subroutine record_checkpoint
 
    !> Follows the motion again from the place `p`, to which a later step can go back.
    subroutine return_to(f, p)
@@ -459,7 +459,7 @@ contains
       f%state = p%state
       f%branch_requests = p%branch_requests
       f%convergence = p%convergence
-      call note_place(f, f%place)
+      call record_checkpoint(f, f%place)
    end subroutine return_to
 
    !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.

@@ -6,10 +6,10 @@ module card_sets
    use cards
    use card_reader, only: parsed_card_t, find_long_label
    use input_errors
-   use card_numbers, only: angle_in_radians
-   use drawn_values, only: take_drawn, coincides
-   use drawn_lengths, only: put_axes, same_place_tolerance
-   use name_table, only: name_table_t, put_name, find_name
+   use parameters, only: angle_in_radians
+   use drawn_values, only: complete_from_drawing, coincides
+   use drawn_lengths, only: set_axes, same_place_tolerance
+   use name_table, only: name_table_t, store_name, find_name
    use names, only: subject_name
    use number_format, only: whole
    implicit none
@@ -127,7 +127,7 @@ contains
          if (any(set%cards(set%named(request_link)%card(n))%label(label_b:) /= '')) call find_bar()
       end do
       associate (m => set%mechanism)
-         call put_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
+         call set_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
       end associate
 
       slots = 0
@@ -250,7 +250,7 @@ contains
             call add_card_error(set, pair_one_link, k, label_c)
          else if (any(set%mechanism%pairs(n)%drawn) .or. set%mechanism%pairs(n)%pin > 0) then
             ! It has those numbers as drawn. The points of a cylinder must lie apart.
-            call take_drawn(set%mechanism, n)
+            call complete_from_drawing(set%mechanism, n)
             if (set%mechanism%pairs(n)%drawn(1) .and. coincides(set%mechanism, set%mechanism%pairs(n))) &
                call add_card_error(set, cylinder_points, k, label_b)
          end if
@@ -299,7 +299,7 @@ contains
       associate (name => set%cards(k)%label(name_field(set%cards(k)%form)))
          if (set%cards(k)%form /= form_joint) set%cards(k)%subject = n
          if (name == '') return
-         call put_name(set%named(kind)%table, name, n, earlier)
+         call store_name(set%named(kind)%table, name, n, earlier)
          if (earlier > 0) earlier = set%named(kind)%card(earlier)
          if (kind == request_measure .and. earlier == 0) then
             earlier = find_name(set%named(request_pair)%table, name)

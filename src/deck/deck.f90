@@ -4,10 +4,10 @@ module deck
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, build_bodies
-   use deck_variants, only: variation_t, build_tolerances, build_variation, take_values
+   use deck_variants, only: variation_t, build_tolerances, build_variation, apply_variant
    use cards
    use deck_measures, only: build_measures, check_measures
-   use deck_drives, only: build_drives, put_turns, check_terms
+   use deck_drives, only: build_drives, set_turns, check_terms
    use deck_lengths, only: build_lengths
    use deck_options, only: build_options, build_requests, build_branches, check_centres
    use deck_remarks, only: check_unused, check_angles, check_drives, check_drawing, build_echo
@@ -103,7 +103,7 @@ contains
          end if
          if (is_passed_over(card)) cycle
          last = card
-         call take_card(card, progress)
+         call add_card(card, progress)
       end do
       if (last%number == 0) then
          call add_error(progress%set%errors, deck_empty, card_t(), card_fields(card_name), 1, '')
@@ -115,7 +115,7 @@ contains
    end subroutine read_cards
 
    !> Adds a card to the open set; an END card closes the set.
-   subroutine take_card(card, progress)
+   subroutine add_card(card, progress)
       type(card_t), intent(in) :: card
       type(reading_t), intent(inout) :: progress
       type(parsed_card_t), allocatable :: larger(:)
@@ -155,7 +155,7 @@ contains
             call close_set(progress)
          end if
       end associate
-   end subroutine take_card
+   end subroutine add_card
 
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
    !> for unused parts and for numbers that look wrong: a card with an error could make others look so.
@@ -202,7 +202,7 @@ contains
       call build_bodies(set)
       call build_measures(set)
       call build_drives(set)
-      call put_turns(set)
+      call set_turns(set)
       call build_lengths(set)
       call build_requests(set)
       call build_branches(set)
@@ -218,7 +218,7 @@ contains
       logical :: is_done
 
       message = ''
-      call take_values(variation, n, m, is_done)
+      call apply_variant(variation, n, m, is_done)
       if (is_done) return
       call build_mechanism(variation%set)
       if (variation%set%errors%count == 0) then

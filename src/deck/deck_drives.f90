@@ -7,7 +7,7 @@ module deck_drives
    use mechanism
    use scales, only: is_length
    use card_reader, only: parsed_card_t, refuse_field
-   use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
+   use parameters, only: angle_in_radians, minute_in, turns_a_minute
    use splines, only: new_spline
    use drives, only: drive_motion
    use drawn_values, only: drawn_drive
@@ -16,7 +16,7 @@ module deck_drives
    use input_errors
    implicit none
    private
-   public :: build_drives, put_turns, check_terms
+   public :: build_drives, set_turns, check_terms
 
 contains
 
@@ -184,7 +184,7 @@ contains
 
    !> Puts the last instant of a TIME card that counts turns: the drive of constant rate has then turned so often. Other
    !> drives must rest; a drive of another kind or law is an error.
-   subroutine put_turns(set)
+   subroutine set_turns(set)
       type(card_set_t), intent(inout) :: set
       integer :: k
 
@@ -202,7 +202,7 @@ contains
          end if
          call add_card_error(set, turns_drive, findloc(set%cards(:set%count)%form, form_time, dim=1), label_b)
       end associate
-   end subroutine put_turns
+   end subroutine set_turns
 
    !> Tells whether a card gives a term of the drive above it.
    pure logical function is_term(card)

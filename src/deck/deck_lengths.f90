@@ -4,7 +4,7 @@ module deck_lengths
    use kinds, only: wp
    use mechanism
    use card_sets, only: card_set_t, joint_points, look_up, add_card_error
-   use drawn_lengths, only: reach_t, body_of, is_movable, mark_hole, put_lengths, same_place_tolerance
+   use drawn_lengths, only: reach_t, body_of, is_movable, join_hole, apply_lengths, same_place_tolerance
    use cards
    use input_errors
    use deck_remarks, only: drawn_text
@@ -40,7 +40,7 @@ contains
       associate (m => set%mechanism)
          do i = 1, n
             do j = 1, 2
-               call mark_hole(m, lengths(i)%point(j))
+               call join_hole(m, lengths(i)%point(j))
                lengths(i)%hole(j) = m%points(lengths(i)%point(j))%hole
             end do
          end do
@@ -61,7 +61,7 @@ contains
          end do
          if (set%errors%count > 0) return
 
-         call put_lengths(m, reached)
+         call apply_lengths(m, reached)
          do i = 1, n
             if (reached(i)%has_no_side) then
                call add_card_error(set, merge(length_side, length_place, reached(i)%has_two), card_of(i), label_b)

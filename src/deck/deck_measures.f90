@@ -4,7 +4,7 @@ module deck_measures
    use kinds, only: wp
    use mechanism
    use card_sets, only: card_set_t, define_name, look_up, look_up_kinds, add_card_error
-   use card_numbers, only: angle_in_radians
+   use parameters, only: angle_in_radians
    use cards
    use input_errors
    use name_table, only: find_name
@@ -39,15 +39,15 @@ contains
          associate (k => set%named(request_measure)%card(n))
             select case (set%mechanism%measures(n)%kind)
             case (measure_distance, measure_line)
-               call take_subjects([request_point, request_point])
+               call find_subjects([request_point, request_point])
                if (set%cards(k)%label(label_a) == set%cards(k)%label(label_b) .and. set%cards(k)%valid) &
                   call add_card_error(set, point_twice, k, label_b)
             case (measure_xi, measure_eta)
-               call take_subjects([request_point, request_link])
+               call find_subjects([request_point, request_link])
             case (measure_angle)
-               call take_sides()
+               call find_sides()
             case default
-               call take_summands()
+               call find_summands()
             end select
          end associate
       end do
@@ -59,7 +59,7 @@ contains
    contains
 
       !> Finds the two subjects of measure number `n`.
-      subroutine take_subjects(kinds)
+      subroutine find_subjects(kinds)
          integer, intent(in) :: kinds(2)     !< request_link, ...
          type(subject_t) :: subjects(2)
          integer :: i
@@ -69,10 +69,10 @@ contains
             call look_up(set, kinds(i), set%named(request_measure)%card(n), label_a + i - 1, subjects(i)%number)
          end do
          set%mechanism%measures(n)%subjects = subjects
-      end subroutine take_subjects
+      end subroutine find_subjects
 
       !> Finds the lines or links of ANGLE, measure number `n`.
-      subroutine take_sides()
+      subroutine find_sides()
          type(subject_t) :: sides(2)
          integer :: i, k, link
 
@@ -98,10 +98,10 @@ contains
             measure%subjects = sides
             measure%continues = any(sides%kind == request_measure)
          end associate
-      end subroutine take_sides
+      end subroutine find_sides
 
       !> Finds the summands of SUM, measure number `n`, one or two, as its card names them.
-      subroutine take_summands()
+      subroutine find_summands()
          type(subject_t) :: summands(2)
          integer :: i, k
 
@@ -115,7 +115,7 @@ contains
             set%mechanism%measures(n)%subjects = pack(summands, summands%number > 0)
             if (card%label(label_b) == '' .and. card%given(2)) call add_card_error(set, field_unused, k, real_2)
          end associate
-      end subroutine take_summands
+      end subroutine find_summands
 
       !> Puts the terms of other sums in their place in a sum. A sum that contains itself, or adds a length and an
       !> angle, is an error.

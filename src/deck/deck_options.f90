@@ -2,13 +2,13 @@
 !> and AT, and the requests PRINT, COLUMN, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, PROVE, BRANCH, POLE and CURVE.
 module deck_options
    use kinds, only: wp
-   use card_numbers, only: angle_in_radians
+   use parameters, only: angle_in_radians
    use mechanism
    use card_sets, only: card_set_t, has_drawing, look_up, look_up_kinds, match_word, add_card_error
    use columns, only: columns_of_rows, form_of, quantity_of, forms
    use cards
    use input_errors
-   use name_table, only: name_table_t, put_name, find_name
+   use name_table, only: name_table_t, store_name, find_name
    use number_format, only: whole
    use independent, only: part_of_links
    implicit none
@@ -235,7 +235,7 @@ contains
          one%kind = place - 1
 
          associate (name => set%cards(k)%label(label_b))
-            call put_name(seen(one%kind), name, k, earlier)
+            call store_name(seen(one%kind), name, k, earlier)
             if (earlier > 0) then
                call add_card_error(set, repeated, k, label_a, whole(set%cards(earlier)%card%number))
             else if (one%kind == 0 .and. name /= '') then

@@ -5,7 +5,7 @@ module deck_remarks
    use kinds, only: wp, label_length
    use plane_vectors, only: pi, in_degrees, wrap_angle
    use mechanism
-   use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
+   use parameters, only: unit_t, parameter_unit, parameter_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_place
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
    use names, only: drive_name, listed
@@ -94,7 +94,7 @@ contains
    !> and a whole number or a half. The numbers of ADD cards are not read from drawings, and do not count.
    subroutine check_angles(set)
       type(card_set_t), intent(inout) :: set
-      type(card_number_t) :: number
+      type(parameter_t) :: number
       type(unit_t) :: unit
       integer :: k, i
 
@@ -106,7 +106,7 @@ contains
             end associate
             number = number_on_card(set, k, i)
             if (number%kind == 0 .or. set%cards(k)%form == form_add) cycle
-            unit = number_unit(set%mechanism, number)
+            unit = parameter_unit(set%mechanism, number)
             if (unit%name /= 'RAD') cycle
             call add_card_remark(set, remark_radians, k, label_c + i)
             return
@@ -237,7 +237,7 @@ contains
       !> blank.
       subroutine add_card(k)
          integer, intent(in) :: k            !< number of the card
-         type(card_number_t) :: number
+         type(parameter_t) :: number
          type(unit_t) :: unit
          character(label_length) :: labels(3)
          character(real_width) :: text
@@ -256,8 +256,8 @@ contains
             do i = 1, reals_of(card%form, card%label(label_a))
                number = number_on_card(set, k, i)
                if (is_as_drawn(m, number)) then
-                  x = number_value(m, number)
-                  unit = number_unit(m, number)
+                  x = parameter_value(m, number)
+                  unit = parameter_unit(m, number)
                   if (unit%name == 'DEG') x = in_degrees(x)
                   text = drawn_text(x)//' '//drawn_marks(merge(2, 1, m%polish))
                else if (card%given(i)) then
@@ -275,27 +275,27 @@ contains
                      text = drawn_text(x)//' '//bar_marks(merge(2, 1, m%polish))
                   end if
                end if
-               call put_real(i, text)
+               call append_real(i, text)
             end do
 
             if (card%form == form_length) then
                place = drawn_place(m, m%lengths(card%subject)%point(2))
                do i = 1, 2
-                  call put_real(i + 1, axis_words(i)//drawn_text(place(i)))
+                  call append_real(i + 1, axis_words(i)//drawn_text(place(i)))
                end do
             end if
          end associate
       end subroutine add_card
 
       !> Puts a text into the field of a real in the last line.
-      subroutine put_real(i, text)
+      subroutine append_real(i, text)
          integer, intent(in) :: i            !< number of the real, 1 to 3
          character(*), intent(in) :: text    !< at most `real_width` characters
          integer :: column
 
          column = real_column + (i - 1)*real_width
          set%mechanism%echo(n)(column:column + real_width - 1) = text
-      end subroutine put_real
+      end subroutine append_real
 
       !> Adds the line of the defaults of a form, if no card of the set has this form.
       subroutine add_default(form, labels)

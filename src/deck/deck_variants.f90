@@ -6,9 +6,9 @@ module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
    use mechanism
-   use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit, put_number
+   use parameters, only: unit_t, takes_tolerance, parameter_name, parameter_unit, set_parameter
    use card_sets, only: card_set_t, begin_mechanism, has_drawing, look_up, add_card_error, real_text
-   use drawn_lengths, only: mark_hole
+   use drawn_lengths, only: join_hole
    use card_reader, only: parsed_card_t
    use cards
    use input_errors
@@ -16,7 +16,7 @@ module deck_variants
    use number_format, only: whole
    implicit none
    private
-   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, take_values, &
+   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, apply_variant, &
       values_of_variant
 
    !> The largest number of variants of a set.
@@ -30,8 +30,9 @@ module deck_variants
    !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
       form_drive, form_add, form_rise, form_time, form_length]
-   integer, parameter :: number_kinds(*) = [number_link, number_link, number_point, number_pair, number_pair, &
-      number_joint, number_drive, number_drive, number_drive, number_time, number_length]
+   integer, parameter :: parameter_kinds(*) = [parameter_link, parameter_link, parameter_point, parameter_pair, &
+      parameter_pair, &
+      parameter_joint, parameter_drive, parameter_drive, parameter_drive, parameter_time, parameter_length]
 
    !> A number that varies.
    type :: varied_t
@@ -44,7 +45,7 @@ module deck_variants
       character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
       character(2*label_length) :: word = ''        !< the word of the card for the number: XI, AMPLITUDE
       character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
-      type(card_number_t) :: number                 !< its address in the mechanism
+      type(parameter_t) :: number                 !< its address in the mechanism
       real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`
       !> Nothing else in the mechanism depends on it, and no value of it is an error: a variant needs no new building.
       logical :: stands_alone = .false.
@@ -67,7 +68,7 @@ contains
    subroutine build_tolerances(set)
       type(card_set_t), intent(inout) :: set
       type(tolerance_t) :: list(6*set%number_of(form_toler))
-      type(card_number_t) :: number
+      type(parameter_t) :: number
       integer, allocatable :: holes(:)              ! the points of a JOINT card whose holes have tolerances
       integer :: k, i, j, n, form
 
@@ -98,7 +99,8 @@ contains
                   else if (card%real(i) > 0.0_wp .and. set%errors%count == 0) then
                      if (size(holes) == 0) call add_tolerance(number, card%real(i), real_text(card, i))
                      do j = 1, size(holes)
-                        call add_tolerance(card_number_t(number_hole, holes(j), 0, i), card%real(i), real_text(card, i))
+                        call add_tolerance(parameter_t(parameter_hole, holes(j), 0, i), card%real(i), real_text(card, &
+                           i))
                      end do
                   end if
                end do
@@ -139,7 +141,7 @@ contains
          holes = set%cards(above)%subject + [0, 1]
          if (any(set%mechanism%points(holes)%link == 0)) return
          do i = 1, 2
-            call mark_hole(set%mechanism, holes(i))
+            call join_hole(set%mechanism, holes(i))
          end do
          if (set%cards(k)%label(label_a) == both_word) then
             deallocate (holes)
@@ -154,15 +156,15 @@ contains
 
       !> Adds the tolerance of a number.
       subroutine add_tolerance(number, size_of, text)
-         type(card_number_t), intent(in) :: number
+         type(parameter_t), intent(in) :: number
          real(wp), intent(in) :: size_of     !< in the unit of the number on its card
          character(*), intent(in) :: text    !< the tolerance as it stands on its card
          type(unit_t) :: unit
 
          n = n + 1
-         unit = number_unit(set%mechanism, number)
-         list(n) = tolerance_t(card_number_t=number, size_of=size_of, text=text, &
-            name=number_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, unit_name=unit%name)
+         unit = parameter_unit(set%mechanism, number)
+         list(n) = tolerance_t(parameter_t=number, size_of=size_of, text=text, &
+            name=parameter_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, unit_name=unit%name)
       end subroutine add_tolerance
    end subroutine build_tolerances
 
@@ -171,19 +173,19 @@ contains
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k               !< number of the card, of any form
       integer, intent(in) :: i               !< number of the real, 1 to 3
-      type(card_number_t) :: number
+      type(parameter_t) :: number
       integer :: n
 
       associate (card => set%cards(k))
-         number = card_number_t(0, card%subject, card%term, i)
+         number = parameter_t(0, card%subject, card%term, i)
          n = findloc(varied_forms, card%form, dim=1)
          if (n == 0 .or. i > reals_of(card%form, card%label(label_a))) return
-         if (number_kinds(n) == number_drive .and. card%subject == 0) return
-         number%kind = number_kinds(n)
+         if (parameter_kinds(n) == parameter_drive .and. card%subject == 0) return
+         number%kind = parameter_kinds(n)
          if (card%term == 0) return
          if (.not. term_kinds(set%mechanism%drives(card%subject)%terms(card%term)%kind)%has_rows) return
          number%place = card%row
-         if (i == 1) number%kind = number_knot
+         if (i == 1) number%kind = parameter_knot
       end associate
    end function number_on_card
 
@@ -199,7 +201,7 @@ contains
       if (set%number_of(form_vary) == 0) return
       allocate (variation%numbers(0), variation%counts(0))
       do i = 1, set%count
-         if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card()
+         if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call read_variation()
       end do
 
       ! Numbers that are tied must have equal counts; the grid must not be too large.
@@ -227,7 +229,7 @@ contains
    contains
 
       !> Takes the VARY card `i`: a number that varies, or more values of the list above it.
-      subroutine take_card()
+      subroutine read_variation()
          type(unit_t) :: unit
          character(:), allocatable :: name
          logical :: continues
@@ -255,11 +257,11 @@ contains
             if (n == 0) then
                if (set%errors%count == 0) then
                   one%number = number_on_card(set, one%card, one%place)
-                  name = number_name(set%mechanism, one%number)
+                  name = parameter_name(set%mechanism, one%number)
                   border = index(name, ' ', back=.true.)
                   one%owner = name(:border - 1)
                   one%word = name(border + 1:)
-                  unit = number_unit(set%mechanism, one%number)
+                  unit = parameter_unit(set%mechanism, one%number)
                   one%unit = unit%name
                   one%factor = unit%factor
                   one%stands_alone = stands_alone(set, form)
@@ -282,7 +284,7 @@ contains
                call add_card_error(set, repeated, i, label_a, whole(set%cards(variation%numbers(n)%vary)%card%number))
             end if
          end associate
-      end subroutine take_card
+      end subroutine read_variation
 
       !> Gives `one` the values on a VARY card. If there is an error, its count stays 0.
       subroutine read_values(card)
@@ -339,7 +341,7 @@ contains
 
    !> Gives a mechanism the numbers of a variant. If the mechanism is new, or if other parts may depend on these
    !> numbers, the cards of the variation get them instead: then the mechanism must be built from these cards.
-   subroutine take_values(variation, n, m, is_done)
+   subroutine apply_variant(variation, n, m, is_done)
       type(variation_t), intent(inout) :: variation
       integer, intent(in) :: n               !< number of the variant, 1 to variation%total
       type(mechanism_t), intent(inout) :: m  !< new, or an earlier variant
@@ -352,7 +354,7 @@ contains
       is_done = m%variant > 0 .and. all(variation%numbers%stands_alone)
       if (is_done) then
          do i = 1, size(values)
-            call put_number(m, variation%numbers(i)%number, values(i)*variation%numbers(i)%factor)
+            call set_parameter(m, variation%numbers(i)%number, values(i)*variation%numbers(i)%factor)
          end do
          m%variant = n
          ! A TIME card of one time is an error.
@@ -367,7 +369,7 @@ contains
       end do
       variation%set%errors = none
       call begin_mechanism(variation%set, variation%set%mechanism%set_number)
-   end subroutine take_values
+   end subroutine apply_variant
 
    !> Gives the values (numbers that vary) of a variant, in the deck's units. The last value of a range is exact.
    pure function values_of_variant(variation, n) result(values)

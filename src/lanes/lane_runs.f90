@@ -5,16 +5,16 @@
 module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
-   use motion, only: mark_none
+   use motion, only: flag_none
    use predictor, only: is_even
    use drive_deviation, only: judge_step
    use analysis, only: come_back
-   use set_analysis, only: set_analysis_t, advance_set, take_state
+   use set_analysis, only: set_analysis_t, advance_set, accept_state
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
-   use answers, only: answers_t, new_answers, take_instant
+   use answers, only: answers_t, new_answers, update_answers
    use rows, only: finished_row_t
-   use counts, only: counts_t, note_flag
+   use counts, only: counts_t, record_flag
    use system_calls, only: signal_received
    use lane_sines, only: width
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
@@ -69,7 +69,7 @@ contains
       logical :: in_simd_lane, searches
 
       do i = 1, size(runs)
-         call take_over(runs(i), l, i)
+         call hand_to_lane(runs(i), l, i)
       end do
       ! Lanes that no variant has do what one of them does: their numbers must be numbers.
       if (any(runs%in_simd_lane)) then
@@ -97,7 +97,7 @@ contains
                at(i) = real(runs(i)%at, wp)
                all_steps(i) = real(m%steps, wp)
                goes_on(i) = 1.0_wp
-               steps = min(steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%extremes_asked))
+               steps = min(steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%wants_extremes))
             end associate
          end do
          do k = 1, steps
@@ -114,13 +114,13 @@ contains
          call accept_lanes(l, t)
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
-               if (r%in_simd_lane .and. r%asked%extremes_asked) then
+               if (r%in_simd_lane .and. r%asked%wants_extremes) then
                   searches = is_searched(x, r%s, 1)
                   if (searches) call give_back(r, l, i)
                   call search_instant(x, r%s, 1, r%at, searches)
                end if
             end associate
-            call take_over(runs(i), l, i)
+            call hand_to_lane(runs(i), l, i)
          end do
       end do
    end subroutine run_lanes
@@ -139,7 +139,7 @@ contains
       is_refused = j%refused(i) > 0.5_wp
       if (is_refused) r%patience = 2*r%patience
       counts = .not. is_refused
-      if (r%asked%extremes_asked) then
+      if (r%asked%wants_extremes) then
          counts = counts .and. j%correction(i) <= fine_prediction .and. r%at + 1 < r%m%steps
          if (counts) call watch_lane(r, l, i, t, counts)
       else if (r%at + 1 == r%m%steps) then
@@ -169,7 +169,7 @@ contains
    end subroutine count_instants
 
    !> Lane `i` takes over `r`, unless it has it or `r` is over, as soon as it can; until then the engine solves it.
-   subroutine take_over(r, l, i)
+   subroutine hand_to_lane(r, l, i)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i               !< its number
@@ -180,7 +180,7 @@ contains
          if (r%at >= 2) r%patience = 2*r%patience
          call by_engine(r, r%at + r%patience)
       end do
-   end subroutine take_over
+   end subroutine hand_to_lane
 
    !> Loads lane `i` with the motions of `r`, if they are such as lanes need: `is_done`. They are those of one
    !> mechanism by METHOD NEWTON, whose last instant has all of its motion.
@@ -193,7 +193,7 @@ contains
 
       is_done = .false.
       if (r%at < 2 .or. r%at >= r%m%steps .or. size(r%s%list) > 1 .or. r%m%method /= method_newton) return
-      if (r%s%now%motions(1)%known < 2 .or. r%s%now%motions(1)%mark /= mark_none) return
+      if (r%s%now%motions(1)%known < 2 .or. r%s%now%motions(1)%mark /= flag_none) return
       step = instant(r%m, r%at + 1) - instant(r%m, r%at)
       associate (a => r%s%list(1))
          call come_back(a)
@@ -218,8 +218,8 @@ contains
 
       do k = r%at + 1, min(last, r%last)
          call advance_set(r%s, instant(r%m, k))
-         call note_flag(r%counts, r%s)
-         call take_instant(r%asked, r%s, no_rows, k, .true.)
+         call record_flag(r%counts, r%s)
+         call update_answers(r%asked, r%s, no_rows, k, .true.)
          r%at = k
          if (signal_received() > 0) return
       end do
@@ -251,7 +251,7 @@ contains
             s%jacobian(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
       end associate
-      call take_state(r%s, t, is_done)
+      call accept_state(r%s, t, is_done)
       if (is_done) call find_next(r%asked%extremes, r%s, 1, t, .false.)
    end subroutine watch_lane
 

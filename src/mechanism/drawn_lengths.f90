@@ -7,7 +7,7 @@ module drawn_lengths
    use mechanism, only: mechanism_t
    implicit none
    private
-   public :: reach_t, body_of, mark_hole, is_movable, put_axes, put_lengths, same_place_tolerance
+   public :: reach_t, body_of, join_hole, is_movable, set_axes, apply_lengths, same_place_tolerance
 
    !> What LENGTH cards make of one hole.
    type :: reach_t
@@ -40,7 +40,7 @@ contains
 
    !> Gives the points that are drawn at the place of a point, on its body, the same number `hole`, and all of them
    !> their places in the drawing.
-   pure subroutine mark_hole(m, i)
+   pure subroutine join_hole(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< the number of the point
       integer :: j
@@ -56,7 +56,7 @@ contains
             m%points(j)%hole = i
          end associate
       end do
-   end subroutine mark_hole
+   end subroutine join_hole
 
    !> Finds the place (2) of a point in the drawing, if no length has moved it.
    pure function place_on_card(m, i) result(place)
@@ -70,7 +70,7 @@ contains
 
    !> Gives links whose axes begin at FROM and point to TO these axes, in (-pi, pi], and all points of JOINT cards and
    !> of holes that lengths move their places in the axes of their links.
-   pure subroutine put_axes(m, place)
+   pure subroutine set_axes(m, place)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: place(:, :)    !< (2, points) places of these points in the drawing
       real(wp) :: axes(3)
@@ -107,13 +107,13 @@ contains
             end do
          end associate
       end do
-   end subroutine put_axes
+   end subroutine set_axes
 
    !> Puts the lengths of `m` into the drawing, in their order: moves the hole of point Q of each, along the line from P
    !> or, if the next length has the same hole, to the intersection of two circles on the side on which it is drawn.
    !> Axes and points follow. Numbers that are as drawn do not. An intersection that was found before and has other
    !> lengths now goes on by one step of Newton's method: differences of such places have no error of the root.
-   pure subroutine put_lengths(m, reached)
+   pure subroutine apply_lengths(m, reached)
       type(mechanism_t), intent(inout) :: m
       type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
       type(reach_t) :: reach
@@ -158,8 +158,8 @@ contains
          end associate
          k = k + merge(1, 2, is_one)
       end do
-      call put_axes(m, place)
-   end subroutine put_lengths
+      call set_axes(m, place)
+   end subroutine apply_lengths
 
    !> Finds the intersection of two circles that is nearest to a place. If they do not meet, it is a place on the line
    !> through their centres.

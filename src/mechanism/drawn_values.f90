@@ -7,7 +7,7 @@ module drawn_values
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
-   public :: take_drawn, follow_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
+   public :: complete_from_drawing, follow_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
 
    !> A relative difference below this is zero. A coordinate passes through about ten operations, each with an error of
    !> half a rounding of the places involved; coordinates that another program has printed are off by one or two more.
@@ -21,7 +21,7 @@ contains
    !>   is 0.
    !> - Differences due to rounding only become exactly 0.
    !> - The block of a slot is put at the place of the pin in the drawing, with the angle of link i.
-   pure subroutine take_drawn(m, i)
+   pure subroutine complete_from_drawing(m, i)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< number of the pair
       type(pair_t) :: pair
@@ -43,7 +43,7 @@ contains
       end if
       if (pair%drawn(3)) pair%beta = without_rounding(phi(2) - phi(1), sum(abs(phi)))
       m%pairs(i) = pair
-   end subroutine take_drawn
+   end subroutine complete_from_drawing
 
    !> Gives all numbers that are as drawn the values of the drawing. If the mechanism has lengths, these have moved
    !> points since the numbers were taken: then the numbers change as much as the drawing has changed since `before`.
@@ -54,7 +54,7 @@ contains
       integer :: i
 
       do i = 1, size(m%pairs)
-         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call take_drawn(m, i)
+         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call complete_from_drawing(m, i)
       end do
       do i = 1, size(m%drives)
          if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))

@@ -6,8 +6,8 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
-      request_point, request_pair, request_measure, request_curve, is_centre, number_link, number_knot, &
-      number_length, number_hole
+      request_point, request_pair, request_measure, request_curve, is_centre, parameter_link, parameter_knot, &
+      parameter_length, parameter_hole
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -29,7 +29,7 @@ module independent
    !> The kinds of the subjects of requests, and of numbers on cards.
    integer, parameter :: of_requests(request_link:request_curve) = &
       [request_link, request_point, request_pair, request_measure, request_link, request_point]
-   integer, parameter :: of_numbers(number_link:number_knot) = &
+   integer, parameter :: of_numbers(parameter_link:parameter_knot) = &
       [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
    !> A set, divided. A row of a ground point belongs to a part whose pairs use the point; other rows of the ground
@@ -127,7 +127,7 @@ contains
             i=1, size(m%branch_requests))])
          set%rows(own_rows) = [(member_t(k, i), i=1, size(own_rows))]
          set%drives(part(of_drives)%of) = [(member_t(k, i), i=1, size(part(of_drives)%of))]
-         call take_mechanism(m, part, own_rows, branches, place, set%parts(k))
+         call separate_mechanism(m, part, own_rows, branches, place, set%parts(k))
          call move_alloc(part(request_link)%of, set%cards(k)%of)
       end do
 
@@ -145,7 +145,7 @@ contains
          integer :: i, k
 
          if (.not. (allocated(m%lengths) .and. allocated(m%tolerances))) return
-         if (.not. any(m%tolerances%kind == number_length)) return
+         if (.not. any(m%tolerances%kind == parameter_length)) return
          do i = 1, size(m%lengths)
             if (.not. m%links(m%points(m%lengths(i)%point(1))%link)%ground) cycle
             used = [used, (m%lengths(i)%point, k=1, set%count)]
@@ -190,7 +190,7 @@ contains
    end function part_of_links
 
    !> Makes a part of a set a mechanism of its own.
-   subroutine take_mechanism(m, part, rows, branches, place, own)
+   subroutine separate_mechanism(m, part, rows, branches, place, own)
       type(mechanism_t), intent(in) :: m     !< the set
       type(numbering_t), intent(in) :: part(:)   !< (kinds) numbers in the set of the members of the part
       integer, intent(in) :: rows(:)         !< (rows of the part) numbers of its requests in the set
@@ -258,9 +258,9 @@ contains
          own%tolerances = m%tolerances
          do i = 1, size(own%tolerances)
             associate (one => own%tolerances(i))
-               if (one%kind == number_length) then
+               if (one%kind == parameter_length) then
                   one%subject = merge(count(kept(:one%subject)), 0, kept(one%subject))
-               else if (one%kind == number_hole) then
+               else if (one%kind == parameter_hole) then
                   one%subject = findloc(own%points%hole, m%points(one%subject)%hole, dim=1)
                else
                   one%subject = place(of_numbers(one%kind))%of(one%subject)
@@ -278,7 +278,7 @@ contains
       do kind = 1, size(part)
          place(kind)%of(part(kind)%of) = 0
       end do
-   end subroutine take_mechanism
+   end subroutine separate_mechanism
 
    !> Gives the request of a row of a set, in the numbers of its part.
    pure type(request_t) function request_of(set, i)

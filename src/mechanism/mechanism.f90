@@ -72,15 +72,15 @@ module mechanism
       term_kind_t('PARABOLA', rise_numbers, is_rise=.true., jumps=.true., joints=[0.0_wp, 1.0_wp, 0.5_wp])]
 
    !> The kinds of numbers on cards.
-   integer, parameter :: number_link = 1     !< x, y or phi of link `subject`
-   integer, parameter :: number_point = 2    !< xi or eta of point `subject`
-   integer, parameter :: number_joint = 3    !< x or y, in the drawing, of points `subject` and `subject` + 1
-   integer, parameter :: number_pair = 4     !< alpha, h or beta of prismatic pair `subject`
-   integer, parameter :: number_drive = 5    !< of drive `subject`, or of its term `term`
-   integer, parameter :: number_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
-   integer, parameter :: number_time = 7     !< T0 or T1 of TIME
-   integer, parameter :: number_length = 8   !< the length `subject`, in the order in which lengths are put
-   integer, parameter :: number_hole = 9     !< x or y, in the drawing, of the hole of point `subject` of a JOINT card
+   integer, parameter :: parameter_link = 1     !< x, y or phi of link `subject`
+   integer, parameter :: parameter_point = 2    !< xi or eta of point `subject`
+   integer, parameter :: parameter_joint = 3    !< x or y, in the drawing, of points `subject` and `subject` + 1
+   integer, parameter :: parameter_pair = 4     !< alpha, h or beta of prismatic pair `subject`
+   integer, parameter :: parameter_drive = 5    !< of drive `subject`, or of its term `term`
+   integer, parameter :: parameter_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
+   integer, parameter :: parameter_time = 7     !< T0 or T1 of TIME
+   integer, parameter :: parameter_length = 8   !< the length `subject`, in the order in which lengths are put
+   integer, parameter :: parameter_hole = 9   !< x or y, in the drawing, of the hole of point `subject` of a JOINT card
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
@@ -221,16 +221,16 @@ module mechanism
       integer :: card = 0                    !< of a part: its number among the BRANCH cards of the set
    end type branch_request_t
 
-   !> A number on a card: its address, which `card_numbers` explains.
-   type :: card_number_t
-      integer :: kind = number_point         !< number_link, ..., number_time; 0: no number that is known
+   !> A number on a card: its address, which `parameters` explains.
+   type :: parameter_t
+      integer :: kind = parameter_point         !< parameter_link, ..., parameter_time; 0: no number that is known
       integer :: subject = 0                 !< the number of its link, point, pair or drive
       integer :: term = 0                    !< of a drive: the number of the term; 0: its polynomial
       integer :: place = 1                   !< R1, R2 or R3 of the card; of a table the row
-   end type card_number_t
+   end type parameter_t
 
    !> The tolerance of a number on a card.
-   type, extends(card_number_t) :: tolerance_t
+   type, extends(parameter_t) :: tolerance_t
       real(wp) :: size_of = 0.0_wp           !< the tolerance, above 0, in the unit of the number on its card
       real(wp) :: unit = 1.0_wp              !< that unit in those of `mechanism_t`
       real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< of length and of time in that unit

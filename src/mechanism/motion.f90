@@ -53,12 +53,12 @@ module motion
 
    !> Why an instant, or a link, is flagged.
    enum, bind(c)
-      enumerator :: mark_none = 0
-      enumerator :: mark_not_converged  !< no position was found
-      enumerator :: mark_singular       !< position found, Jacobian singular: no unique velocities
-      enumerator :: mark_overflow       !< a result is beyond the range of the real kind
-      enumerator :: mark_inconsistent   !< redundant equations contradict one another
-      enumerator :: mark_stroke         !< all is known, and a cylinder is out of its stroke
+      enumerator :: flag_none = 0
+      enumerator :: flag_not_converged  !< no position was found
+      enumerator :: flag_singular       !< position found, Jacobian singular: no unique velocities
+      enumerator :: flag_overflow       !< a result is beyond the range of the real kind
+      enumerator :: flag_inconsistent   !< redundant equations contradict one another
+      enumerator :: flag_stroke         !< all is known, and a cylinder is out of its stroke
    end enum
 
    !> The kinds of positions with a singular Jacobian, the worst last.
@@ -84,8 +84,8 @@ module motion
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
-      integer :: mark = mark_none                        !< why it is flagged
-      integer :: singularity = singular_unclear          !< of mark_singular: one of singular_...
+      integer :: mark = flag_none                        !< why it is flagged
+      integer :: singularity = singular_unclear          !< of flag_singular: one of singular_...
       type(diagnostic_t) :: singular_links               !< and its links, where they are known
       integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
       type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated

@@ -12,10 +12,11 @@ module points
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use pair_geometry, only: pair_motion
    use plane_vectors, only: pi, degree, direction, rotated, point_of, add_rotating, cross
-   use motion, only: motion_t, turned_t, known_of, mark_none, mark_singular, mark_stroke
+   use motion, only: motion_t, turned_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
-   public :: row_t, column_of_ratio, find_row, known_at, keep_turns, growth_in_measure, difference, is_due, is_listed, &
+   public :: row_t, column_of_ratio, find_row, known_at, keep_turns, amplification_in_measure, difference, is_due, &
+      is_listed, &
       is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
@@ -26,7 +27,7 @@ module points
       character(4*label_length + 6) :: name = ''
       integer :: form = 0                   !< which columns it has
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
-      integer :: mark = mark_none           !< why the rest does not
+      integer :: mark = flag_none           !< why the rest does not
    end type row_t
 
    !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
@@ -90,7 +91,7 @@ contains
       row%kind = request%kind
       row%form = form_of(m, request)
       ! Mostly all is known of all links. Without an allocation, but for measures.
-      if (q%known < 2 .or. q%mark == mark_stroke .or. allocated(q%link_known)) then
+      if (q%known < 2 .or. q%mark == flag_stroke .or. allocated(q%link_known)) then
          if (request%kind == request_measure) then
             call find_known(m, q, request_links(m, request), row%known, row%mark)
          else
@@ -165,7 +166,7 @@ contains
       if (row%known < 0) return
 
       row%known = -1
-      row%mark = mark_singular
+      row%mark = flag_singular
       if (.not. allocated(q%by)) return
       associate (by => q%by(request%drive))
          if (.not. allocated(by%velocity)) return
@@ -176,7 +177,7 @@ contains
          unit%acceleration(:, links) = by%acceleration(:, links)
       end associate
       row%known = 2
-      row%mark = mark_none
+      row%mark = flag_none
       if (request%kind == request_pair) then
          s = motion_of_pair(m, unit, request%subject)
       else
@@ -203,7 +204,7 @@ contains
       integer, intent(inout) :: mark         !< why the rest is not
       integer :: k
 
-      if (q%mark == mark_stroke) mark = q%mark
+      if (q%mark == flag_stroke) mark = q%mark
       do k = 1, size(links)
          if (m%links(links(k))%ground .or. known_of(q, links(k)) >= known) cycle
          known = known_of(q, links(k))
@@ -363,7 +364,7 @@ contains
    !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
    !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
    !> times as much for the direction. If points coincide, nothing can grow: 0.
-   pure recursive real(wp) function growth_in_measure(m, q, i, rate) result(growth)
+   pure recursive real(wp) function amplification_in_measure(m, q, i, rate) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
       integer, intent(in) :: i               !< its number
@@ -383,11 +384,11 @@ contains
          else
             do k = 1, size(subjects)
                if (subjects(k)%kind == request_measure) growth = max(growth, &
-                  abs(subjects(k)%factor)*growth_in_measure(m, q, subjects(k)%number, rate))
+                  abs(subjects(k)%factor)*amplification_in_measure(m, q, subjects(k)%number, rate))
             end do
          end if
       end associate
-   end function growth_in_measure
+   end function amplification_in_measure
 
    !> Gives a direction above -pi and up to pi. A direction that is -pi but for rounding becomes pi.
    pure real(wp) function between_half_turns(angle) result(x)

@@ -12,13 +12,13 @@ module changed_rows
    use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t, make_structure
    use drive_path, only: drive_path_t
-   use block_motion, only: take_requests, put_geometry, put_path, get_ratios, slide_unit
+   use block_motion, only: select_solved_blocks, assign_geometry, assign_path, get_ratios, slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
-   use link_motion, only: move_links, mark_links, missing_nothing, missing_rates, missing_all
+   use link_motion, only: move_links, flag_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: perturbed_t, base_position_t, find_place, make_ready, put_changes, rows_with
+   public :: perturbed_t, base_position_t, find_place, make_ready, assign_changes, rows_with
 
    !> A mechanism with changed numbers: a geometry of the structure that the mechanism itself has.
    type :: perturbed_t
@@ -29,7 +29,7 @@ module changed_rows
       logical :: fits = .true.                   !< the structure serves for its numbers
       integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
       real(wp) :: roundings = 0.0_wp, time_off = 0.0_wp   !< the instant is off by this part of it
-      real(wp) :: length = 0.0_wp                !< then: see `put_off`
+      real(wp) :: length = 0.0_wp                !< then: see `perturb_numbers`
    end type perturbed_t
 
    !> The position at hand, what solves from it for one changed mechanism after another, and what the rows show that
@@ -122,15 +122,15 @@ contains
    !> Gives the geometry of `p`, of the structure `b`, the numbers of p%m. `by_roundings`: they are off by roundings
    !> alone, and what cancels in the equations is left out: redundant equations stay so, and so do guides that are
    !> parallel.
-   subroutine put_changes(b, p, by_roundings)
+   subroutine assign_changes(b, p, by_roundings)
       type(blocks_t), intent(in) :: b
       type(perturbed_t), intent(inout) :: p
       logical, intent(in) :: by_roundings
 
       p%m%tolerance = 0.0_wp
-      call put_geometry(p%m, b, p%geometry, p%path, p%fits)
+      call assign_geometry(p%m, b, p%geometry, p%path, p%fits)
       p%fits = p%fits .or. by_roundings
-   end subroutine put_changes
+   end subroutine assign_changes
 
    !> The `rows` (requests) of `p`, of the structure `b`, at the time `t`, solved from `place`.
    subroutine rows_with(b, p, t, place, rows)
@@ -148,8 +148,8 @@ contains
          call solve_needed(b, p%geometry, p%path, place)
       else
          call make_structure(p%m, other)
-         call take_requests(p%m, other%blocks, other%geometry)
-         call put_path(p%m, other%blocks, other%geometry, path)
+         call select_solved_blocks(p%m, other%blocks, other%geometry)
+         call assign_path(p%m, other%blocks, other%geometry, path)
          if (other%blocks%solvable) call make_room(other%blocks, size(path%laws), place)
          call solve_needed(other%blocks, other%geometry, path, place)
          call make_room(b, size(path%laws), place)
@@ -224,7 +224,7 @@ contains
          if (size(b%ratios) > 0) call get_ratios(b, x, path, [(missing(b%unknown(max(1, b%list(k)%first))) &
             > missing_nothing, k=1, size(b%list))], s, w, q)
          call forget_links(q)
-         if (worst > missing_nothing) call mark_links(x%chain, missing, q)
+         if (worst > missing_nothing) call flag_links(x%chain, missing, q)
       end associate
    end subroutine solve_needed
 

@@ -10,9 +10,9 @@ module error_estimate
    use significance_check, only: sizes_t, sizes_of, find_amplification
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
-   use changed_rows, only: perturbed_t, base_position_t, find_place, make_ready, put_changes, rows_with
+   use changed_rows, only: perturbed_t, base_position_t, find_place, make_ready, assign_changes, rows_with
    use rounded_numbers, only: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
-      put_off, put_sums_off
+      perturb_numbers, perturb_sums
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
@@ -115,7 +115,7 @@ contains
    contains
 
       !> The `rows` of `m` near the motion `q` with all numbers off by so many `roundings` in direction `k`; 0: with
-      !> none off. `length`: see `put_off`.
+      !> none off. `length`: see `perturb_numbers`.
       subroutine find_changed(k, roundings, length, rows)
          integer, intent(in) :: k
          real(wp), intent(in) :: roundings
@@ -127,9 +127,9 @@ contains
          associate (p => s%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
                associate (axes => x%equations%axes)
-                  call put_off(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
+                  call perturb_numbers(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
                end associate
-               call put_changes(b, p, by_roundings=.true.)
+               call assign_changes(b, p, by_roundings=.true.)
                p%direction = k
                p%roundings = roundings
                p%length = length
@@ -140,7 +140,7 @@ contains
 
       !> Puts the opposite change in the place of each of the `rows` that has lost numbers by `find_changed`: it is as
       !> likely, and as large, and on a dead point one of the two has a position.
-      subroutine take_opposite(k, roundings, length, rows)
+      subroutine use_opposite(k, roundings, length, rows)
          integer, intent(in) :: k
          real(wp), intent(in) :: roundings
          real(wp), intent(in) :: length      !< see `find_changed`
@@ -150,7 +150,7 @@ contains
          if (all(rows%known >= found%solved%known)) return
          call find_changed(k, -roundings, length, other)
          where (rows%known < found%solved%known) rows = other
-      end subroutine take_opposite
+      end subroutine use_opposite
 
       !> Finds the largest changes of the rows by a rounding, from those by so many `roundings`. `is_small`: they are so
       !> small that they are of first order, if not all of them are asked for `anyway`.
@@ -169,7 +169,7 @@ contains
             call find_changed(k, roundings, 0.0_wp, rows)
             is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
-            call take_opposite(k, roundings, 0.0_wp, rows)
+            call use_opposite(k, roundings, 0.0_wp, rows)
             do i = 1, size(rows)
                found%changes(:, :, i) = max(found%changes(:, :, i), change(rows(i), found%solved(i), part))
             end do
@@ -184,7 +184,7 @@ contains
          found%own = 0.0_wp
          do k = directions + 1, directions + own_directions
             call find_changed(k, 1.0_wp, 0.0_wp, rows)
-            call take_opposite(k, 1.0_wp, 0.0_wp, rows)
+            call use_opposite(k, 1.0_wp, 0.0_wp, rows)
             do i = 1, size(rows)
                found%own(:, :, i) = min(nothing_known, hypot(found%own(:, :, i), &
                   change(rows(i), found%solved(i), 1.0_wp)/sqrt(real(own_directions, wp))))
@@ -203,7 +203,7 @@ contains
          times = closure_caution*merge(sqrt(closure_parts), closure_parts, s%place%is_singular)
          do k = 1, directions
             call find_changed(k, roundings, s%sizes%length, rows)
-            call take_opposite(k, roundings, s%sizes%length, rows)
+            call use_opposite(k, roundings, s%sizes%length, rows)
             do i = 1, size(rows)
                found%by_closure(:, :, i) = max(found%by_closure(:, :, i), change(rows(i), found%solved(i), times))
             end do
@@ -225,8 +225,8 @@ contains
          do k = 1, directions
             other = q
             ! By one they could be hidden by the roundings of the rows.
-            call put_sums_off(b%tree, s%sizes%length, k, few, other)
-            if (allocated(q%by)) call put_ratios_off(k, other)
+            call perturb_sums(b%tree, s%sizes%length, k, few, other)
+            if (allocated(q%by)) call perturb_ratios(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
                ! No sum moves a centre from infinity.
@@ -244,7 +244,7 @@ contains
       end subroutine add_sums
 
       !> Puts the motions by which ratios are taken off by roundings of the sums that they are, as the motion `other`.
-      subroutine put_ratios_off(k, other)
+      subroutine perturb_ratios(k, other)
          integer, intent(in) :: k            !< the direction
          type(motion_t), intent(inout) :: other
          type(motion_t) :: unit
@@ -258,11 +258,11 @@ contains
             unit%known = 2
             unit%link_known = merge(2, -1, q%by(d)%is_known)
             unit%origin = q%origin
-            call put_sums_off(b%tree, s%sizes%length, k, few, unit)
+            call perturb_sums(b%tree, s%sizes%length, k, few, unit)
             other%by(d)%velocity = unit%velocity
             other%by(d)%acceleration = unit%acceleration
          end do
-      end subroutine put_ratios_off
+      end subroutine perturb_ratios
    end subroutine estimate_errors
 
    !> The change (3, 0:2) by a rounding, from the rows `middle` and `one`, of which a `part` is that of one rounding.

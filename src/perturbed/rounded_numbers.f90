@@ -20,15 +20,15 @@ module rounded_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use plane_vectors, only: pi
-   use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, has_guide, term_kinds, &
-      drive_relangle, number_link, number_point, number_pair, number_drive, number_time
-   use card_numbers, only: number_value, put_number, put_table
+   use mechanism, only: mechanism_t, parameter_t, term_t, plane_origin, has_guide, term_kinds, &
+      drive_relangle, parameter_link, parameter_point, parameter_pair, parameter_drive, parameter_time
+   use parameters, only: parameter_value, set_parameter, set_table
    use motion, only: motion_t, known_of
    use spanning_tree, only: spanning_tree_t, axes_t
    implicit none
    private
    public :: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
-      put_off, put_sums_off
+      perturb_numbers, perturb_sums
 
    integer, parameter :: directions = 8, own_directions = 20
    real(wp), parameter :: safety_factor = 2.35_wp, own_safety_factor = 1.91_wp, calculation_safety_factor = 4.90_wp
@@ -45,7 +45,7 @@ contains
    !> of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial guess of moving
    !> links. `t`, `axes`: of `m`. With a `length` above 0 lengths are off as if each were so large, and drives and the
    !> time are as they stand.
-   subroutine put_off(m, t, axes, k, roundings, length, off, time_off)
+   subroutine perturb_numbers(m, t, axes, k, roundings, length, off, time_off)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: t
       type(axes_t), intent(in) :: axes
@@ -61,11 +61,11 @@ contains
       if (m%closing > 0.0_wp) off%closing = huge(1.0_wp)
       time_off = 0.0_wp
       if (k > 0 .and. .not. length > 0.0_wp) &
-         time_off = roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
+         time_off = roundings*epsilon(1.0_wp)*deviate(parameter_t(parameter_time, 0, 0, 0), k)
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
          do j = 1, 2
-            call put(card_number_t(number_link, i, 0, j), merge(length, abs(m%links(i)%position(j)), length > 0.0_wp))
+            call put(parameter_t(parameter_link, i, 0, j), merge(length, abs(m%links(i)%position(j)), length > 0.0_wp))
          end do
       end do
       origin = plane_origin(m)
@@ -77,13 +77,13 @@ contains
             if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
             if (length > 0.0_wp) size_of = length
          end associate
-         call put(card_number_t(number_point, i, 0, 1), size_of)
-         call put(card_number_t(number_point, i, 0, 2), size_of)
+         call put(parameter_t(parameter_point, i, 0, 1), size_of)
+         call put(parameter_t(parameter_point, i, 0, 2), size_of)
       end do
       largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
       do i = 1, size(m%pairs)
          if (.not. has_guide(m%pairs(i)%kind)) cycle
-         call put(card_number_t(number_pair, i, 0, 2), merge(length, abs(m%pairs(i)%offset), length > 0.0_wp))
+         call put(parameter_t(parameter_pair, i, 0, 2), merge(length, abs(m%pairs(i)%offset), length > 0.0_wp))
          ! Guides that are parallel or at right angles by the cards of links that turn as one stay so: their directions
          ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
          ! links and between guides are as they stand: the arms that they turn are off.
@@ -92,7 +92,7 @@ contains
                int(quarter, int64)))
             off%pairs(i)%alpha = m%pairs(i)%alpha
             if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*largest &
-               *deviate(card_number_t(number_pair, t%orientation(link), quarters, 1), k)
+               *deviate(parameter_t(parameter_pair, t%orientation(link), quarters, 1), k)
          end associate
       end do
       if (length > 0.0_wp) off%drives = m%drives
@@ -102,11 +102,11 @@ contains
             size_of = abs(m%drives(i)%polynomial(j))
             ! An angle counted from another link is added to that link's, and rounded with it.
             if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
-            call put(card_number_t(number_drive, i, 0, j), size_of)
+            call put(parameter_t(parameter_drive, i, 0, j), size_of)
          end do
          if (.not. allocated(m%drives(i)%terms)) cycle
          do j = 1, size(m%drives(i)%terms)
-            call put_term(m%drives(i)%terms(j), i, j)
+            call perturb_term(m%drives(i)%terms(j), i, j)
          end do
       end do
 
@@ -114,7 +114,7 @@ contains
 
       !> Puts a number off that is rounded by its size.
       subroutine put(number, size_of)
-         type(card_number_t), intent(in) :: number
+         type(parameter_t), intent(in) :: number
          real(wp), intent(in) :: size_of
 
          real(wp) :: by
@@ -122,11 +122,11 @@ contains
          if (.not. size_of > 0.0_wp) return
          by = 0.0_wp
          if (k > 0) by = roundings*epsilon(1.0_wp)*size_of*deviate(number, k)
-         call put_number(off, number, number_value(m, number) + by)
+         call set_parameter(off, number, parameter_value(m, number) + by)
       end subroutine put
 
       !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
-      subroutine put_term(term, drive, j)
+      subroutine perturb_term(term, drive, j)
          type(term_t), intent(in) :: term
          integer, intent(in) :: drive, j
          real(wp) :: slope
@@ -138,23 +138,23 @@ contains
                   slope = 0.0_wp
                   if (i > 1) slope = abs((y(i) - y(i - 1))/(x(i) - x(i - 1)))
                   if (i < size(y)) slope = max(slope, abs((y(i + 1) - y(i))/(x(i + 1) - x(i))))
-                  call put(card_number_t(number_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
+                  call put(parameter_t(parameter_drive, drive, j, i), abs(y(i)) + abs(x(i))*slope)
                end do
             end associate
-            call put_table(off%drives(drive), j)
+            call set_table(off%drives(drive), j)
          else
             do i = 1, term_kinds(term%kind)%inexact
-               call put(card_number_t(number_drive, drive, j, i), abs(term%r(i)))
+               call put(parameter_t(parameter_drive, drive, j, i), abs(term%r(i)))
             end do
          end if
-      end subroutine put_term
-   end subroutine put_off
+      end subroutine perturb_term
+   end subroutine perturb_numbers
 
    !> Puts the motion `q` of links with the tree `t` off in direction `k`, by so many `roundings` of sums of numbers as
    !> large as the largest of its links; `length`: the characteristic one. What is summed up to a velocity is no smaller
    !> than an angular velocity times a length, what is summed up to an acceleration has the square of one. A coordinate
    !> that is zero and rests stays so, but for angles, which may cancel. Links that turn as one turn as one.
-   subroutine put_sums_off(t, length, k, roundings, q)
+   subroutine perturb_sums(t, length, k, roundings, q)
       type(spanning_tree_t), intent(in) :: t
       real(wp), intent(in) :: length, roundings
       integer, intent(in) :: k
@@ -181,18 +181,18 @@ contains
             if (.not. (any(abs(x) > 0.0_wp) .or. c == 3)) cycle
             do j = 0, 2
                x(j) = x(j) + size_of(merge(2, 1, c == 3), j) &
-                  *deviate(card_number_t(number_time, merge(t%orientation(i), i, c == 3 .and. j > 0), c, j + 1), k)
+                  *deviate(parameter_t(parameter_time, merge(t%orientation(i), i, c == 3 .and. j > 0), c, j + 1), k)
             end do
             q%position(c, i) = x(0)
             q%velocity(c, i) = x(1)
             q%acceleration(c, i) = x(2)
          end do
       end do
-   end subroutine put_sums_off
+   end subroutine perturb_sums
 
    !> The normal deviate of the number with this address in direction `k` (Box and Muller).
    pure real(wp) function deviate(number, k) result(z)
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       integer, intent(in) :: k
       real(wp) :: u, v
       integer(int64) :: x

@@ -3,9 +3,9 @@
 !> A sensitivity is the difference of two rows of the mechanism with one number a little above and below.
 module sensitivities
    use kinds, only: wp
-   use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, number_drive, term_kinds
+   use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, parameter_drive, term_kinds
    use drives, only: joint_distance
-   use card_numbers, only: number_value, set_number
+   use parameters, only: parameter_value, change_parameter
    use masked_numbers, only: nothing_known
    use motion, only: motion_t
    use points, only: row_t, find_row
@@ -15,7 +15,7 @@ module sensitivities
    use significance_check, only: sizes_t
    use rounded_numbers, only: safety_factor
    use error_estimate, only: error_estimate_t, estimator_t
-   use changed_rows, only: find_place, make_ready, put_changes, rows_with
+   use changed_rows, only: find_place, make_ready, assign_changes, rows_with
    use convergence, only: inconsistent_level
    implicit none
    private
@@ -40,8 +40,8 @@ module sensitivities
    real(wp), parameter :: of_both_sides(halvings) = [-1.0_wp, 84.0_wp, -1344.0_wp, 4096.0_wp]/2835.0_wp
    real(wp), parameter :: of_one_side(halvings) = [-1.0_wp, 14.0_wp, -56.0_wp, 64.0_wp]/21.0_wp
    !> What rounding leaves open of rows grows by so much over the step: that of each row is another one.
-   real(wp), parameter :: growth_of_both = norm2(of_both_sides*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])/sqrt(2.0_wp)
-   real(wp), parameter :: growth_of_one = norm2(of_one_side*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])*sqrt(2.0_wp)
+   real(wp), parameter :: amplification_of_both = norm2(of_both_sides*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])/sqrt(2.0_wp)
+   real(wp), parameter :: amplification_of_one = norm2(of_one_side*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])*sqrt(2.0_wp)
    !> By less where an unknown would change by more (rad, unit of the block), or with a larger Kantorovich ratio r. At
    !> the distance d from a dead point a change by h has r = h/(2 d), and the difference of accelerations, which are as
    !> d**-2.5, has the relative error 0.6 r**8.
@@ -99,14 +99,16 @@ contains
                h = step*0.5_wp**(k - 1)
                if (k > 1) call find_rows(up, one, h)
                if (side == 0) call find_rows(down, one, -h)
-               call note_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == 0))
+               call record_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == &
+                  0))
             end do
             do i = 1, size(m%requests)
                found%known(i) = min(found%known(i), order)
                if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
-                  where (rounding < nothing_known) error = merge(growth_of_both, growth_of_one, side == 0) &
+                  where (rounding < nothing_known) error = merge(amplification_of_both, amplification_of_one, side == &
+                     0) &
                      *safety_factor*rounding*abs(one%unit/step)
                end associate
             end do
@@ -119,7 +121,7 @@ contains
 
       !> Adds to the sensitivities to number `d` this `part` of the slopes from the rows `down` to those `up`, whose
       !> numbers are `apart`.
-      subroutine note_slopes(apart, part)
+      subroutine record_slopes(apart, part)
          real(wp), intent(in) :: apart, part
          integer :: i
 
@@ -129,7 +131,7 @@ contains
             found%of(:, :, d, i) = found%of(:, :, d, i) &
                + (up(i)%value - down(i)%value)*(part*m%tolerances(d)%unit/apart)
          end do
-      end subroutine note_slopes
+      end subroutine record_slopes
 
       !> The `rows` with the number of tolerance `one`, if it is there, changed by `by`.
       subroutine find_rows(rows, one, by)
@@ -139,8 +141,8 @@ contains
 
          associate (p => s%perturbed(0))
             p%m = m
-            if (present(one)) call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
-            call put_changes(b, p, by_roundings=.false.)
+            if (present(one)) call change_parameter(p%m, one%parameter_t, parameter_value(m, one%parameter_t) + by)
+            call assign_changes(b, p, by_roundings=.false.)
             call rows_with(b, p, q%t, s%place, rows)
          end associate
          if (present(one)) found%jams(d) = found%jams(d) .or. s%place%jams
@@ -200,7 +202,7 @@ contains
 
       side = 0
       order = 2
-      if (one%kind /= number_drive .or. one%term == 0) return
+      if (one%kind /= parameter_drive .or. one%term == 0) return
       associate (term => m%drives(one%subject)%terms(one%term))
          if (.not. term_kinds(term%kind)%is_rise .or. one%place == 3) return
          joints = term_kinds(term%kind)%joints - (t - term%r(1))/term%r(2)

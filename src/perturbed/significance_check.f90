@@ -7,19 +7,19 @@ module significance_check
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
-   use points, only: row_t, find_row, growth_in_measure
+   use points, only: row_t, find_row, amplification_in_measure
    use instant_centres, only: centre_finite
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_amplification, growth_in_centres, safe_growth
+   public :: sizes_t, sizes_of, find_amplification, amplification_in_centres, max_amplification
 
    !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
    real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
    !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
    !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
-   real(wp), parameter :: safe_growth = 1.0e4_wp*of_kind
+   real(wp), parameter :: max_amplification = 1.0e4_wp*of_kind
    real(wp), parameter :: safe_size = 1.0e4_wp
    !> Angles that are no larger than a few radians count as any number does. Of larger ones it is their rounding alone
    !> that grows, and not what their motion is added up of: so large, times that growth, they may be. A digit of a table
@@ -90,9 +90,9 @@ contains
       associate (length => sizes%length, rate => sizes%rate)
          size_of = max(1.0_wp, largest(1, 0)/length, maxval(abs(q%origin))/length, &
             max(largest(1, 1)/length, largest(2, 1))/rate, max(largest(1, 2)/length, largest(2, 2))/rate**2, &
-            growth_in_measures(m, q, rate))
+            amplification_in_measures(m, q, rate))
       end associate
-      if (sizes%has_centres) size_of = max(size_of, growth_in_centres(m, q))
+      if (sizes%has_centres) size_of = max(size_of, amplification_in_centres(m, q))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
       ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
@@ -112,7 +112,7 @@ contains
          end associate
       end do
       growth = usual*growth
-      in_doubt = max(usual, growth) > safe_growth .or. m%method /= method_newton
+      in_doubt = max(usual, growth) > max_amplification .or. m%method /= method_newton
       if (.not. angle > usual_angle) return
       in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
       growth = growth*max(1.0_wp, angle/usual)
@@ -136,7 +136,7 @@ contains
 
    !> By how much roundings of the motion `q` grow in the poles and curves of `m`, in characteristic ones; at infinity
    !> and at rest without limit.
-   pure real(wp) function growth_in_centres(m, q) result(growth)
+   pure real(wp) function amplification_in_centres(m, q) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(row_t) :: row
@@ -156,10 +156,10 @@ contains
             end if
          end associate
       end do
-   end function growth_in_centres
+   end function amplification_in_centres
 
    !> Finds by how much roundings of a motion grow in the measures of its mechanism, in characteristic ones.
-   pure real(wp) function growth_in_measures(m, q, rate) result(growth)
+   pure real(wp) function amplification_in_measures(m, q, rate) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
       real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
@@ -169,7 +169,7 @@ contains
       if (.not. allocated(m%measures)) return
       do i = 1, size(m%requests)
          if (m%requests(i)%kind == request_measure) &
-            growth = max(growth, growth_in_measure(m, q, m%requests(i)%subject, rate))
+            growth = max(growth, amplification_in_measure(m, q, m%requests(i)%subject, rate))
       end do
-   end function growth_in_measures
+   end function amplification_in_measures
 end module significance_check

@@ -175,7 +175,7 @@ contains
             if (a%are_more) exit
             call prove_position(p, f%blocks, f%path, f%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call note_assembly(f, found, chosen, is_proved, a)
+            call record_assembly(f, found, chosen, is_proved, a)
             i = i - 1
             cycle
          end if
@@ -201,7 +201,7 @@ contains
 
    !> Puts the assembly that `f` has now among the others, the nearest first; of those that are alike in the order in
    !> which they were found.
-   subroutine note_assembly(f, found, chosen, is_proved, a)
+   subroutine record_assembly(f, found, chosen, is_proved, a)
       type(following_t), intent(in) :: f
       type(block_positions_t), intent(in) :: found(:)
       integer, intent(in) :: chosen(:)
@@ -231,5 +231,5 @@ contains
       one%distance = sqrt(sum(squared_distances(one%position, f%guess%links, f%geometry%span)))
       k = count(a%list%distance <= one%distance*(1.0_wp + alike))
       a%list = [a%list(:k), one, a%list(k + 1:)]
-   end subroutine note_assembly
+   end subroutine record_assembly
 end module assemblies

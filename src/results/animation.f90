@@ -4,18 +4,20 @@
 module animation
    use kinds, only: wp
    use plane_vectors, only: in_degrees, wrap_angle, point_of, direction, rotated
-   use motion, only: mark_none
+   use motion, only: flag_none
    use number_format, only: full, whole
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of, link_color, pole_name
-   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_label, put_foot, caption, &
+   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_label, draw_foot, &
+      caption, &
       line_height
    use labels, only: labels_of
-   use svg, only: page_t, width, put_end, put_group, put_window, put_words, put_circle, put_columns, pixels, attribute
-   use listing, only: words_of_mark
+   use svg, only: page_t, width, close_group, open_group, draw_window, draw_words, draw_circle, draw_columns, pixels, &
+      attribute
+   use listing, only: words_of_flag
    implicit none
    private
-   public :: put_animation
+   public :: draw_animation
 
    !> How long the motion takes; then it begins again.
    character(*), parameter :: duration = '10s'
@@ -31,7 +33,7 @@ module animation
 contains
 
    !> Draws the film `drawing` of a set at the end of the `page`.
-   subroutine put_animation(page, drawing)
+   subroutine draw_animation(page, drawing)
       type(page_t), intent(inout), target :: page
       type(drawing_t), intent(in), target :: drawing
       type(canvas_t) :: canvas
@@ -49,23 +51,23 @@ contains
       is_fixed = [(list(i)%link == 0, i=1, size(list))]
       where (.not. is_fixed) is_fixed = canvas%mechanism%links(max(1, list%link))%ground
       ! A centrode may run through the pictures of other sets.
-      call put_window(canvas%output, canvas%low, canvas%high)
+      call draw_window(canvas%output, canvas%low, canvas%high)
       do i = 1, size(list)
-         if (is_fixed(i) .and. list(i)%is_below) call put_shape(canvas, list(i))
+         if (is_fixed(i) .and. list(i)%is_below) call draw_shape(canvas, list(i))
       end do
-      call put_group(canvas%output, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
+      call open_group(canvas%output, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
          //full(drawing%frame(drawing%films)%t)//'"', '')
-      call put_moving_links()
-      call put_centres()
-      call put_end(canvas%output, 'g')
-      call put_end(canvas%output, 'svg')
+      call draw_moving_links()
+      call draw_centres()
+      call close_group(canvas%output, 'g')
+      call close_group(canvas%output, 'svg')
       do i = 1, size(list)
-         if (is_fixed(i) .and. .not. list(i)%is_below) call put_shape(canvas, list(i))
+         if (is_fixed(i) .and. .not. list(i)%is_below) call draw_shape(canvas, list(i))
       end do
 
-      call put_names()
-      call put_clock()
-      call put_foot(canvas)
+      call draw_names()
+      call draw_clock()
+      call draw_foot(canvas)
 
    contains
 
@@ -87,7 +89,7 @@ contains
 
       !> Draws the moving links, each with its shapes in its own axes and turned about its first corner, later ones over
       !> earlier ones.
-      subroutine put_moving_links()
+      subroutine draw_moving_links()
          type(canvas_t) :: axes
          real(wp) :: place(2, size(frame)), angle(1, size(frame)), position(3), turned
          logical :: known(size(frame))
@@ -117,23 +119,23 @@ contains
             end associate
             ! Two groups: one moves, one turns.
             name = trim(canvas%mechanism%links(link)%name)
-            call put_group(canvas%output, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
+            call open_group(canvas%output, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
                //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', name)
-            call put_moving(shift_element, place, smooth)
-            if (.not. all(known)) call put_moving('animate attributeName="opacity"', &
+            call draw_moving(shift_element, place, smooth)
+            if (.not. all(known)) call draw_moving('animate attributeName="opacity"', &
                reshape(merge(1.0_wp, pale_opacity, known), [1, size(known)]), .false.)
-            call put_group(canvas%output, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-            call put_moving(turn_element, angle, smooth)
+            call open_group(canvas%output, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+            call draw_moving(turn_element, angle, smooth)
             do k = 1, size(list)
-               if (list(k)%link == link) call put_shape(axes, list(k))
+               if (list(k)%link == link) call draw_shape(axes, list(k))
             end do
-            call put_end(canvas%output, 'g')
-            call put_end(canvas%output, 'g')
+            call close_group(canvas%output, 'g')
+            call close_group(canvas%output, 'g')
          end do
-      end subroutine put_moving_links
+      end subroutine draw_moving_links
 
       !> Draws the ring of each instant centre, which is hidden where the centre is at infinity.
-      subroutine put_centres()
+      subroutine draw_centres()
          real(wp) :: place(2, size(frame))
          logical :: has(size(frame))
          integer :: i, k
@@ -144,32 +146,32 @@ contains
             do k = 1, size(frame)
                place(:, k) = to_pixels(canvas, drawing%frame(frame(k))%centre(:, i))
             end do
-            call put_group(canvas%output, 'class="pole" transform="translate(' &
+            call open_group(canvas%output, 'class="pole" transform="translate(' &
                //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', pole_name(canvas%mechanism, drawing%poles(i)))
-            call put_moving(shift_element, place, .false.)
-            if (.not. all(has)) call put_moving('animate attributeName="opacity"', &
+            call draw_moving(shift_element, place, .false.)
+            if (.not. all(has)) call draw_moving('animate attributeName="opacity"', &
                reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
-            call put_circle(canvas%output, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
+            call draw_circle(canvas%output, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
                //link_color(canvas%mechanism, canvas%mechanism%requests(drawing%poles(i))%subject)//'"')
-            call put_end(canvas%output, 'g')
+            call close_group(canvas%output, 'g')
          end do
-      end subroutine put_centres
+      end subroutine draw_centres
 
       !> Writes the names of points and links where they stand best at the first frame. Each keeps its distance from
       !> what it names.
-      subroutine put_names()
+      subroutine draw_names()
          type(label_t), allocatable :: labels(:)
          real(wp) :: by(2, size(frame)), offset(2)
          integer :: i, k, last
 
          canvas%snapshot = drawing%frame(1)
          do i = 1, size(list)
-            call note_shape(canvas, list(i))
+            call record_shape(canvas, list(i))
          end do
          call labels_of(canvas, labels)
          do i = 1, size(labels)
             associate (link => labels(i)%link)
-               call put_group(canvas%output, 'class="label"', '')
+               call open_group(canvas%output, 'class="label"', '')
                if (.not. canvas%mechanism%links(link)%ground) then
                   offset = offset_of(labels(i)%of, canvas%snapshot%place(:, link))
                   last = 1
@@ -177,13 +179,13 @@ contains
                      if (drawing%frame(frame(k))%known(link)) last = frame(k)
                      by(:, k) = to_pixels(canvas, point_of(drawing%frame(last)%place(:, link), offset)) - labels(i)%of
                   end do
-                  call put_moving(shift_element, by, smooth)
+                  call draw_moving(shift_element, by, smooth)
                end if
-               call put_label(canvas, labels(i))
-               call put_end(canvas%output, 'g')
+               call draw_label(canvas, labels(i))
+               call close_group(canvas%output, 'g')
             end associate
          end do
-      end subroutine put_names
+      end subroutine draw_names
 
       !> The place (2) in the axes of a link at `position` (3) of what is at the pixel `p` (2).
       pure function offset_of(p, position) result(offset)
@@ -195,40 +197,40 @@ contains
       end function offset_of
 
       !> Writes the time, in red with its words if the instant is flagged: a column of lines behind a window of one.
-      subroutine put_clock()
+      subroutine draw_clock()
          real(wp) :: up(2, size(frame))
          character(:), allocatable :: words
          integer :: k, y
 
          y = nint(canvas%high(2)) + 33
-         call put_window(canvas%output, real([14, y - line_height], wp), real([width - 14, y], wp))
-         call put_group(canvas%output, 'class="clock"', '')
+         call draw_window(canvas%output, real([14, y - line_height], wp), real([width - 14, y], wp))
+         call open_group(canvas%output, 'class="clock"', '')
          up(1, :) = 0.0_wp
          up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
-         call put_moving(shift_element, up, .false.)
+         call draw_moving(shift_element, up, .false.)
          do k = 1, size(frame)
             associate (s => drawing%frame(frame(k)))
                words = caption(canvas, s%t)
-               if (s%mark /= mark_none) &
-                  words = words//': '//words_of_mark(s%mark, s%singularity, canvas%mechanism%polish)
-               call put_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
-                  trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
+               if (s%mark /= flag_none) &
+                  words = words//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
+               call draw_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
+                  trim(merge('class="time flag"', 'class="time"     ', s%mark /= flag_none)), words)
             end associate
          end do
-         call put_end(canvas%output, 'g')
-         call put_end(canvas%output, 'svg')
-      end subroutine put_clock
+         call close_group(canvas%output, 'g')
+         call close_group(canvas%output, 'svg')
+      end subroutine draw_clock
 
       !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
-      subroutine put_moving(element, values, smooth)
+      subroutine draw_moving(element, values, smooth)
          character(*), intent(in) :: element
          real(wp), intent(in) :: values(:, :)
          logical, intent(in) :: smooth
 
          if (size(values, 2) < 2) return
-         call put_columns(canvas%output, element//' calcMode="' &
+         call draw_columns(canvas%output, element//' calcMode="' &
             //trim(merge('linear  ', 'discrete', smooth))//'" dur="'&
             //duration//'" repeatCount="indefinite" values="', values, ' ', ';')
-      end subroutine put_moving
-   end subroutine put_animation
+      end subroutine draw_moving
+   end subroutine draw_animation
 end module animation

@@ -8,14 +8,14 @@ module assembly_table
    use cards, only: ruler_card
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
    use set_analysis, only: set_analysis_t
-   use listing_layout, only: layout_t, put_folded
+   use listing_layout, only: layout_t, write_folded
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use number_format, only: whole
    use phrases
    implicit none
    private
-   public :: put_assemblies
+   public :: write_assemblies
 
    !> Characters of a number on a card, and on a * card; the first is a blank.
    integer, parameter :: number_width = 16, star_width = 24
@@ -32,34 +32,34 @@ module assembly_table
 contains
 
    !> The lines of the assemblies of the set that `set` analyses.
-   subroutine put_assemblies(o, l, set)
+   subroutine write_assemblies(o, l, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(set_analysis_t), intent(in) :: set
       integer :: c, k
 
       call put(o, '')
-      call put(o, ' '//phrase(say_assemblies, set%now%polish)//'   T = '//time_text(l, instant(set%now, 0)) &
+      call put(o, ' '//phrase(text_assemblies, set%now%polish)//'   T = '//time_text(l, instant(set%now, 0)) &
          //l%behind_time)
       do c = 1, size(set%assemblies)
          associate (m => set%now%parts(c), a => set%assemblies(c))
-            if (size(set%assemblies) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
+            if (size(set%assemblies) > 1) call put(o, ' '//phrase(text_mechanism, m%polish)//' '//whole(c))
             do k = 1, size(a%blocks)
-               call put_block(o, m, k, a%blocks(k))
+               call write_block(o, m, k, a%blocks(k))
             end do
-            if (a%negative > 0) call put(o, ' --- '//phrase(say_negative, m%polish)//' '//whole(a%negative))
-            if (a%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' '//whole(max_assemblies))
-            if (a%is_missed) call put(o, ' *** '//phrase(say_first_missed, m%polish))
-            if (size(a%list) == 0) call put(o, '   '//phrase(say_none, m%polish))
+            if (a%negative > 0) call put(o, ' --- '//phrase(text_negative, m%polish)//' '//whole(a%negative))
+            if (a%are_more) call put(o, ' *** '//phrase(text_more_assemblies, m%polish)//' '//whole(max_assemblies))
+            if (a%is_missed) call put(o, ' *** '//phrase(text_first_missed, m%polish))
+            if (size(a%list) == 0) call put(o, '   '//phrase(text_none, m%polish))
             do k = 1, size(a%list)
-               call put_assembly(o, m, k, a)
+               call write_assembly(o, m, k, a)
             end do
          end associate
       end do
-   end subroutine put_assemblies
+   end subroutine write_assemblies
 
    !> The line of block number `k`, with its paths, and what there is to say of it.
-   subroutine put_block(o, m, k, one)
+   subroutine write_block(o, m, k, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
@@ -68,24 +68,24 @@ contains
       integer, allocatable :: shown(:)
 
       shown = shown_links(m, one%links)
-      links = phrase(merge(say_link, say_links, size(shown) == 1), m%polish)
+      links = phrase(merge(text_link, text_links, size(shown) == 1), m%polish)
       if (size(shown) > 0) links = links//' '//listed(m%links(shown)%name, m%polish)
-      call put_folded(o, '   '//phrase(say_block, m%polish)//' '//whole(k)//': ', links, indent)
-      text = phrase(say_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
-         //phrase(say_paths, m%polish)//' '//whole(one%paths)//' = ' &
-         //whole(one%finite)//' '//phrase(say_finite, m%polish)//' + '//whole(one%infinite) &
-         //' '//phrase(say_at_infinity, m%polish)//' + '//whole(one%failed)//' '//phrase(say_failed, m%polish)
-      if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(say_partial, m%polish)
-      call put_folded(o, indent, text//'   '//phrase(say_real, m%polish)//' '//whole(one%real))
-      if (one%is_wide) call put_folded(o, ' *** ', links//': '//phrase(say_wide_block, m%polish))
-      if (one%is_open) call put_folded(o, ' *** ', links//': '//phrase(say_contradiction, m%polish))
-      if (one%moves) call put_folded(o, ' *** ', links//': '//phrase(say_curve_of_assemblies, m%polish))
-      if (one%failed > 0) call put_folded(o, ' *** ', &
-         links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
-   end subroutine put_block
+      call write_folded(o, '   '//phrase(text_block, m%polish)//' '//whole(k)//': ', links, indent)
+      text = phrase(text_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
+         //phrase(text_paths, m%polish)//' '//whole(one%paths)//' = ' &
+         //whole(one%finite)//' '//phrase(text_finite, m%polish)//' + '//whole(one%infinite) &
+         //' '//phrase(text_at_infinity, m%polish)//' + '//whole(one%failed)//' '//phrase(text_failed, m%polish)
+      if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(text_partial, m%polish)
+      call write_folded(o, indent, text//'   '//phrase(text_real, m%polish)//' '//whole(one%real))
+      if (one%is_wide) call write_folded(o, ' *** ', links//': '//phrase(text_wide_block, m%polish))
+      if (one%is_open) call write_folded(o, ' *** ', links//': '//phrase(text_contradiction, m%polish))
+      if (one%moves) call write_folded(o, ' *** ', links//': '//phrase(text_curve_of_assemblies, m%polish))
+      if (one%failed > 0) call write_folded(o, ' *** ', &
+         links//': '//phrase(text_paths_failed, m%polish)//' '//whole(one%failed))
+   end subroutine write_block
 
    !> Assembly number `k` of `assemblies` of the mechanism `m`.
-   subroutine put_assembly(o, m, k, assemblies)
+   subroutine write_assembly(o, m, k, assemblies)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
@@ -97,26 +97,26 @@ contains
 
       associate (one => assemblies%list(k))
          write (distance, '(f12.4)') one%distance
-         text = ' '//phrase(say_assembly, m%polish)//' '//whole(k)//'   '//phrase(say_distance, m%polish)//' = ' &
+         text = ' '//phrase(text_assembly, m%polish)//' '//whole(k)//'   '//phrase(text_distance, m%polish)//' = ' &
             //trim(adjustl(distance))
-         if (size(assemblies%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
+         if (size(assemblies%blocks) > 0) text = text//'   '//phrase(text_determinants, m%polish)//' '
          do i = 1, size(assemblies%blocks)
             ! 0: it is singular; a point: the block has more equations than unknowns.
             text = text//merge('.', signs(one%sign_of(assemblies%blocks(i)%block)), assemblies%blocks(i)%is_redundant)
          end do
-         text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
-         if (one%is_out) text = text//'   '//phrase(say_out_of_stroke, m%polish)
-         if (k == assemblies%chosen) text = text//'   '//phrase(say_chosen, m%polish)
+         text = text//'   '//phrase(merge(text_assembly_proved, text_assembly_open, one%is_proved), m%polish)
+         if (one%is_out) text = text//'   '//phrase(text_out_of_stroke, m%polish)
+         if (k == assemblies%chosen) text = text//'   '//phrase(text_chosen, m%polish)
          call put(o, '')
          call put(o, text)
-         call put_cards(o, m, one)
+         call write_cards(o, m, one)
       end associate
-   end subroutine put_assembly
+   end subroutine write_assembly
 
    !> The LINK cards of assembly `one` of `m`. Where JOINT cards give the dimensions, LINK cards are a part of them:
    !> both stand there, as of a drawing of this assembly, and points that lengths have moved. A drive whose value at
    !> t = 0 was that of the old drawing has a card with this value: it is another one in the new drawing.
-   subroutine put_cards(o, m, one)
+   subroutine write_cards(o, m, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(assembly_t), intent(in) :: one
@@ -153,7 +153,7 @@ contains
          end associate
          if (m%links(i)%from > 0) names(2:) = m%points([m%links(i)%from, m%links(i)%to])%name
          where (m%links(i)%along) numbers = ''
-         call put_card(o, 'LINK    ', names, numbers)
+         call write_card(o, 'LINK    ', names, numbers)
       end do
       do i = 1, size(m%pairs)
          if (.not. is_joint(i)) cycle
@@ -163,7 +163,7 @@ contains
                numbers(1) = number_text(place(1), largest, digits)
                numbers(2) = number_text(place(2), largest, digits)
             end associate
-            call put_card(o, 'JOINT   ', names, numbers(:2))
+            call write_card(o, 'JOINT   ', names, numbers(:2))
          end associate
       end do
       do i = 1, size(m%points)
@@ -173,7 +173,7 @@ contains
             do k = 1, 2
                numbers(k) = number_text(p%offset(k), largest, digits)
             end do
-            call put_card(o, 'POINT   ', names, numbers(:2))
+            call write_card(o, 'POINT   ', names, numbers(:2))
          end associate
       end do
       do i = 1, size(m%drives)
@@ -186,13 +186,13 @@ contains
                if (m%degrees .and. .not. is_length(drive)) x = x/degree
                numbers(k) = number_text(x, merge(abs(x), 1.0_wp, abs(x) > 0.0_wp), drawing_digits)
             end do
-            call put_card(o, 'DRIVE   ', names, numbers)
+            call write_card(o, 'DRIVE   ', names, numbers)
          end associate
       end do
-   end subroutine put_cards
+   end subroutine write_cards
 
    !> A card with its name, labels and numbers; these stand on a * card where one has no room beside a blank.
-   subroutine put_card(o, name, labels, numbers)
+   subroutine write_card(o, name, labels, numbers)
       type(output_t), intent(inout) :: o
       character(8), intent(in) :: name
       character(label_length), intent(in) :: labels(3)
@@ -214,7 +214,7 @@ contains
          call put(o, trim(text))
          call put(o, stars)
       end if
-   end subroutine put_card
+   end subroutine write_card
 
    !> `value` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
    function number_text(value, largest, digits) result(text)

@@ -10,15 +10,15 @@ module canvas
    use number_format, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
-   use svg, only: page_t, width, tie, put_words, put_circle, put_line, put_group, put_end, attribute, fitted
+   use svg, only: page_t, width, tie, draw_words, draw_circle, draw_line, open_group, close_group, attribute, fitted
    use text_output, only: output_t
-   use listing, only: words_of_mark
+   use listing, only: words_of_flag
    use listing_layout, only: angle_unit
    use phrases
    implicit none
    private
-   public :: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_outlines, place_name, put_label
-   public :: caption, put_foot, put_bar, add_lines, add_box, cover_of
+   public :: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_outlines, place_name, draw_label
+   public :: caption, draw_foot, draw_bar, add_lines, add_box, cover_of
 
    !> The part of a page on which a set is drawn. A place (x, y) of the drawing is at shift + scale (x, -y) in pixels.
    type :: canvas_t
@@ -146,12 +146,12 @@ contains
       allocate (canvas%ink(int((canvas%high(1) - canvas%low(1))/cell_side) + 1, &
          int((canvas%high(2) - canvas%low(2))/cell_side) + 1), source=0.0_wp)
 
-      call put_group(canvas%output, 'class="set" data-set="'//whole(canvas%mechanism%set_number)//'" data-scale="' &
+      call open_group(canvas%output, 'class="set" data-set="'//whole(canvas%mechanism%set_number)//'" data-scale="' &
          //full(canvas%scale) &
          //'" data-x="'//fitted(canvas%shift(1))//'" data-y="'//fitted(canvas%shift(2)) &
          //'" data-origin="'//full(drawing%origin(1))//' '//full(drawing%origin(2)) &
          //'" data-t="'//full(snapshot%t)//'"', trim(canvas%mechanism%title))
-      call put_words(canvas%output, real([14, top + 24], wp), 'start', 'class="title"', &
+      call draw_words(canvas%output, real([14, top + 24], wp), 'start', 'class="title"', &
          trim(whole(canvas%mechanism%set_number)//'.  '//canvas%mechanism%title))
 
    contains
@@ -204,7 +204,7 @@ contains
    end function pixels_of
 
    !> Draws a shape at the position that the canvas shows, unless its link is not known there.
-   subroutine put_shape(canvas, shape)
+   subroutine draw_shape(canvas, shape)
       type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: shape
       real(wp), allocatable :: pixels(:, :)
@@ -213,16 +213,16 @@ contains
       if (size(pixels) == 0) return
       select case (shape%element)
       case ('circle')
-         call put_circle(canvas%output, pixels(:, 1), shape%radius, shape%attributes)
+         call draw_circle(canvas%output, pixels(:, 1), shape%radius, shape%attributes)
       case ('polygon')
-         call put_line(canvas%output, 'polygon', pixels, shape%attributes)
+         call draw_line(canvas%output, 'polygon', pixels, shape%attributes)
       case default
-         call put_line(canvas%output, 'polyline', pixels, shape%attributes)
+         call draw_line(canvas%output, 'polyline', pixels, shape%attributes)
       end select
-   end subroutine put_shape
+   end subroutine draw_shape
 
    !> Notes a shape at the position that the canvas shows, so that names keep clear of it.
-   subroutine note_shape(canvas, shape)
+   subroutine record_shape(canvas, shape)
       type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: shape
       real(wp), allocatable :: pixels(:, :)
@@ -235,10 +235,10 @@ contains
          if (shape%element == 'polygon') pixels = reshape([pixels, pixels(:, 1)], [2, size(pixels, 2) + 1])
          call add_lines(canvas, pixels, shape%weight)
       end if
-   end subroutine note_shape
+   end subroutine record_shape
 
    !> Draws the outlines of moving shapes as thin lines at a faint position.
-   subroutine put_outlines(canvas, list, snapshot)
+   subroutine draw_outlines(canvas, list, snapshot)
       type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: list(:)   !< all shapes; only the moving ones are drawn
       type(snapshot_t), intent(in) :: snapshot
@@ -248,9 +248,9 @@ contains
       do i = 1, size(list)
          if (.not. list(i)%is_faint .or. canvas%mechanism%links(max(1, list(i)%link))%ground) cycle
          pixels = pixels_of(canvas, list(i), snapshot)
-         if (size(pixels) > 0) call put_line(canvas%output, list(i)%element, pixels, 'class="thin"')
+         if (size(pixels) > 0) call draw_line(canvas%output, list(i)%element, pixels, 'class="thin"')
       end do
-   end subroutine put_outlines
+   end subroutine draw_outlines
 
    !> Gives a time in words, with the values of the drives, as far as there is room.
    function caption(canvas, t) result(words)
@@ -279,24 +279,24 @@ contains
 
    !> Ends the picture. Below it are the time of the first flagged instant, why it is flagged, and how many are. The
    !> scale bar is at the foot on the right.
-   subroutine put_foot(canvas)
+   subroutine draw_foot(canvas)
       type(canvas_t), intent(in) :: canvas
       character(:), allocatable :: words
 
       if (canvas%drawing%flagged > 0) then
          associate (s => canvas%drawing%flag)
-            words = 'T = '//fitted(s%t)//': '//words_of_mark(s%mark, s%singularity, canvas%mechanism%polish)
+            words = 'T = '//fitted(s%t)//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
          end associate
          if (canvas%drawing%flagged > 1) words = words//'; ' &
-            //phrase(say_flagged_in_all, canvas%mechanism%polish)//' '//whole(canvas%drawing%flagged)
-         call put_words(canvas%output, [14.0_wp, canvas%high(2) + 45.0_wp], 'start', 'class="flag"', words)
+            //phrase(text_flagged_in_all, canvas%mechanism%polish)//' '//whole(canvas%drawing%flagged)
+         call draw_words(canvas%output, [14.0_wp, canvas%high(2) + 45.0_wp], 'start', 'class="flag"', words)
       end if
-      call put_bar(canvas, canvas%high(2) + 16.0_wp, canvas%scale, trim(canvas%mechanism%length_unit), 'class="scale"')
-      call put_end(canvas%output, 'g')
-   end subroutine put_foot
+      call draw_bar(canvas, canvas%high(2) + 16.0_wp, canvas%scale, trim(canvas%mechanism%length_unit), 'class="scale"')
+      call close_group(canvas%output, 'g')
+   end subroutine draw_foot
 
    !> Draws a scale bar on the right. Its length is 1, 2 or 5 times a power of ten of the unit.
-   subroutine put_bar(canvas, level, scale, unit, attributes)
+   subroutine draw_bar(canvas, level, scale, unit, attributes)
       type(canvas_t), intent(in) :: canvas
       real(wp), intent(in) :: level          !< pixels, down from the top of the page
       real(wp), intent(in) :: scale          !< pixels in one unit
@@ -312,10 +312,10 @@ contains
       end if
       x = real(width - 24, wp)
       from = x - length*scale
-      call put_line(canvas%output, 'polyline', reshape([from, level - 4.0_wp, from, level + 4.0_wp, from, level, &
+      call draw_line(canvas%output, 'polyline', reshape([from, level - 4.0_wp, from, level + 4.0_wp, from, level, &
          x, level, x, level - 4.0_wp, x, level + 4.0_wp], [2, 6]), attributes)
-      call put_words(canvas%output, [from - 8.0_wp, level + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//unit)
-   end subroutine put_bar
+      call draw_words(canvas%output, [from - 8.0_wp, level + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//unit)
+   end subroutine draw_bar
 
    !> Notes the lines through points, which names should not cross.
    pure subroutine add_lines(canvas, points, weight)
@@ -402,14 +402,14 @@ contains
    end subroutine place_name
 
    !> Writes the name of a label, with a thin line to the thing that it names if the name is far from it.
-   subroutine put_label(canvas, label)
+   subroutine draw_label(canvas, label)
       type(canvas_t), intent(in) :: canvas
       type(label_t), intent(in) :: label
 
       if (norm2(label%near - label%of) > label%clear + longest_without_line) &
-         call put_line(canvas%output, 'polyline', reshape([label%of, label%near], [2, 2]), 'class="leader"')
-      call put_words(canvas%output, label%start, 'start', label%attributes, label%name)
-   end subroutine put_label
+         call draw_line(canvas%output, 'polyline', reshape([label%of, label%near], [2, 2]), 'class="leader"')
+      call draw_words(canvas%output, label%start, 'start', label%attributes, label%name)
+   end subroutine draw_label
 
    !> Measures how much of all that is drawn a line would cover or come near, in pixels of lines.
    pure real(wp) function cover_of(canvas, p)

@@ -17,11 +17,12 @@ module circuits_picture
    use circuit_trace, only: end_closed
    use circuits, only: circuits_t
    use shapes, only: color_of
-   use svg, only: page_t, width, attribute, put_end, put_group, put_line, put_circle, put_words, put_window, fitted
+   use svg, only: page_t, width, attribute, close_group, open_group, draw_line, draw_circle, draw_words, draw_window, &
+      fitted
    use phrases
    implicit none
    private
-   public :: put_circuits
+   public :: draw_circuits
 
    !> A circuit in a chart.
    type :: chart_curve_t
@@ -58,7 +59,7 @@ contains
    !> Draws the diagrams of the circuits `found` of the set `m`, which `set` analyses, at the end of the `page`: a chart
    !> for each number that PRINT asks for and that varies, not driven; above them the names of the circuits in their
    !> colours, as far as there is room.
-   subroutine put_circuits(page, m, set, found)
+   subroutine draw_circuits(page, m, set, found)
       type(page_t), intent(inout) :: page
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: set
@@ -68,11 +69,11 @@ contains
 
       do i = 1, size(found)
          associate (top => real(page%height, wp))
-            call put_words(page%body, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', &
+            call draw_words(page%body, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', &
                trim(whole(m%set_number)//'.  '//m%title))
             do k = 1, min(size(found(i)%list), int((real(width, wp) - 20.0_wp)/legend_width))
-               call put_words(page%body, [14.0_wp + legend_width*real(k - 1, wp), top + 44.0_wp], 'start', &
-                  'style="fill:'//color_of(k)//'"', phrase(say_circuit, m%polish)//' '//whole(k))
+               call draw_words(page%body, [14.0_wp + legend_width*real(k - 1, wp), top + 44.0_wp], 'start', &
+                  'style="fill:'//color_of(k)//'"', phrase(text_circuit, m%polish)//' '//whole(k))
             end do
          end associate
          page%height = page%height + legend_height
@@ -82,21 +83,21 @@ contains
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
                   ! Of a link that turns its angle alone.
-                  if (r%kind == request_link) call put_chart(page, set, own, found(i), r, angle_column, does_vary)
+                  if (r%kind == request_link) call draw_chart(page, set, own, found(i), r, angle_column, does_vary)
                   if (does_vary) cycle
                   do column = 1, min(forms(form_of(own, r))%coordinates, &
                      merge(angle_column - 1, angle_column, r%kind == request_link))
-                     call put_chart(page, set, own, found(i), r, column, does_vary)
+                     call draw_chart(page, set, own, found(i), r, column, does_vary)
                   end do
                end associate
             end do
          end associate
       end do
-   end subroutine put_circuits
+   end subroutine draw_circuits
 
    !> Draws `column` of the row of `request` along the circuits `found` of `m`, over their drive, if it is not constant
    !> (`does_vary`) nor the drive itself.
-   subroutine put_chart(page, set, m, found, request, column, does_vary)
+   subroutine draw_chart(page, set, m, found, request, column, does_vary)
       type(page_t), intent(inout) :: page
       type(set_analysis_t), intent(in) :: set
       type(mechanism_t), intent(in) :: m
@@ -175,7 +176,7 @@ contains
       corner = [left_room, real(page%height, wp) + top_room]
       extent = [real(width, wp) - left_room - right_room, diagram_height]
       page%height = page%height + chart_height
-      call put_group(page%body, 'class="circuits" '//attribute('data-drive', drive_words), name)
+      call open_group(page%body, 'class="circuits" '//attribute('data-drive', drive_words), name)
       do k = 1, 2
          range = high(k) - low(k)
          power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
@@ -184,18 +185,18 @@ contains
          do number = ceiling(low(k)/step - 1.0e-6_wp, int64), floor(high(k)/step + 1.0e-6_wp, int64)
             x = (real(number, wp)*step - low(k))/range
             at = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
-            call put_line(page%body, 'polyline', reshape([at, at + to_end(:, k)], [2, 2]), thin)
-            call put_words(page%body, at + to_number(:, k), trim(anchors(k)), 'class="between"', &
+            call draw_line(page%body, 'polyline', reshape([at, at + to_end(:, k)], [2, 2]), thin)
+            call draw_words(page%body, at + to_number(:, k), trim(anchors(k)), 'class="between"', &
                fitted(real(number, wp)*step))
          end do
       end do
-      call put_words(page%body, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', name)
-      call put_words(page%body, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', &
+      call draw_words(page%body, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', name)
+      call draw_words(page%body, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', &
          drive_words//', '//trim(units(1)))
 
       ! Each curve as many times, whole turns apart, as it enters the window; then its dead points and change points.
       ! The last point of a closed circuit is the first.
-      call put_window(page%body, corner, corner + extent)
+      call draw_window(page%body, corner, corner + extent)
       first = [(first_equal(i), i=1, size(curves))]
       do i = 1, size(curves)
          color = color_of(i)
@@ -205,30 +206,30 @@ contains
             //fitted(dash_length)//' '//fitted(dash_length*(equal - 1)) &
             //'" stroke-dashoffset="'//fitted(-dash_length*count(first(:i - 1) == first(i)))//'"'
          associate (circuit => found%list(i), p => curves(i)%places)
-            call put_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
-               phrase(say_circuit, m%polish)//' '//whole(i))
+            call open_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
+               phrase(text_circuit, m%polish)//' '//whole(i))
             from = turns_of(minval(p, dim=2))
             to = turns_of(maxval(p, dim=2))
             n = size(p, 2)
             do k = from(1), to(1)
                do j = from(2), to(2)
-                  call put_line(page%body, 'polyline', pixels_of(p - spread([k, j]*turn, 2, n)), style)
+                  call draw_line(page%body, 'polyline', pixels_of(p - spread([k, j]*turn, 2, n)), style)
                end do
             end do
             if (circuit%ends(1) == end_closed) n = n - 1
             do k = 1, n
-               if (circuit%points(k)%is_dead) call put_circle(page%body, in_window(p(:, k)), dot_radius, &
+               if (circuit%points(k)%is_dead) call draw_circle(page%body, in_window(p(:, k)), dot_radius, &
                   'class="dead" style="stroke:none;fill:'//color//'"')
-               if (circuit%points(k)%is_change) call put_circle(page%body, in_window(p(:, k)), ring_radius, &
+               if (circuit%points(k)%is_change) call draw_circle(page%body, in_window(p(:, k)), ring_radius, &
                   'class="change" style="fill:none;stroke:'//color//'"')
             end do
          end associate
-         call put_end(page%body, 'g')
+         call close_group(page%body, 'g')
       end do
-      call put_end(page%body, 'svg')
-      call put_line(page%body, 'polygon', reshape([corner, corner(1) + extent(1), corner(2), corner + extent, &
+      call close_group(page%body, 'svg')
+      call draw_line(page%body, 'polygon', reshape([corner, corner(1) + extent(1), corner(2), corner + extent, &
          corner(1), corner(2) + extent(2)], [2, 4]), thin)
-      call put_end(page%body, 'g')
+      call close_group(page%body, 'g')
 
    contains
 
@@ -295,5 +296,5 @@ contains
 
          pixel = reshape(pixels_of(reshape(p - turns_of(p)*turn, [2, 1])), [2])
       end function in_window
-   end subroutine put_chart
+   end subroutine draw_chart
 end module circuits_picture

@@ -12,23 +12,23 @@ module circuits_table
    use text_output, only: output_t, put
    use number_format, only: whole
    use listing, only: at_limit, full_turn_words, measure, value_digits
-   use listing_layout, only: put_folded, angle_unit
+   use listing_layout, only: write_folded, angle_unit
    use phrases
    implicit none
    private
-   public :: put_circuits
+   public :: write_circuits
 
    !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
    integer, parameter :: column_ends(3) = [9, 17, 31]
    !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
-   type(phrase_t), parameter :: end_words(end_far:end_shut) = [say_not_limited, say_lost, say_shut]
+   type(phrase_t), parameter :: end_words(end_far:end_shut) = [text_not_limited, text_lost, text_shut]
    !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
    integer, parameter :: meeting_digits = 6
 
 contains
 
    !> Writes the circuits `list` of the `set` at its end.
-   subroutine put_circuits(o, set, list)
+   subroutine write_circuits(o, set, list)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set
       type(circuits_t), intent(in) :: list(:)
@@ -38,25 +38,25 @@ contains
       do n = 1, size(list)
          if (n > 1) call put(o, '')
          associate (found => list(n), m => set%parts(list(n)%part))
-            call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
+            call put(o, ' '//phrase(text_circuits, m%polish)//', '//phrase(text_drive, m%polish)//' ' &
                //trim(drive_name(m, m%drives(found%drive))))
-            if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
+            if (.not. found%is_complete) call put(o, ' *** '//phrase(text_circuits_missing, m%polish))
             if (found%are_more) &
-               call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(size(found%list)))
+               call put(o, ' *** '//phrase(text_more_circuits, m%polish)//' '//whole(size(found%list)))
             if (found%is_redundant) then
-               call put(o, ' *** '//phrase(say_not_followed, m%polish))
+               call put(o, ' *** '//phrase(text_not_followed, m%polish))
             else if (size(found%list) == 0) then
-               call put(o, '   '//phrase(say_none, m%polish))
+               call put(o, '   '//phrase(text_none, m%polish))
             else
-               call put_branches(o, m, found)
+               call write_branches(o, m, found)
             end if
          end associate
       end do
-   end subroutine put_circuits
+   end subroutine write_circuits
 
    !> A row for each branch of the circuits `found` of one drive of the mechanism `m`, then the dead points and the
    !> change points.
-   subroutine put_branches(o, m, found)
+   subroutine write_branches(o, m, found)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
@@ -65,10 +65,10 @@ contains
       type(diagnostic_t) :: meeting
       integer :: i, k
 
-      row = ' '//phrase(say_circuit, m%polish)
-      row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
-      row(column_ends(2) + 1:) = phrase(say_assembly_number, m%polish)
-      call put(o, row//phrase(say_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
+      row = ' '//phrase(text_circuit, m%polish)
+      row(column_ends(1) + 1:) = phrase(text_branch, m%polish)
+      row(column_ends(2) + 1:) = phrase(text_assembly_number, m%polish)
+      call put(o, row//phrase(text_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
          //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
       do k = 1, size(found%branches)
          associate (b => found%branches(k))
@@ -78,30 +78,30 @@ contains
             ! Where there are more assemblies than the column has room for, the range stands behind them.
             text = text(2:)
             text = row(:column_ends(2))//text//repeat(' ', max(1, column_ends(3) - column_ends(2) - len(text)))
-            call put_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
+            call write_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
          end associate
       end do
 
       ! For each dead point the drive's value, links, and the branches that end there.
-      if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
+      if (size(found%dead) > 0) call put(o, ' '//phrase(text_dead_points, m%polish))
       do i = 1, size(found%dead)
-         text = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
+         text = meeting_words(text_branch, text_branches, pack([(k, k=1, size(found%branches))], &
             [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
             //value_words(m, found, found%dead(i)%value)
          if (found%dead(i)%links(1) > 0) text = text//', '//at_limit(m, found%dead(i))
-         call put_folded(o, '   ', text, repeat(' ', 6))
+         call write_folded(o, '   ', text, repeat(' ', 6))
       end do
 
       ! For each change point the circuits that meet there, and the drive's value.
-      if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
+      if (size(found%meetings) > 0) call put(o, ' '//phrase(text_change_points, m%polish))
       do i = 1, size(found%meetings)
          meeting = diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=found%meetings(i)%value)
          if (abs(meeting%value) <= sqrt(epsilon(1.0_wp))) meeting%value = 0.0_wp
-         call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
+         call put(o, '   '//meeting_words(text_circuit, text_circuit_numbers, &
             pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
             //measure(m, meeting, meeting_digits))
       end do
-   end subroutine put_branches
+   end subroutine write_branches
 
    !> The range of the drive on `branch`.
    function range_words(m, found, branch) result(text)
@@ -114,7 +114,7 @@ contains
 
       associate (circuit => found%list(branch%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, branch%range(1))
+            text = phrase(text_at_rest, m%polish)//' '//value_words(m, found, branch%range(1))
          else if (all(circuit%ends == end_closed) .and. all(branch%dead == 0)) then
             text = full_turn_words(turns_of(circuit), m%polish)
          else
@@ -154,10 +154,10 @@ contains
       if (n == 1) then
          text = phrase(one, polish)//words_of(numbers)
       else
-         text = phrase(many, polish)//words_of(numbers(:n - 1))//' '//phrase(say_and, polish)//words_of(numbers(n:)) &
-            //' '//phrase(say_meet, polish)
+         text = phrase(many, polish)//words_of(numbers(:n - 1))//' '//phrase(text_and, polish)//words_of(numbers(n:)) &
+            //' '//phrase(text_meet, polish)
       end if
-      text = text//' '//phrase(say_at, polish)
+      text = text//' '//phrase(text_at, polish)
    end function meeting_words
 
    !> The `numbers`, a blank before each.

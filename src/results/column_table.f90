@@ -11,13 +11,13 @@ module column_table
    use rows, only: finished_row_t
    use listing_layout, only: layout_t, line_length, column_name, column_unit
    use listing_tables, only: law_error, mask_words
-   use table, only: format_t, put_cell, put_number, power_text, right
+   use table, only: format_t, write_cell, write_number, power_text, right
    use text_output, only: output_t, open_held, move_text, put
    use number_format, only: numeral_length
    use phrases
    implicit none
    private
-   public :: column_table_t, new_column_table, note_columns, put_columns
+   public :: column_table_t, new_column_table, add_table_line, write_columns
 
    !> Behind the time of a flagged instant.
    character(1), parameter :: flag = '*'
@@ -57,13 +57,13 @@ contains
       if (.not. allocated(set%columns)) return
       table%alone = .not. any([(any(set%parts(c)%requests%every > 0), c=1, set%count)])
       allocate (table%columns(1 + size(l%drives) + size(set%columns)))
-      call put_heads(table%columns(1), '', 'T', l%time, trim(set%time_unit))
+      call write_heads(table%columns(1), '', 'T', l%time, trim(set%time_unit))
       do i = 1, size(l%drives)
          table%columns(1 + i)%drive = i
-         call take_drive(table%columns(1 + i))
+         call set_drive_column(table%columns(1 + i))
       end do
       do i = 1, size(set%columns)
-         call take_number(i, table%columns(1 + size(l%drives) + i))
+         call set_number_column(i, table%columns(1 + size(l%drives) + i))
       end do
 
       ! A table ends where a line has no room for the next column. After the time there is the flag.
@@ -85,7 +85,7 @@ contains
    contains
 
       !> Makes the column of a drive: its kind over what it drives.
-      subroutine take_drive(column)
+      subroutine set_drive_column(column)
          type(listed_column_t), intent(inout) :: column   !< has the number of the drive
          character(:), allocatable :: name
          integer :: border
@@ -93,13 +93,13 @@ contains
          associate (place => set%drives(column%drive), drive => l%drives(column%drive))
             name = trim(drive_name(set%parts(place%part), set%parts(place%part)%drives(place%number)))
             border = index(name, ' ')
-            call put_heads(column, name(:border - 1), name(border + 1:), drive%format, &
+            call write_heads(column, name(:border - 1), name(border + 1:), drive%format, &
                trim(l%unit(merge(of_angle, of_length, drive%format%is_angle))))
          end associate
-      end subroutine take_drive
+      end subroutine set_drive_column
 
       !> Makes the column of COLUMN number `i`: the name of its row over that of the number.
-      subroutine take_number(i, column)
+      subroutine set_number_column(i, column)
          integer, intent(in) :: i
          type(listed_column_t), intent(inout) :: column
          type(request_t) :: request
@@ -111,15 +111,15 @@ contains
             column%number = columns_of_rows(column_at(form_of(set%parts(part), request), set%columns(i)%at(1), &
                set%columns(i)%at(2)))
             name = subject_name(set%parts(part), request%kind, request%subject)
-            if (request%drive > 0) name = trim(name)//' '//phrase(say_by, set%polish)//' ' &
+            if (request%drive > 0) name = trim(name)//' '//phrase(text_by, set%polish)//' ' &
                //drive_name(set%parts(part), set%parts(part)%drives(request%drive))
-            call put_heads(column, trim(name), column_name(l, column%number), &
+            call write_heads(column, trim(name), column_name(l, column%number), &
                l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
          end associate
-      end subroutine take_number
+      end subroutine set_number_column
 
       !> Gives a column its heads and the width that they need.
-      subroutine put_heads(column, above, below, format, unit)
+      subroutine write_heads(column, above, below, format, unit)
          type(listed_column_t), intent(inout) :: column
          character(*), intent(in) :: above, below   !< its names
          type(format_t), intent(in) :: format
@@ -129,11 +129,11 @@ contains
          if (format%power /= 0) column%heads(line_of_power) = power_text(format%power)
          column%format = format
          column%width = max(numeral_length, 2 + maxval(len_trim(column%heads)))
-      end subroutine put_heads
+      end subroutine write_heads
    end subroutine new_column_table
 
    !> Takes the rows of an instant: a line for each table.
-   subroutine note_columns(table, l, motions, rows)
+   subroutine add_table_line(table, l, motions, rows)
       type(column_table_t), intent(inout) :: table
       type(layout_t), intent(in) :: l
       type(set_motion_t), intent(in) :: motions
@@ -143,7 +143,7 @@ contains
       real(wp) :: f(3)
       integer :: n, i, last, cell
 
-      call put_number(table%columns(1)%format, 0, motions%motions(1)%t, 0.0_wp, time, table%masked)
+      call write_number(table%columns(1)%format, 0, motions%motions(1)%t, 0.0_wp, time, table%masked)
       table%flagged = table%flagged .or. is_flagged(motions)
       do n = 1, size(table%lines)
          line = right(time, table%columns(1)%width)
@@ -153,12 +153,12 @@ contains
             associate (c => table%columns(i))
                if (c%drive > 0) then
                   f = drive_motion(l%drives(c%drive)%law, motions%motions(1)%t)
-                  call put_number(c%format, 0, f(1), law_error(l%drives(c%drive), motions%motions(1)%t), field, &
+                  call write_number(c%format, 0, f(1), law_error(l%drives(c%drive), motions%motions(1)%t), field, &
                      table%masked)
                else
                   associate (row => rows(c%request), at => c%number%at)
                      cell = cell_of(c%number, row%known, row%state)
-                     call put_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, &
+                     call write_cell(c%format, 0, cell, row%value(at(1), at(2)), row%doubt(at(1), at(2)), l%words, &
                         field, table%masked)
                   end associate
                end if
@@ -168,10 +168,10 @@ contains
          end do
          call put(table%lines(n), line(:len_trim(line)))
       end do
-   end subroutine note_columns
+   end subroutine add_table_line
 
    !> Writes the tables, and below them what there is to say.
-   subroutine put_columns(o, table, settings)
+   subroutine write_columns(o, table, settings)
       type(output_t), intent(inout) :: o
       type(column_table_t), intent(inout) :: table   !< gives up its lines
       class(settings_t), intent(in) :: settings
@@ -190,9 +190,9 @@ contains
          end do
          call move_text(table%lines(n), o)
       end do
-      if (table%flagged .and. .not. table%alone) call put(o, ' --- '//flag//': '//phrase(say_flag_above, &
+      if (table%flagged .and. .not. table%alone) call put(o, ' --- '//flag//': '//phrase(text_flag_above, &
          settings%polish))
       if (table%masked) call put(o, mask_words(settings))
       call move_text(table%remarks, o)
-   end subroutine put_columns
+   end subroutine write_columns
 end module column_table

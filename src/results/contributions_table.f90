@@ -16,7 +16,7 @@ module contributions_table
    use phrases
    implicit none
    private
-   public :: put_shares
+   public :: write_shares
 
    !> Smaller shares are only counted.
    real(wp), parameter :: least_share = 1.0e-4_wp
@@ -24,12 +24,12 @@ module contributions_table
    !> By this part more, what rounding has left below a half is rounded up.
    real(wp), parameter :: half_up = max(1.0e-9_wp, 8.0_wp*epsilon(1.0_wp))
    !> Characters of the name of a number before its sensitivity, unless it is longer.
-   integer, parameter :: number_name = 36
+   integer, parameter :: parameter_name = 36
 
 contains
 
    !> Writes the shares after the last instant of the `set`.
-   subroutine put_shares(o, l, shares, set)
+   subroutine write_shares(o, l, shares, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(shares_t), intent(in) :: shares
@@ -38,15 +38,15 @@ contains
       integer :: i, c, d, j, form
 
       call put(o, '')
-      call put(o, ' '//phrase(say_shares, set%polish))
+      call put(o, ' '//phrase(text_shares, set%polish))
       if (any([(any(is_centre(set%parts(c)%requests%kind)), c=1, set%count)])) &
-         call put(o, ' --- '//phrase(say_no_shares, set%polish))
+         call put(o, ' --- '//phrase(text_no_shares, set%polish))
       if (any([(any(set%parts(c)%requests%drive > 0), c=1, set%count)])) &
-         call put(o, ' --- '//phrase(say_no_ratio_shares, set%polish))
+         call put(o, ' --- '//phrase(text_no_ratio_shares, set%polish))
       do c = 1, set%count
          do d = 1, size(set%parts(c)%tolerances)
             if (shares%jams(d, c)) &
-               call put(o, ' *** '//trim(set%parts(c)%tolerances(d)%name)//': '//phrase(say_jams, set%polish))
+               call put(o, ' *** '//trim(set%parts(c)%tolerances(d)%name)//': '//phrase(text_jams, set%polish))
          end do
       end do
       do i = 1, size(set%rows)
@@ -56,16 +56,16 @@ contains
             form = merge(row_turning, form_of(set%parts(part), request), request%angle_alone)
             do j = forms(form)%first, forms(form)%last
                associate (c => columns_of_rows(j))
-                  call put_quantity(o, l, l%own(part)%format(c%dimension, c%order), set%parts(part), request, c, &
+                  call write_quantity(o, l, l%own(part)%format(c%dimension, c%order), set%parts(part), request, c, &
                      shares%list(c%at(1), c%at(2), i))
                end associate
             end do
          end associate
       end do
-   end subroutine put_shares
+   end subroutine write_shares
 
    !> Writes the lines of a quantity, one column of a row; none where the tables, with the digits `format`, have zero.
-   subroutine put_quantity(o, l, format, m, request, column, share)
+   subroutine write_quantity(o, l, format, m, request, column, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(format_t), intent(in) :: format
@@ -78,7 +78,7 @@ contains
       integer :: i
       real(wp), allocatable :: part(:)
       character(12) :: sensitivity
-      character(max(number_name, len(m%tolerances%name))) :: name
+      character(max(parameter_name, len(m%tolerances%name))) :: name
 
       if (.not. allocated(share%s)) return
       f = format
@@ -90,7 +90,7 @@ contains
       end associate
       call put(o, ' '//word//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
          //column_name(l, column)//'   T = '//time_text(l, share%t)//l%behind_time &
-         //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
+         //'   RSS = '//value_text(share%root)//'   '//phrase(text_worst, m%polish)//' = ' &
          //value_text(share%worst)//' '//unit)
 
       ! A line for each number with a share of note, the largest first: share, name, sensitivity, tolerance.
@@ -103,12 +103,13 @@ contains
             name = one%name
             ! A half is rounded up, whatever the last bit.
             call put(o, fixed(100.0_wp*part(i)*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
-               //name(:max(number_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
+               //name(:max(parameter_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
                //trim(one%unit_name))
          end associate
          part(i) = -1.0_wp
       end do
-      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(count(part >= 0.0_wp)))
+      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(text_small_shares, m%polish)//' ' &
+         //whole(count(part >= 0.0_wp)))
 
    contains
 
@@ -119,5 +120,5 @@ contains
 
          text = number_text(f, value, 0.0_wp)
       end function value_text
-   end subroutine put_quantity
+   end subroutine write_quantity
 end module contributions_table

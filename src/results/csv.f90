@@ -20,14 +20,14 @@ module csv
    use drives, only: drive_motion
    use points, only: row_t
    use independent, only: set_t, request_of
-   use name_table, only: name_table_t, put_name, find_name
+   use name_table, only: name_table_t, store_name, find_name
    use names, only: drive_name, subject_name
    use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
    use rows, only: finished_row_t
    use table, only: add_name, add_number
    use text_output, only: output_t, put, add, replaced
-   use number_format, only: whole, full, put_full, full_length
+   use number_format, only: whole, full, write_full, full_length
    implicit none
    private
    public :: csv_head, csv_instant, marks
@@ -37,7 +37,7 @@ module csv
    character(12), parameter :: marks(0:5) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', &
       'STROKE']
    !> The mark where nothing is missing but known digits.
-   character(*), parameter :: mark_unknown = 'UNKNOWN'
+   character(*), parameter :: flag_unknown = 'UNKNOWN'
    logical, parameter :: all_known(3, 0:2) = .true.
    !> Of a row whose errors are not known.
    real(wp), parameter :: no_errors(3, 0:2) = nothing_known
@@ -140,7 +140,7 @@ contains
                call add_name(o, row%name(:len_trim(row%name)))
                call add_values(place, row%value, has_digit)
                call add(o, ',')
-               if (mark == '' .and. is_unknown) mark = mark_unknown
+               if (mark == '' .and. is_unknown) mark = flag_unknown
                call add(o, mark(:len_trim(mark)))
 
                if (motions%errors(1)%asked) then
@@ -177,7 +177,7 @@ contains
                   x = value(at(1), at(2))
                   if (motions%degrees .and. column%dimension == of_angle) x = in_degrees(x)
                end associate
-               call put_full(x, cells(used + 1:used + full_length), length)
+               call write_full(x, cells(used + 1:used + full_length), length)
                used = used + length
             end do
          end do
@@ -212,7 +212,7 @@ contains
       do i = 1, size(rows)
          if (requests(rows(i))%kind /= request_link) cycle
          associate (own => set%parts(set%rows(rows(i))%part))
-            call put_name(links, own%links(requests(rows(i))%subject)%name, i, k)
+            call store_name(links, own%links(requests(rows(i))%subject)%name, i, k)
          end associate
       end do
 

@@ -9,7 +9,7 @@ module drawing
    use plane_vectors, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
-   use motion, only: known_of, mark_none, singular_unclear
+   use motion, only: known_of, flag_none, singular_unclear
    use columns, only: columns_of_rows, column_at, cell_of, cell_number
    use points, only: row_t, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
@@ -56,8 +56,8 @@ module drawing
       logical, allocatable :: known(:)       !< (links)
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
-      integer :: mark = mark_none            !< of the first part that is flagged
-      integer :: singularity = singular_unclear   !< of mark_singular: the kind of the position
+      integer :: mark = flag_none            !< of the first part that is flagged
+      integer :: singularity = singular_unclear   !< of flag_singular: the kind of the position
    end type snapshot_t
 
    !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
@@ -266,7 +266,7 @@ contains
          now%t = motions%motions(1)%t
          do c = motions%count, 1, -1
             associate (links => motions%cards(c)%of, q => motions%motions(c))
-               if (q%mark /= mark_none .and. is_own) then
+               if (q%mark /= flag_none .and. is_own) then
                   now%mark = q%mark
                   now%singularity = q%singularity
                end if

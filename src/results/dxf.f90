@@ -14,7 +14,7 @@ module dxf
    use text_output, only: output_t, put
    implicit none
    private
-   public :: point_path_t, new_paths, note_paths, begin_dxf, put_dxf, end_dxf
+   public :: point_path_t, new_paths, extend_paths, begin_dxf, write_dxf, end_dxf
 
    !> The path of a point.
    type :: point_path_t
@@ -56,7 +56,7 @@ contains
 
    !> Adds instant number `k`, from 0, of the motion `motions` to the `paths`; the last one tells whether the motion
    !> closes.
-   subroutine note_paths(paths, motions, k)
+   subroutine extend_paths(paths, motions, k)
       type(point_path_t), intent(inout) :: paths(:)
       type(set_motion_t), intent(in) :: motions
       integer, intent(in) :: k
@@ -79,27 +79,27 @@ contains
             one%is_closed = one%is_closed .and. closes(apart(:2))
          end do
       end associate
-   end subroutine note_paths
+   end subroutine extend_paths
 
    !> Begins the file `o`.
    subroutine begin_dxf(o)
       type(output_t), intent(inout) :: o
 
-      call put_pair(o, 0, 'SECTION')
-      call put_pair(o, 2, 'ENTITIES')
+      call write_pair(o, 0, 'SECTION')
+      call write_pair(o, 2, 'ENTITIES')
    end subroutine begin_dxf
 
    !> Ends the file `o`.
    subroutine end_dxf(o)
       type(output_t), intent(inout) :: o
 
-      call put_pair(o, 0, 'ENDSEC')
-      call put_pair(o, 0, 'EOF')
+      call write_pair(o, 0, 'ENDSEC')
+      call write_pair(o, 0, 'EOF')
    end subroutine end_dxf
 
    !> Writes the entities of the `drawing` of a set, whose first frame is the first instant, and the `paths`. Layers
    !> of the first set of the file have no number.
-   subroutine put_dxf(o, drawing, paths, number)
+   subroutine write_dxf(o, drawing, paths, number)
       type(output_t), intent(inout) :: o
       type(drawing_t), intent(in) :: drawing
       type(point_path_t), intent(in) :: paths(:)
@@ -111,15 +111,15 @@ contains
       layer = ''
       if (number > 1) layer = whole(number)//'-'
       do i = 1, size(paths)
-         call put_path(o, layer//'PATHS', paths(i), paths(1)%is_closed)
+         call write_path(o, layer//'PATHS', paths(i), paths(1)%is_closed)
       end do
       associate (m => drawing%mechanism, s => drawing%frame(1))
          do i = 1, size(m%pairs)
             if (has_guide(m%pairs(i)%kind) .or. .not. s%known(m%points(m%pairs(i)%point_i)%link)) cycle
-            call put_pair(o, 0, 'CIRCLE')
-            call put_pair(o, 8, layer//'JOINTS')
-            call put_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + drawing%origin)
-            call put_number(o, 40, circle_radius*characteristic_length(m))
+            call write_pair(o, 0, 'CIRCLE')
+            call write_pair(o, 8, layer//'JOINTS')
+            call write_place(o, 0, point_place(m, s, m%pairs(i)%point_i) + drawing%origin)
+            call write_number(o, 40, circle_radius*characteristic_length(m))
          end do
          ! The sides of links; a bar has one.
          do i = 1, size(m%links)
@@ -127,7 +127,7 @@ contains
             if (m%links(i)%ground .or. n < 2 .or. .not. s%known(i)) cycle
             p = moved(drawing%outlines(i)%corner, s%place(:, i))
             do k = 1, merge(n, 1, n > 2)
-               call put_side(o, layer, p(:, k) + drawing%origin, p(:, 1 + modulo(k, n)) + drawing%origin)
+               call write_side(o, layer, p(:, k) + drawing%origin, p(:, 1 + modulo(k, n)) + drawing%origin)
             end do
          end do
          ! Guides between the ends of the slide at this instant: from the foot to the block.
@@ -135,15 +135,15 @@ contains
             associate (g => drawing%guides(i))
                if (.not. (s%known(g%carrier) .and. s%known(g%block)) .or. g%low > g%high) cycle
                p = moved(reshape([g%foot, g%foot + g%low*direction(g%angle)], [2, 2]), s%place(:, g%carrier))
-               call put_side(o, layer, p(:, 1) + drawing%origin, p(:, 2) + drawing%origin)
+               call write_side(o, layer, p(:, 1) + drawing%origin, p(:, 2) + drawing%origin)
             end associate
          end do
       end associate
-   end subroutine put_dxf
+   end subroutine write_dxf
 
    !> Writes the pieces of a path on which its places are known. A path of one piece that `closes` has its first place
    !> only once.
-   subroutine put_path(o, layer, path, closes)
+   subroutine write_path(o, layer, path, closes)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: layer
       type(point_path_t), intent(in) :: path
@@ -157,62 +157,62 @@ contains
          last = first - 1 + findloc([path%known(first:), .false.], .false., dim=1) - 1
          if (closes) last = last - 1
          if (last > first) then
-            call put_pair(o, 0, 'POLYLINE')
-            call put_pair(o, 8, layer)
-            call put_pair(o, 66, '1')
-            call put_place(o, 0, [0.0_wp, 0.0_wp])
-            call put_pair(o, 70, merge('1', '0', closes))
+            call write_pair(o, 0, 'POLYLINE')
+            call write_pair(o, 8, layer)
+            call write_pair(o, 66, '1')
+            call write_place(o, 0, [0.0_wp, 0.0_wp])
+            call write_pair(o, 70, merge('1', '0', closes))
             do k = first, last
-               call put_pair(o, 0, 'VERTEX')
-               call put_pair(o, 8, layer)
-               call put_place(o, 0, path%places(:, k))
+               call write_pair(o, 0, 'VERTEX')
+               call write_pair(o, 8, layer)
+               call write_place(o, 0, path%places(:, k))
             end do
-            call put_pair(o, 0, 'SEQEND')
-            call put_pair(o, 8, layer)
+            call write_pair(o, 0, 'SEQEND')
+            call write_pair(o, 8, layer)
          end if
          if (closes) exit
       end do
-   end subroutine put_path
+   end subroutine write_path
 
    !> Writes a line from `p` to `corner` (2) on the layer of links.
-   subroutine put_side(o, layer, p, corner)
+   subroutine write_side(o, layer, p, corner)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: layer      !< its number, or ''
       real(wp), intent(in) :: p(2), corner(2)
 
-      call put_pair(o, 0, 'LINE')
-      call put_pair(o, 8, layer//'LINKS')
-      call put_place(o, 0, p)
-      call put_place(o, 1, corner)
-   end subroutine put_side
+      call write_pair(o, 0, 'LINE')
+      call write_pair(o, 8, layer//'LINKS')
+      call write_place(o, 0, p)
+      call write_place(o, 1, corner)
+   end subroutine write_side
 
    !> Writes a place `p` (2): `which` is 0 for the first place of an entity, 1 for the second.
-   subroutine put_place(o, which, p)
+   subroutine write_place(o, which, p)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: which
       real(wp), intent(in) :: p(2)
 
-      call put_number(o, 10 + which, p(1))
-      call put_number(o, 20 + which, p(2))
-      call put_number(o, 30 + which, 0.0_wp)
-   end subroutine put_place
+      call write_number(o, 10 + which, p(1))
+      call write_number(o, 20 + which, p(2))
+      call write_number(o, 30 + which, 0.0_wp)
+   end subroutine write_place
 
    !> Writes a number with the group code `code`.
-   subroutine put_number(o, code, value)
+   subroutine write_number(o, code, value)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: code
       real(wp), intent(in) :: value
 
-      call put_pair(o, code, rounded(value, significant_digits, 1.0e-3_wp, 1.0e9_wp))
-   end subroutine put_number
+      call write_pair(o, code, rounded(value, significant_digits, 1.0e-3_wp, 1.0e9_wp))
+   end subroutine write_number
 
    !> Writes a pair of DXF: a group code and its value.
-   subroutine put_pair(o, code, value)
+   subroutine write_pair(o, code, value)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: code
       character(*), intent(in) :: value
 
       call put(o, whole(code))
       call put(o, value)
-   end subroutine put_pair
+   end subroutine write_pair
 end module dxf

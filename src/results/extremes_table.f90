@@ -11,7 +11,7 @@ module extremes_table
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
    use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
-   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, mask_words
+   use listing_tables, only: listing_state_t, write_times, write_heads, time_text, drive_text, mask_words
    use text_output, only: output_t, put
    use number_format, only: numeral_length, rounded
    use masked_numbers, only: unknown_digit
@@ -21,7 +21,7 @@ module extremes_table
    use phrases
    implicit none
    private
-   public :: put_extremes, extreme_words, ratio_format
+   public :: write_extremes, extreme_words, ratio_format
 
    !> Digits of a closure.
    integer, parameter :: closure_digits = 3
@@ -34,7 +34,7 @@ module extremes_table
 contains
 
    !> The `extremes` and `dwells` of the `set`.
-   subroutine put_extremes(o, l, set, extremes, dwells)
+   subroutine write_extremes(o, l, set, extremes, dwells)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       class(set_t), intent(in) :: set
@@ -47,7 +47,7 @@ contains
       logical :: moves, goes_on(size(extremes%tracks))
       character(:), allocatable :: driven, line
 
-      call put_times(o, l, ' '//phrase(say_extremes, set%polish), [set%t0, set%t1], table)
+      call write_times(o, l, ' '//phrase(text_extremes, set%polish), [set%t0, set%t1], table)
       moves = .false.
       goes_on = .false.
       ! Links of which only angles are asked for have no columns of places.
@@ -63,40 +63,41 @@ contains
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(set, extremes%asked(q))
-         call put_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
+         call write_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
             request%kind == request_link), table)
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0
          associate (m => set%parts(part))
             if (drive > 0) driven = trim(drive_name(m, m%drives(1)))
-            call put_subject(subject_name(m, request%kind, request%subject))
+            call write_subject(subject_name(m, request%kind, request%subject))
          end associate
          do k = 1, size(dwells)
             associate (w => dwells(k))
                if (w%request /= extremes%asked(q)) cycle
                c = findloc(own%column, w%column, dim=1)
-               call put_at(phrase(say_dwell, set%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which)//' +- ' &
+               call write_at(phrase(text_dwell, set%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which) &
+                  //' +- ' &
                   //text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
             end associate
          end do
       end do
       ! What is not sought may move.
       if (.not. moves .and. all([(all(request_sought(extremes%asked(q))), q=1, size(extremes%asked))])) &
-         call put(o, ' '//phrase(say_at_rest, set%polish))
+         call put(o, ' '//phrase(text_at_rest, set%polish))
       if (table%masked) call put(o, mask_words(set))
-      call put_gaps(extremes%open, say_may_be_missed)
-      call put_gaps(extremes%gaps, say_not_covered)
+      call write_gaps(extremes%open, text_may_be_missed)
+      call write_gaps(extremes%gaps, text_not_covered)
       do k = 1, size(extremes%tracks)
          ! Why there are no time ratios.
          associate (closure => extremes%tracks(k)%closure)
             if (.not. (goes_on(k) .and. all(closure < huge(1.0_wp)))) cycle
-            line = ' --- '//phrase(say_no_period, set%polish)
+            line = ' --- '//phrase(text_no_period, set%polish)
             if (closes(closure(:2))) then
-               line = line//' '//phrase(say_in_velocity, set%polish)
+               line = line//' '//phrase(text_in_velocity, set%polish)
             else
                line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
-                  //phrase(say_lengths_apart, set%polish)//', ' &
+                  //phrase(text_lengths_apart, set%polish)//', ' &
                   //rounded(closure(2)/l%format(of_angle, 0)%unit, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
                   //trim(angle_unit(set))
             end if
@@ -117,7 +118,7 @@ contains
       end function request_sought
 
       !> The rows of a link, point or pair of this `name`.
-      subroutine put_subject(name)
+      subroutine write_subject(name)
          character(*), intent(in) :: name
          character(numeral_length), dimension(size(own), 0:2) :: value, time, place
          type(strokes_t) :: strokes(size(own))
@@ -126,7 +127,7 @@ contains
          integer :: which, c, k, i
 
          if (drive > 0) then
-            call put(o, ' '//name//'   '//phrase(say_drive, set%polish)//' '//driven//','//l%drives(drive)%behind)
+            call put(o, ' '//name//'   '//phrase(text_drive, set%polish)//' '//driven//','//l%drives(drive)%behind)
          else
             call put(o, ' '//trim(name))
          end if
@@ -149,9 +150,9 @@ contains
                   end associate
                end do
             end do
-            call put_fields(extreme_words(which), value)
-            call put_fields(phrase(say_at_time, set%polish), time)
-            if (drive > 0) call put_fields(phrase(say_at_drive, set%polish), place)
+            call write_fields(extreme_words(which), value)
+            call write_fields(phrase(text_at_time, set%polish), time)
+            if (drive > 0) call write_fields(phrase(text_at_drive, set%polish), place)
          end do
 
          ! The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times
@@ -163,16 +164,17 @@ contains
                if (length%exists) value(c, 0) = text_of(own(c), 0, length%value, length%error)
             end associate
          end do
-         if (any(value /= '')) call put_fields(phrase(say_stroke, set%polish), value)
+         if (any(value /= '')) call write_fields(phrase(text_stroke, set%polish), value)
          do c = 1, size(own)
             if (value(c, 0) == '') cycle
             if (strokes(c)%ratio > 0.0_wp) then
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
                error = sum(own(c)%found(:, 0)%t_error)
-               line = '  '//name_of(own(c))//'   '//phrase(say_forward, set%polish)//' ' &
-                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(say_return, set%polish) &
+               line = '  '//name_of(own(c))//'   '//phrase(text_forward, set%polish)//' ' &
+                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(text_return, set%polish) &
                      //' ' &
-                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(say_ratio, set%polish)//' ' &
+                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(text_ratio, set%polish) &
+                     //' ' &
                   //number_text(ratio_format, strokes(c)%ratio, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
@@ -181,16 +183,16 @@ contains
                part)) goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
-                  call put_at(phrase(say_dead_centre, set%polish)//'  '//name_of(own(c))//'  ' &
+                  call write_at(phrase(text_dead_centre, set%polish)//'  '//name_of(own(c))//'  ' &
                      //text_of(own(c), 0, dead(i)%value, 0.0_wp), [dead(i)%t], [0.0_wp])
                end do
             end associate
          end do
-      end subroutine put_subject
+      end subroutine write_subject
 
       !> A line that begins with `head`: at the times `t`, one or two, of which `error` is unknown, and at these values
       !> of the drive.
-      subroutine put_at(head, t, error)
+      subroutine write_at(head, t, error)
          character(*), intent(in) :: head
          real(wp), intent(in) :: t(:), error(:)
          character(:), allocatable :: line, at_drive
@@ -209,10 +211,10 @@ contains
          line = line//at_drive
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
-      end subroutine put_at
+      end subroutine write_at
 
       !> The line `say` about the intervals of the `list`, if there are any: as many of them as it has room for.
-      subroutine put_gaps(list, say)
+      subroutine write_gaps(list, say)
          type(uncovered_interval_t), intent(in) :: list(:)
          type(phrase_t), intent(in) :: say
          character(:), allocatable :: text, line, next
@@ -229,7 +231,7 @@ contains
             line = next
          end do
          if (len(line) > 0) call put(o, line)
-      end subroutine put_gaps
+      end subroutine write_gaps
 
       !> The name of the `coordinate`.
       pure function name_of(coordinate) result(name)
@@ -240,7 +242,7 @@ contains
       end function name_of
 
       !> A row of `fields` (own coordinates, 0:2), with a label before it.
-      subroutine put_fields(label, fields)
+      subroutine write_fields(label, fields)
          character(*), intent(in) :: label
          character(numeral_length), intent(in) :: fields(:, 0:)
          character(row_length) :: line
@@ -257,7 +259,7 @@ contains
          end do
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line(:len_trim(line)))
-      end subroutine put_fields
+      end subroutine write_fields
 
       !> A value of derivative number `k` of the `coordinate`, with the digits of the table; `error` is unknown of it.
       pure function text_of(coordinate, k, value, error) result(text)
@@ -270,5 +272,5 @@ contains
             text = number_text(l%own(part)%format(column%dimension, column%order), value, error)
          end associate
       end function text_of
-   end subroutine put_extremes
+   end subroutine write_extremes
 end module extremes_table

@@ -16,24 +16,24 @@ module listing
    use columns, only: table_of
    use points, only: row_t
    use rows, only: finished_row_t, word_worst, word_rss
-   use listing_layout, only: layout_t, new_layout, put_folded, angle_unit, choose_time_digits
+   use listing_layout, only: layout_t, new_layout, write_folded, angle_unit, choose_time_digits
    use table, only: format_t, unit_of, number_text
-   use listing_tables, only: listing_state_t, no_table, put_instant, put_heads, put_row, mask_words
+   use listing_tables, only: listing_state_t, no_table, write_instant, write_heads, write_row, mask_words
    use text_output, only: output_t, put, add
    use number_format, only: whole, rounded
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, put_untold
-   public :: words_of_mark
-   public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, remark_text
+   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, write_untold
+   public :: words_of_flag
+   public :: limit_words, at_limit, full_turn_words, measure, value_digits, write_diagnostics, remark_text
 
    !> Why there is not all of a motion, by its mark.
-   type(phrase_t), parameter :: mark_words(mark_none:mark_stroke) = &
-      [phrase_t(), say_no_position, phrase_t(), say_overflow, say_contradiction, say_out_of_stroke]
-   !> The same of mark_singular, by what the position is.
+   type(phrase_t), parameter :: flag_words(flag_none:flag_stroke) = &
+      [phrase_t(), text_no_position, phrase_t(), text_overflow, text_contradiction, text_out_of_stroke]
+   !> The same of flag_singular, by what the position is.
    type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
-      [say_singular, say_change_point, say_dead_point]
+      [text_singular, text_change_point, text_dead_point]
    integer, parameter :: links_a_line = 10
    !> Digits of the value of a drive at a limit, or as many as a coarser real has; of a closure error or an angle that
    !> is off.
@@ -47,8 +47,8 @@ module listing
 
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_title_long:remark_more) = &
-      [say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_jumps, say_open, say_drawn_stroke, say_alpha, say_rests, say_fast, say_more]
+      [text_title_long, text_title_letters, text_touching, text_link_unused, text_point_unused, &
+      text_radians, text_jumps, text_open, text_drawn_stroke, text_alpha, text_rests, text_fast, text_more]
 
 contains
 
@@ -61,38 +61,39 @@ contains
       integer :: i, k
 
       associate (pl => m%polish, f => findings)
-         call put(o, ' KINMAT   '//phrase(say_program, pl))
+         call put(o, ' KINMAT   '//phrase(text_program, pl))
          call put(o, '')
-         call put(o, trim(' '//phrase(say_set, pl)//' '//whole(m%set_number) &
-            //'   '//phrase(say_title, pl)//'   '//m%title))
+         call put(o, trim(' '//phrase(text_set, pl)//' '//whole(m%set_number) &
+            //'   '//phrase(text_title, pl)//'   '//m%title))
          call put(o, '')
-         call put(o, ' '//phrase(say_data, pl))
+         call put(o, ' '//phrase(text_data, pl))
          do i = 1, size(m%echo)
             call put(o, ' '//trim(m%echo(i)))
          end do
          if (allocated(m%remarks)) then
             do i = 1, size(m%remarks)
-               call put_folded(o, ' --- ', remark_text(m, m%remarks(i)))
+               call write_folded(o, ' --- ', remark_text(m, m%remarks(i)))
             end do
          end if
          call put(o, '')
 
-         call put(o, ' '//phrase(say_structure, pl))
-         call put(o, ' '//phrase(say_links, pl)//' '//whole(f%links)//', '//phrase(say_ground, pl) &
-            //' '//whole(f%ground)//';  '//phrase(say_revolute, pl)//' '//whole(f%revolute) &
-            //';  '//phrase(say_prismatic, pl)//' '//whole(f%prismatic))
-         call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
-            //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
-            //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
-         if (f%degrees_of_freedom < f%drives) call put(o, ' --- '//phrase(say_repeating, pl)//' ' &
+         call put(o, ' '//phrase(text_structure, pl))
+         call put(o, ' '//phrase(text_links, pl)//' '//whole(f%links)//', '//phrase(text_ground, pl) &
+            //' '//whole(f%ground)//';  '//phrase(text_revolute, pl)//' '//whole(f%revolute) &
+            //';  '//phrase(text_prismatic, pl)//' '//whole(f%prismatic))
+         call put(o, ' '//phrase(text_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(text_equations, &
+            pl) &
+            //' R = '//whole(f%equations)//';  '//phrase(text_degrees_of_freedom, pl)//' S = ' &
+            //whole(f%degrees_of_freedom)//';  '//phrase(text_drives, pl)//' '//whole(f%drives))
+         if (f%degrees_of_freedom < f%drives) call put(o, ' --- '//phrase(text_repeating, pl)//' ' &
             //whole(f%drives - f%degrees_of_freedom))
 
          ! A line of links for each group, continued where they are many.
-         if (size(f%groups) > 0) call put(o, ' '//phrase(say_groups, pl))
+         if (size(f%groups) > 0) call put(o, ' '//phrase(text_groups, pl))
          do i = 1, size(f%groups)
             head = whole(i)
             head(:6) = adjustr(head(:6))
-            if (f%groups(i)%driven) head(9:) = phrase(say_driven, pl)
+            if (f%groups(i)%driven) head(9:) = phrase(text_driven, pl)
             associate (links => f%groups(i)%links)
                do k = 1, size(links)
                   if (mod(k, links_a_line) == 1) call add(o, ' '//head)
@@ -106,7 +107,7 @@ contains
             end associate
          end do
          call put(o, '')
-         call put(o, ' '//phrase(say_results, pl))
+         call put(o, ' '//phrase(text_results, pl))
       end associate
    end subroutine listing_head
 
@@ -129,7 +130,7 @@ contains
       limits = [(limit_before(motions%motions(c)), c=1, motions%count)]
       is_told = .false.
       if (allocated(table%limits)) is_told = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
-      has_news = any([((motions%motions(c)%mark /= mark_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
+      has_news = any([((motions%motions(c)%mark /= flag_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
          .not. is_told(c), c=1, motions%count)])
       table%limits = limits
       begun = .false.
@@ -139,17 +140,17 @@ contains
             if (.not. row%listed) cycle
             if (is_told(row%part) .and. row%known < 0) cycle
             if (.not. begun) call begin_instant()
-            call put_heads(o, l, row%part, &
+            call write_heads(o, l, row%part, &
                merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), table)
-            call put_row(o, l, d, row, row%shown, row%doubt, 0, table)
+            call write_row(o, l, d, row, row%shown, row%doubt, 0, table)
             if (.not. allocated(row%others)) cycle
             ! The effect of tolerances, with more decimals: the worst case, and the root of the sum of squares.
             do k = 1, size(row%others)
                if (all(row%others(k)%word /= [character(5) :: word_worst, word_rss])) cycle
                other = row%others(k)%row
                other%name = ' '//word_rss
-               if (row%others(k)%word == word_worst) other%name = ' '//phrase(say_worst, motions%polish)
-               call put_row(o, l, d, other, row%shown, row%others(k)%doubt, l%more_decimals, table)
+               if (row%others(k)%word == word_worst) other%name = ' '//phrase(text_worst, motions%polish)
+               call write_row(o, l, d, other, row%shown, row%others(k)%doubt, l%more_decimals, table)
             end do
          end associate
       end do
@@ -160,10 +161,10 @@ contains
       end if
       if (.not. begun .and. is_flagged(motions)) call begin_instant()
       if (table%masked .or. has_news) table%kind = no_table
-      call put_marks()
+      call write_marks()
       if (table%masked) call put(o, mask_words(motions))
       do c = 1, motions%count
-         if (allocated(motions%motions(c)%diagnostics)) call put_diagnostics(o, motions%parts(c), &
+         if (allocated(motions%motions(c)%diagnostics)) call write_diagnostics(o, motions%parts(c), &
             motions%motions(c)%diagnostics)
       end do
 
@@ -171,45 +172,45 @@ contains
 
       !> The line over the tables, after that of the instants before it without values.
       subroutine begin_instant()
-         call put_untold(o, motions%polish, table)
+         call write_untold(o, motions%polish, table)
          if (any(limits < huge(1.0_wp) .and. .not. is_told)) table%told = step
-         call put_instant(o, l, motions%motions(1)%t, step, table)
+         call write_instant(o, l, motions%motions(1)%t, step, table)
          begun = .true.
       end subroutine begin_instant
 
       !> Why some part of `motions` has not all of its motion, each line once: of a limit of motion before it the time,
       !> of singular positions the links.
-      subroutine put_marks()
+      subroutine write_marks()
          character(:), allocatable :: line, lines, text
          integer :: k
 
          lines = ''
          do c = 1, motions%count
             associate (q => motions%motions(c), m => motions%parts(c))
-               if (q%mark == mark_none .or. is_told(c)) cycle
-               line = words_of_mark(q%mark, q%singularity, motions%polish)
-               if (q%mark == mark_inconsistent) then
+               if (q%mark == flag_none .or. is_told(c)) cycle
+               line = words_of_flag(q%mark, q%singularity, motions%polish)
+               if (q%mark == flag_inconsistent) then
                   k = 0
                   if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
-                  if (k > 0) call put_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
+                  if (k > 0) call write_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
                   ! A tolerance is no cure for a drive that is too many.
                   table%surplus = table%surplus .or. k > 0
                   if (.not. (table%surplus .or. motions%closing > 0.0_wp)) &
-                     line = line//': '//phrase(say_give_closing, motions%polish)
+                     line = line//': '//phrase(text_give_closing, motions%polish)
                else if (limits(c) < huge(1.0_wp)) then
-                  line = phrase(say_beyond, motions%polish)//' '//time(m, limits(c))
-               else if (q%mark == mark_singular .and. any(q%singular_links%links /= 0)) then
+                  line = phrase(text_beyond, motions%polish)//' '//time(m, limits(c))
+               else if (q%mark == flag_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
                   text = links(m, q%singular_links)
-                  if (q%singular_links%in_line) text = text//' '//phrase(say_in_line, motions%polish)
+                  if (q%singular_links%in_line) text = text//' '//phrase(text_in_line, motions%polish)
                   line = line(:k - 1)//', '//text//line(k:)
                end if
             end associate
             if (index(lines, line//new_line('a')) > 0) cycle
             lines = lines//line//new_line('a')
-            call put_folded(o, ' *** ', line)
+            call write_folded(o, ' *** ', line)
          end do
-      end subroutine put_marks
+      end subroutine write_marks
    end subroutine listing_instant
 
    !> The time of the limit beyond which the motion `q` has no position; huge if that is not why, or if it has one.
@@ -218,38 +219,38 @@ contains
       integer :: i
 
       time = huge(1.0_wp)
-      if (q%mark /= mark_not_converged .or. .not. allocated(q%diagnostics)) return
+      if (q%mark /= flag_not_converged .or. .not. allocated(q%diagnostics)) return
       do i = 1, size(q%diagnostics)
          if (any(q%diagnostics(i)%kind == [diagnostic_limit, diagnostic_beyond])) time = q%diagnostics(i)%t
       end do
    end function limit_before
 
    !> The line of the instants of `table` that have none yet; nothing if there are no such instants.
-   subroutine put_untold(o, polish, table)
+   subroutine write_untold(o, polish, table)
       type(output_t), intent(inout) :: o
       logical, intent(in) :: polish
       type(listing_state_t), intent(inout) :: table
       character(:), allocatable :: instants
 
       if (table%first < 0) return
-      instants = phrase(say_instant, polish)//' '//whole(table%last)
-      if (table%first < table%last) instants = phrase(say_instants, polish)//' '//whole(table%first)//' ' &
-         //phrase(say_to, polish)//' '//whole(table%last)
+      instants = phrase(text_instant, polish)//' '//whole(table%last)
+      if (table%first < table%last) instants = phrase(text_instants, polish)//' '//whole(table%first)//' ' &
+         //phrase(text_to, polish)//' '//whole(table%last)
       call put(o, '')
-      call put(o, ' '//instants//': '//phrase(say_as, polish)//' '//whole(table%told))
+      call put(o, ' '//instants//': '//phrase(text_as, polish)//' '//whole(table%told))
       table%kind = no_table
       table%first = -1
-   end subroutine put_untold
+   end subroutine write_untold
 
-   !> Why there is not all of a motion, by its `mark`, and where that is mark_singular by its `singularity`.
-   pure function words_of_mark(mark, singularity, polish) result(words)
+   !> Why there is not all of a motion, by its `mark`, and where that is flag_singular by its `singularity`.
+   pure function words_of_flag(mark, singularity, polish) result(words)
       integer, intent(in) :: mark, singularity
       logical, intent(in) :: polish
       character(:), allocatable :: words
 
-      words = phrase(mark_words(mark), polish)
-      if (mark == mark_singular) words = phrase(singular_words(singularity), polish)
-   end function words_of_mark
+      words = phrase(flag_words(mark), polish)
+      if (mark == flag_singular) words = phrase(singular_words(singularity), polish)
+   end function words_of_flag
 
    !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
    !> characteristic length; negative where none are), and the error to which a closing tolerance lets them agree;
@@ -271,25 +272,25 @@ contains
       if (closure_error >= 0.0_wp) then
          write (number, '(es8.0e2)') max(closure_error, min_closure_error)
          number = adjustl(number)
-         if (closure_error < min_closure_error) number = phrase(say_below, set%polish)//' '//number
-         call put(o, ' '//phrase(say_closure_error, set%polish)//' '//trim(number))
+         if (closure_error < min_closure_error) number = phrase(text_below, set%polish)//' '//number
+         call put(o, ' '//phrase(text_closure_error, set%polish)//' '//trim(number))
       end if
       if (allowed_error > 0.0_wp) then
          write (number, '(es9.1e2)') allowed_error
-         call put_folded(o, ' --- ', phrase(say_not_better, set%polish)//' '//trim(adjustl(number)))
+         call write_folded(o, ' --- ', phrase(text_not_better, set%polish)//' '//trim(adjustl(number)))
       end if
       do i = 1, size(diagnostics)
-         call put_diagnostics(o, set%parts(diagnostics(i)%part), diagnostics(i:i))
+         call write_diagnostics(o, set%parts(diagnostics(i)%part), diagnostics(i:i))
       end do
       associate (c => certificate_counts)
-         call put(o, ' '//phrase(say_continuation, set%polish)//':  '//phrase(say_certified, set%polish)//' ' &
-            //whole(c%followed)//' '//phrase(say_out_of, set%polish)//' '//whole(c%followed + c%uncertain) &
-            //', '//phrase(say_passed, set%polish)//' '//whole(c%passed))
+         call put(o, ' '//phrase(text_continuation, set%polish)//':  '//phrase(text_certified, set%polish)//' ' &
+            //whole(c%followed)//' '//phrase(text_out_of, set%polish)//' '//whole(c%followed + c%uncertain) &
+            //', '//phrase(text_passed, set%polish)//' '//whole(c%passed))
       end associate
-      end_of = ' '//phrase(say_end, set%polish)//' '//whole(set%set_number)
-      if (set%variant > 0) end_of = ' '//phrase(say_end_variant, set%polish)//' '//whole(set%variant)
-      call put(o, end_of//':  '//phrase(say_instants, set%polish)//' '//phrase(say_are_solved, set%polish)//' ' &
-         //whole(solved)//', '//phrase(say_flagged, set%polish)//' '//whole(flagged))
+      end_of = ' '//phrase(text_end, set%polish)//' '//whole(set%set_number)
+      if (set%variant > 0) end_of = ' '//phrase(text_end_variant, set%polish)//' '//whole(set%variant)
+      call put(o, end_of//':  '//phrase(text_instants, set%polish)//' '//phrase(text_are_solved, set%polish)//' ' &
+         //whole(solved)//', '//phrase(text_flagged, set%polish)//' '//whole(flagged))
       call put(o, '')
    end subroutine listing_end
 
@@ -307,17 +308,17 @@ contains
       end if
       if (any(remark%kind == [remark_rest, remark_turns])) then
          is_one = index(remark%text, ', ') == 0
-         if (remark%kind == remark_rest .and. .not. is_one) text = phrase(say_rest, m%polish)
-         text = phrase(merge(say_drive, say_drives, is_one), m%polish)//' '//trim(remark%text)//' '//text
+         if (remark%kind == remark_rest .and. .not. is_one) text = phrase(text_rest, m%polish)
+         text = phrase(merge(text_drive, text_drives, is_one), m%polish)//' '//trim(remark%text)//' '//text
       else if (remark%text /= '') then
          text = '"'//trim(remark%text)//'" '//text
       end if
-      text = phrase(say_card, m%polish)//' '//whole(remark%card)//'  '//phrase(say_column, m%polish)//' ' &
+      text = phrase(text_card, m%polish)//' '//whole(remark%card)//'  '//phrase(text_column, m%polish)//' ' &
          //whole(remark%column)//': '//text
    end function remark_text
 
    !> A line for each diagnostic of `list` that no mark has told.
-   subroutine put_diagnostics(o, m, list)
+   subroutine write_diagnostics(o, m, list)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: list(:)
@@ -325,9 +326,9 @@ contains
 
       do i = 1, size(list)
          if (all(list(i)%kind /= [diagnostic_beyond, diagnostic_surplus])) &
-            call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
+            call write_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
       end do
-   end subroutine put_diagnostics
+   end subroutine write_diagnostics
 
    !> LINKS A, B AT THE LIMIT, COLLINEAR
    function at_limit(m, diagnostic) result(text)
@@ -336,12 +337,12 @@ contains
       character(:), allocatable :: text
 
       if (diagnostic%pair > 0) then
-         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': ' &
-            //phrase(merge(say_out_of_stroke, say_length_0, diagnostic%other), m%polish)
+         text = phrase(text_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': ' &
+            //phrase(merge(text_out_of_stroke, text_length_0, diagnostic%other), m%polish)
          return
       end if
-      text = links(m, diagnostic)//' '//phrase(say_at_limit, m%polish)
-      if (diagnostic%in_line) text = text//', '//phrase(say_in_line, m%polish)
+      text = links(m, diagnostic)//' '//phrase(text_at_limit, m%polish)
+      if (diagnostic%in_line) text = text//', '//phrase(text_in_line, m%polish)
    end function at_limit
 
    !> The sentence of `diagnostic`.
@@ -354,57 +355,58 @@ contains
       text = ''
       select case (diagnostic%kind)
       case (diagnostic_inconsistent)
-         text = owner()//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, diagnostic, error_digits)
+         text = owner()//': '//phrase(text_closure_error_of, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_limit)
-         text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))//' = ' &
+         text = phrase(text_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))//' = ' &
             //measure(m, diagnostic, value_digits)
          if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(m, diagnostic)
       case (diagnostic_stroke)
-         text = phrase(say_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '
-         if (diagnostic%value > 0.0_wp) text = text//phrase(say_length, m%polish)//' '//measure(m, diagnostic, &
+         text = phrase(text_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '
+         if (diagnostic%value > 0.0_wp) text = text//phrase(text_length, m%polish)//' '//measure(m, diagnostic, &
             value_digits)
-         if (.not. diagnostic%value > 0.0_wp) text = text//phrase(say_below_0, m%polish)
+         if (.not. diagnostic%value > 0.0_wp) text = text//phrase(text_below_0, m%polish)
       case (diagnostic_far_estimate)
-         text = links(m, diagnostic)//': '//phrase(say_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
+         text = links(m, diagnostic)//': '//phrase(text_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_second)
-         text = links(m, diagnostic)//': '//phrase(say_second, m%polish)
+         text = links(m, diagnostic)//': '//phrase(text_second, m%polish)
       case (diagnostic_incomplete)
-         text = links(m, diagnostic)//': '//phrase(say_incomplete, m%polish)
+         text = links(m, diagnostic)//': '//phrase(text_incomplete, m%polish)
       case (diagnostic_begins)
-         text = phrase(say_begins, m%polish)
+         text = phrase(text_begins, m%polish)
       case (diagnostic_redundant)
-         text = phrase(say_redundant, m%polish)//': '//owner()
-         if (diagnostic%equations > 1) text = phrase(say_redundant_many, m%polish)//': ' &
+         text = phrase(text_redundant, m%polish)//': '//owner()
+         if (diagnostic%equations > 1) text = phrase(text_redundant_many, m%polish)//': ' &
             //whole(diagnostic%equations)//' ' &
-            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+            //phrase(text_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
       case (diagnostic_change)
-         text = place()//phrase(merge(merge(say_returns_other, say_returns, diagnostic%other), &
-            merge(say_here, merge(say_other, say_smoothly, diagnostic%other), diagnostic%here), diagnostic%returns), &
+         text = place()//phrase(merge(merge(text_returns_other, text_returns, diagnostic%other), &
+            merge(text_here, merge(text_other, text_smoothly, diagnostic%other), diagnostic%here), &
+               diagnostic%returns), &
                m%polish)
       case (diagnostic_dead_end)
-         text = place()//phrase(say_not_found, m%polish)
+         text = place()//phrase(text_not_found, m%polish)
       case (diagnostic_unused)
          text = 'BRANCH '
          if (diagnostic%links(1) > 0) text = text//trim(m%links(diagnostic%links(1))%name)//' '
-         text = text//phrase(say_branch_from, m%polish)//' '//time(m, diagnostic%t)//': ' &
-            //phrase(say_no_change, m%polish)
+         text = text//phrase(text_branch_from, m%polish)//' '//time(m, diagnostic%t)//': ' &
+            //phrase(text_no_change, m%polish)
       case (diagnostic_long)
-         text = phrase(say_way, m%polish)//' '//time(m, diagnostic%t)//' '//phrase(say_too_long, m%polish)
+         text = phrase(text_way, m%polish)//' '//time(m, diagnostic%t)//' '//phrase(text_too_long, m%polish)
       case (diagnostic_close)
-         text = phrase(say_blocked, m%polish)//' '//time(m, diagnostic%t)//': '//phrase(say_close, m%polish)
+         text = phrase(text_blocked, m%polish)//' '//time(m, diagnostic%t)//': '//phrase(text_close, m%polish)
       case (diagnostic_method)
-         text = phrase(say_method, m%polish)
-         if (diagnostic%other) text = phrase(say_elsewhere, m%polish)//': '//text
+         text = phrase(text_method, m%polish)
+         if (diagnostic%other) text = phrase(text_elsewhere, m%polish)//': '//text
       case (diagnostic_surplus)
-         text = phrase(say_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(diagnostic%links(k))), &
+         text = phrase(text_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(diagnostic%links(k))), &
             k=1, count(diagnostic%links > 0))], m%polish)//more(diagnostic%more, m%polish)
       case (diagnostic_turned)
-         text = 'LINE '//trim(m%measures(diagnostic%measure)%name)//' '//phrase(say_turned_by, m%polish)//' ' &
-            //measure(m, diagnostic, error_digits)//' '//phrase(say_in_step, m%polish)//' '//time(m, diagnostic%t) &
+         text = 'LINE '//trim(m%measures(diagnostic%measure)%name)//' '//phrase(text_turned_by, m%polish)//' ' &
+            //measure(m, diagnostic, error_digits)//' '//phrase(text_in_step, m%polish)//' '//time(m, diagnostic%t) &
                //': ' &
-            //phrase(say_turned_far, m%polish)
+            //phrase(text_turned_far, m%polish)
       case (diagnostic_mobile)
-         text = links(m, diagnostic)//' '//phrase(say_mobile, m%polish)
+         text = links(m, diagnostic)//' '//phrase(text_mobile, m%polish)
       end select
 
    contains
@@ -413,7 +415,7 @@ contains
       function place() result(text)
          character(:), allocatable :: text
 
-         text = phrase(merge(say_singular_at, say_change, diagnostic%returns), m%polish)//' '//time(m, diagnostic%t) &
+         text = phrase(merge(text_singular_at, text_change, diagnostic%returns), m%polish)//' '//time(m, diagnostic%t) &
             //', '//links(m, diagnostic) &
             //': '
       end function place
@@ -424,9 +426,9 @@ contains
 
          text = ''
          if (diagnostic%pair > 0) then
-            text = phrase(say_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+            text = phrase(text_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
          else if (diagnostic%drive > 0) then
-            text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))
+            text = phrase(text_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))
          end if
       end function owner
    end function words_of
@@ -448,7 +450,7 @@ contains
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = phrase(say_all, polish)//' '//whole(turns)//' '//phrase(merge(say_turn, say_turns, turns == 1), polish)
+      text = phrase(text_all, polish)//' '//whole(turns)//' '//phrase(merge(text_turn, text_turns, turns == 1), polish)
    end function full_turn_words
 
    !> LINKS A, B AND 3 MORE
@@ -459,7 +461,7 @@ contains
       integer, allocatable :: shown(:)
 
       shown = shown_links(m, pack(diagnostic%links, diagnostic%links > 0))
-      text = phrase(merge(say_link, say_links, size(shown) == 1), m%polish)
+      text = phrase(merge(text_link, text_links, size(shown) == 1), m%polish)
       if (size(shown) > 0) text = text//' '//listed(m%links(shown)%name, m%polish)
       text = text//more(diagnostic%more, m%polish)
    end function links

@@ -22,7 +22,7 @@ module listing_layout
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
    public :: line_length, name_length, row_length, end_of_column, column_name, column_unit, angle_unit, &
-      choose_time_digits, put_folded
+      choose_time_digits, write_folded
 
    !> Characters of a line at most.
    integer, parameter :: line_length = 120
@@ -167,7 +167,7 @@ contains
          do k = table_turning, last_table
             if (is_ratio(kinds_of_rows(k)%forms(1)) .and. .not. l%has(kinds_of_rows(k)%forms(1))) cycle
             do i = 1, set%count
-               call take_heads(l, l%own(i), k)
+               call write_table_heads(l, l%own(i), k)
             end do
          end do
       end subroutine lay_out_tables
@@ -178,7 +178,7 @@ contains
          integer :: k, dimension
 
          call choose_time_digits(set, l%time)
-         l%before_instant = ' '//phrase(say_instant, set%polish)//' '
+         l%before_instant = ' '//phrase(text_instant, set%polish)//' '
          l%behind_time = ' '//unit_of(l%time%power, trim(set%time_unit))
          allocate (l%drives(min(size(set%drives), max_drives)))
          do k = 1, size(l%drives)
@@ -199,7 +199,7 @@ contains
    end function new_layout
 
    !> Writes the lines over rows in tables of one kind: names, powers of ten if there are any, units.
-   subroutine take_heads(l, digits, kind)
+   subroutine write_table_heads(l, digits, kind)
       type(layout_t), intent(in) :: l
       type(digits_t), intent(inout) :: digits     !< of a part: its formats; gets the lines
       integer, intent(in) :: kind            !< of the table: table_turning, request_link, ...
@@ -216,13 +216,13 @@ contains
             associate (c => columns_of_rows(j), last => end_of_column(l, n, j))
                if (c%place == 0) cycle
                associate (power => digits%format(c%dimension, c%order)%power)
-                  call put_word(lines(1), column_name(l, c), last)
-                  if (power /= 0) call put_word(lines(2), power_text(power), last)
+                  call write_word(lines(1), column_name(l, c), last)
+                  if (power /= 0) call write_word(lines(2), power_text(power), last)
                   if (l%per_below) then
-                     call put_word(lines(3), trim(l%unit(c%dimension)), last)
-                     call put_word(lines(4), trim(l%per(c%dimension, c%order)), last)
+                     call write_word(lines(3), trim(l%unit(c%dimension)), last)
+                     call write_word(lines(4), trim(l%per(c%dimension, c%order)), last)
                   else
-                     call put_word(lines(3), column_unit(l, c), last)
+                     call write_word(lines(3), column_unit(l, c), last)
                   end if
                end associate
             end associate
@@ -241,14 +241,14 @@ contains
    contains
 
       !> Writes a word to a line.
-      pure subroutine put_word(line, word, last)
+      pure subroutine write_word(line, word, last)
          character(*), intent(inout) :: line   !< which has room for it
          character(*), intent(in) :: word    !< without blanks
          integer, intent(in) :: last         !< the character of the line at which the word ends
 
          line(last - len(word) + 1:last) = word
-      end subroutine put_word
-   end subroutine take_heads
+      end subroutine write_word
+   end subroutine write_table_heads
 
    !> Finds the last character of a column in a line of the listing.
    pure integer function end_of_column(l, form, j)
@@ -315,7 +315,7 @@ contains
 
    !> Writes a sentence in one line, or in several if it is long. A line ends before three blanks; if there are none,
    !> after a colon in its second half; if there is none, before a blank.
-   subroutine put_folded(o, mark, text, next)
+   subroutine write_folded(o, mark, text, next)
       type(output_t), intent(inout) :: o     !< gets the lines
       character(*), intent(in) :: mark       !< the beginning of the first line
       character(*), intent(in) :: text       !< the sentence
@@ -340,5 +340,5 @@ contains
          rest = trim(adjustl(rest(last + 1:)))
          if (present(next)) head = next
       end do
-   end subroutine put_folded
+   end subroutine write_folded
 end module listing_layout

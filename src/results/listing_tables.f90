@@ -6,14 +6,15 @@ module listing_tables
    use columns, only: columns_of_rows, forms, kinds_of_rows, is_ratio, cell_of, cell_number, cell_spare
    use points, only: row_t
    use text_output, only: output_t, put
-   use number_format, only: whole, put_fixed, numeral_length
+   use number_format, only: whole, write_fixed, numeral_length
    use masked_numbers, only: nothing_known, unknown_digit
-   use table, only: format_t, put_cell, put_number, number_text
+   use table, only: format_t, write_cell, write_number, number_text
    use listing_layout
-   use phrases, only: phrase, say_by, say_unknown, say_unclosed
+   use phrases, only: phrase, text_by, text_unknown, text_unclosed
    implicit none
    private
-   public :: listing_state_t, no_table, put_instant, put_times, put_heads, put_row, time_text, drive_text, law_error, &
+   public :: listing_state_t, no_table, write_instant, write_times, write_heads, write_row, time_text, drive_text, &
+      law_error, &
       mask_words
 
    character(4), parameter :: between = ' .. '
@@ -39,7 +40,7 @@ contains
 
    !> Writes the line over the tables of an instant: the time and the values of the drives. Heads that are far above do
    !> not hold any more.
-   subroutine put_instant(o, l, t, step, table)
+   subroutine write_instant(o, l, t, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t              !< the time, in the deck's unit
@@ -47,12 +48,12 @@ contains
       type(listing_state_t), intent(inout) :: table
 
       if (table%lines >= lines_a_head) table%kind = no_table
-      call put_times(o, l, l%before_instant//whole(step), [t], table)
-   end subroutine put_instant
+      call write_times(o, l, l%before_instant//whole(step), [t], table)
+   end subroutine write_instant
 
    !> Writes a blank line, and one with times and the values of the drives then, which go on in the next line where they
    !> are many. They are written into lines of their own: text that grows would cost as much as a table.
-   subroutine put_times(o, l, start, times, table)
+   subroutine write_times(o, l, start, times, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       character(*), intent(in) :: start      !< the beginning of the line
@@ -96,7 +97,7 @@ contains
 
       call put(o, line(:used))
       table%lines = table%lines + 2
-   end subroutine put_times
+   end subroutine write_times
 
    !> Appends a text to a line.
    pure subroutine append(text, line, used)
@@ -118,7 +119,7 @@ contains
       logical, intent(inout) :: masked       !< becomes true where a digit is masked
       character(numeral_length) :: number
 
-      call put_number(format, 0, value, error, number, masked)
+      call write_number(format, 0, value, error, number, masked)
       call append(number(verify(number, ' '):), line, used)
    end subroutine append_number
 
@@ -160,7 +161,7 @@ contains
    end function drive_text
 
    !> Writes the heads over rows, unless they stand there: names, powers of ten if there are any, units.
-   subroutine put_heads(o, l, part, kind, table)
+   subroutine write_heads(o, l, part, kind, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       integer, intent(in) :: part            !< the independent mechanism of the rows
@@ -175,10 +176,10 @@ contains
       if (stand) return
       call put(o, l%own(part)%heads(kind)(:l%own(part)%head_length(kind)))
       table%lines = 0
-   end subroutine put_heads
+   end subroutine write_heads
 
    !> Writes a row. A number that is not known is a word; a column that the row does not have is blank.
-   subroutine put_row(o, l, digits, row, form, error, more, table)
+   subroutine write_row(o, l, digits, row, form, error, more, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: digits
@@ -197,7 +198,7 @@ contains
       end_of = kinds_of_rows(row%kind)%names*name_length
       if (is_ratio(form)) then
          j = index(row%name, ' ')
-         line(j + 1:) = ' '//phrase(say_by, l%polish)//row%name(index(row%name, ' BY ') + 3:)
+         line(j + 1:) = ' '//phrase(text_by, l%polish)//row%name(index(row%name, ' BY ') + 3:)
       else if (end_of > name_length) then
          j = index(row%name, ' ')
          line(j + 1:) = ''
@@ -216,12 +217,12 @@ contains
             end_of = max(end_of, last)
             associate (f => digits%format(c%dimension, c%order), field => line(last - numeral_length + 1:last))
                if (cell == cell_number .and. .not. off > 0.0_wp) then
-                  ! Nearly all cells: as `put_cell`, without the call.
+                  ! Nearly all cells: as `write_cell`, without the call.
                   value = x
                   if (f%is_angle) value = value/f%unit
-                  call put_fixed(value, f%decimals + more, f%power, field)
+                  call write_fixed(value, f%decimals + more, f%power, field)
                else
-                  call put_cell(f, more, cell, x, off, l%words, field, table%masked)
+                  call write_cell(f, more, cell, x, off, l%words, field, table%masked)
                end if
             end associate
          end associate
@@ -230,14 +231,14 @@ contains
       ! Without the copy of the line that `trim` would make.
       call put(o, line(:len_trim(line(:end_of))))
       table%lines = table%lines + 1
-   end subroutine put_row
+   end subroutine write_row
 
    !> Finds the line that explains the mark of an unknown digit in the set `settings`.
    function mask_words(settings) result(line)
       class(settings_t), intent(in) :: settings
       character(:), allocatable :: line
 
-      line = ' --- '//unknown_digit//': '//phrase(say_unknown, settings%polish)
-      if (settings%closing > 0.0_wp) line = ' --- '//unknown_digit//': '//phrase(say_unclosed, settings%polish)
+      line = ' --- '//unknown_digit//': '//phrase(text_unknown, settings%polish)
+      if (settings%closing > 0.0_wp) line = ' --- '//unknown_digit//': '//phrase(text_unclosed, settings%polish)
    end function mask_words
 end module listing_tables

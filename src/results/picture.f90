@@ -9,15 +9,16 @@ module picture
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, point_velocity, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
-   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, put_shape, note_shape, put_outlines, place_name, &
-      put_label, put_foot, put_bar, caption, add_lines, add_box, cover_of, line_height
+   use canvas, only: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_outlines, place_name, &
+      draw_label, draw_foot, draw_bar, caption, add_lines, add_box, cover_of, line_height
    use labels, only: labels_of, clear_of_point
-   use svg, only: page_t, tie, put_end, put_group, put_window, put_circle, put_line, put_words, attribute, fitted
+   use svg, only: page_t, tie, close_group, open_group, draw_window, draw_circle, draw_line, draw_words, attribute, &
+      fitted
    use number_format, only: full
    use phrases
    implicit none
    private
-   public :: put_picture, clearest, faint_frames
+   public :: draw_picture, clearest, faint_frames
 
    !> The arrow of a drive is a line of so many pieces, the last ones its tip.
    integer, parameter :: arrow_pieces = 10, tip_pieces = 2
@@ -43,7 +44,7 @@ module picture
 contains
 
    !> Draws the set that the `drawing` has recorded, at the end of the `page`.
-   subroutine put_picture(page, drawing)
+   subroutine draw_picture(page, drawing)
       type(page_t), intent(inout), target :: page
       type(drawing_t), intent(in), target :: drawing
       type(canvas_t) :: c
@@ -63,36 +64,36 @@ contains
       call make_canvas(page, drawing, s, faint, c)
 
       list = shapes_of(drawing, c%scale)
-      call put_window(c%output, c%low, c%high)
-      call put_group(c%output, 'class="faint"', '')
+      call draw_window(c%output, c%low, c%high)
+      call open_group(c%output, 'class="faint"', '')
       do k = 1, size(faint)
-         call put_outlines(c, list, drawing%frame(faint(k)))
+         call draw_outlines(c, list, drawing%frame(faint(k)))
       end do
-      call put_end(c%output, 'g')
+      call close_group(c%output, 'g')
       do k = 1, size(list)
-         call put_shape(c, list(k))
-         call note_shape(c, list(k))
+         call draw_shape(c, list(k))
+         call record_shape(c, list(k))
       end do
-      call put_end(c%output, 'svg')
-      call put_drives(c)
-      if (drawing%has_arrows) call put_velocities(c)
+      call close_group(c%output, 'svg')
+      call draw_drives(c)
+      if (drawing%has_arrows) call draw_velocities(c)
       do k = 1, size(drawing%poles)
-         call put_centre(c, page, k)
+         call draw_centre(c, page, k)
       end do
       call labels_of(c, labels)
       do k = 1, size(labels)
-         call put_label(c, labels(k))
+         call draw_label(c, labels(k))
       end do
 
       ! At the foot: the instant that is drawn in full.
-      if (size(drawing%own) > 0) call put_words(c%output, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
+      if (size(drawing%own) > 0) call draw_words(c%output, [14.0_wp, c%high(2) + 28.0_wp], 'start', 'class="time"', &
          caption(c, s%t))
-      call put_foot(c)
-   end subroutine put_picture
+      call draw_foot(c)
+   end subroutine draw_picture
 
    !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
    !> that of its acceleration.
-   subroutine put_drives(canvas)
+   subroutine draw_drives(canvas)
       type(canvas_t), intent(inout) :: canvas
       real(wp) :: f(0:2), sense
       integer :: i, k
@@ -102,23 +103,23 @@ contains
             f = drive_motion(drive, canvas%snapshot%t)
             sense = sign(1.0_wp, f(2))
             if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
-            call put_group(canvas%output, 'class="drives"', trim(drive_name(canvas%mechanism, drive)))
+            call open_group(canvas%output, 'class="drives"', trim(drive_name(canvas%mechanism, drive)))
             select case (drive%kind)
             case (drive_angle)
-               if (known(drive%subject)) call put_arc(0, drive%subject, sense)
+               if (known(drive%subject)) call draw_arc(0, drive%subject, sense)
             case (drive_relangle)
-               if (known(drive%subject) .and. known(drive%second)) call put_arc(drive%subject, drive%second, sense)
+               if (known(drive%subject) .and. known(drive%second)) call draw_arc(drive%subject, drive%second, sense)
             case (drive_x, drive_y)
-               if (known(canvas%mechanism%points(drive%subject)%link)) call put_arrow(drive%subject, &
+               if (known(canvas%mechanism%points(drive%subject)%link)) call draw_arrow(drive%subject, &
                   sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x))
             case (drive_slide)
                k = findloc(canvas%drawing%guides%pair, drive%subject, dim=1)
                associate (g => canvas%drawing%guides(k))
-                  if (known(g%carrier) .and. known(g%block)) call put_arrow(g%point, &
+                  if (known(g%carrier) .and. known(g%block)) call draw_arrow(g%point, &
                      sense*real(g%sense, wp)*direction(canvas%snapshot%place(3, g%carrier) + g%angle))
                end associate
             end select
-            call put_end(canvas%output, 'g')
+            call close_group(canvas%output, 'g')
          end associate
       end do
 
@@ -126,7 +127,7 @@ contains
 
       !> Draws an arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise
       !> about its first joint.
-      subroutine put_arc(base, link, sense)
+      subroutine draw_arc(base, link, sense)
          integer, intent(in) :: base, link
          real(wp), intent(in) :: sense
          real(wp) :: center(2), start, e(2), lines(2, 0:arrow_pieces, size(arc_starts))
@@ -157,11 +158,11 @@ contains
                lines(:, i, k) = to_pixels(canvas, center) + arc_radius*[e(1), -e(2)]
             end do
          end do
-         call put_clearest(lines)
-      end subroutine put_arc
+         call draw_clearest(lines)
+      end subroutine draw_arc
 
       !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on either side.
-      subroutine put_arrow(point, sense)
+      subroutine draw_arrow(point, sense)
          integer, intent(in) :: point
          real(wp), intent(in) :: sense(2)
          real(wp), parameter :: asides(2) = arrow_aside*[1.0_wp, -1.0_wp]
@@ -176,11 +177,11 @@ contains
                lines(:, i, k) = start + arrow_length*real(i, wp)/real(arrow_pieces, wp)*e
             end do
          end do
-         call put_clearest(lines)
-      end subroutine put_arrow
+         call draw_clearest(lines)
+      end subroutine draw_arrow
 
       !> Draws the first of the `lines` (2, 0:pieces, :), in pixels, that cover least, as an arrow.
-      subroutine put_clearest(lines)
+      subroutine draw_clearest(lines)
          real(wp), intent(in) :: lines(:, 0:, :)
          real(wp) :: cover, least
          integer :: k, best
@@ -193,14 +194,14 @@ contains
             least = cover
             best = k
          end do
-         call put_arrow_line(canvas, &
+         call draw_arrow_line(canvas, &
             reshape([lines(:, :arrow_pieces - tip_pieces, best), lines(:, arrow_pieces, best)], &
             [2, 2 + arrow_pieces - tip_pieces]), 'class="drive"', 'class="tip"')
-      end subroutine put_clearest
-   end subroutine put_drives
+      end subroutine draw_clearest
+   end subroutine draw_drives
 
    !> Draws an arrow along the pixels `line` (2, :), whose last piece is its tip.
-   subroutine put_arrow_line(canvas, line, of_line, of_tip)
+   subroutine draw_arrow_line(canvas, line, of_line, of_tip)
       type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: line(:, :)
       character(*), intent(in) :: of_line, of_tip   !< attributes
@@ -208,15 +209,15 @@ contains
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
          e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
-         call put_line(canvas%output, 'polyline', line(:, :n - 1), of_line)
-         call put_line(canvas%output, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
+         call draw_line(canvas%output, 'polyline', line(:, :n - 1), of_line)
+         call draw_line(canvas%output, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
       end associate
       call add_lines(canvas, line, arrow_weight)
-   end subroutine put_arrow_line
+   end subroutine draw_arrow_line
 
    !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a
    !> line with its place at the foot of the `page`.
-   subroutine put_centre(canvas, page, i)
+   subroutine draw_centre(canvas, page, i)
       type(canvas_t), intent(inout) :: canvas
       type(page_t), intent(inout) :: page
       integer, intent(in) :: i
@@ -232,24 +233,24 @@ contains
       name = pole_name(canvas%mechanism, canvas%drawing%poles(i))
       if (any(p < canvas%low) .or. any(p > canvas%high)) then
          associate (at => canvas%snapshot%centre(:, i) + canvas%drawing%origin)
-            call put_words(canvas%output, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
-               phrase(say_centre_outside, canvas%mechanism%polish)//': ' &
+            call draw_words(canvas%output, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
+               phrase(text_centre_outside, canvas%mechanism%polish)//': ' &
                //fitted(at(1))//', '//fitted(at(2))//' ('//name//')')
          end associate
          page%height = page%height + line_height
          return
       end if
-      call put_circle(canvas%output, p, radius, 'class="centre" style="stroke:' &
+      call draw_circle(canvas%output, p, radius, 'class="centre" style="stroke:' &
          //link_color(canvas%mechanism, canvas%mechanism%requests(canvas%drawing%poles(i))%subject)//'"')
-      call put_circle(canvas%output, p, 1.0_wp, 'class="point"')
+      call draw_circle(canvas%output, p, 1.0_wp, 'class="point"')
       call add_box(canvas, p - radius, p + radius)
       label%attributes = 'class="link" '//color
       call place_name(canvas, reshape(p, [2, 1]), clear_of_point, name, label)
-      call put_label(canvas, label)
-   end subroutine put_centre
+      call draw_label(canvas, label)
+   end subroutine draw_centre
 
    !> Draws the velocities of the points whose paths are drawn, as arrows, and their scale below that of lengths.
-   subroutine put_velocities(canvas)
+   subroutine draw_velocities(canvas)
       type(canvas_t), intent(inout) :: canvas
       real(wp) :: v(2, size(canvas%drawing%curves)), scale, p(2), tip(2)
       integer :: k
@@ -263,18 +264,18 @@ contains
          if (norm2(v(:, k))*scale < tip_length) cycle
          associate (point => canvas%drawing%curves(k))
             p = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, point))
-            call put_group(canvas%output, 'class="velocity" ' &
+            call open_group(canvas%output, 'class="velocity" ' &
                //attribute('data-point', trim(canvas%mechanism%points(point)%name)) &
                //' data-scale="'//full(scale)//'"', '')
             tip = p + scale*v(:, k)
-            call put_arrow_line(canvas, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
+            call draw_arrow_line(canvas, reshape([p, tip - tip_length*v(:, k)/norm2(v(:, k)), tip], [2, 3]), &
                'class="arrow"', 'class="tip arrow"')
-            call put_end(canvas%output, 'g')
+            call close_group(canvas%output, 'g')
          end associate
       end do
-      call put_bar(canvas, canvas%high(2) + 36.0_wp, scale, trim(canvas%mechanism%length_unit)//'/' &
+      call draw_bar(canvas, canvas%high(2) + 36.0_wp, scale, trim(canvas%mechanism%length_unit)//'/' &
          //trim(canvas%mechanism%time_unit), 'class="arrow"')
-   end subroutine put_velocities
+   end subroutine draw_velocities
 
    !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
    !> is `wide` across. Reason: links that are collinear at the first instant are read better later.

@@ -3,12 +3,12 @@
 module proof_table
    use kinds, only: wp
    use mechanism, only: shown_links, instant
-   use motion, only: mark_none
+   use motion, only: flag_none
    use independent, only: set_t
    use proofs, only: proofs_t, reason_t
    use names, only: listed
-   use listing, only: words_of_mark
-   use listing_layout, only: layout_t, put_folded
+   use listing, only: words_of_flag
+   use listing_layout, only: layout_t, write_folded
    use table, only: right
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -16,14 +16,14 @@ module proof_table
    use phrases
    implicit none
    private
-   public :: put_proofs
+   public :: write_proofs
 
    integer, parameter :: number_width = 12
 
 contains
 
    !> Writes what is proved after the last instant of a set.
-   subroutine put_proofs(o, l, proofs, set)
+   subroutine write_proofs(o, l, proofs, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(proofs_t), intent(in) :: proofs
@@ -32,10 +32,10 @@ contains
       integer :: i
 
       call put(o, '')
-      call put(o, ' '//phrase(say_proof, set%polish))
-      call put(o, column(phrase(say_instant, set%polish))//column('T')//column(phrase(say_parts, set%polish)) &
-         //column(phrase(say_tube, set%polish))//column(phrase(say_position, set%polish)) &
-         //column(phrase(say_velocity, set%polish))//'  '//column(phrase(say_acceleration, set%polish)))
+      call put(o, ' '//phrase(text_proof, set%polish))
+      call put(o, column(phrase(text_instant, set%polish))//column('T')//column(phrase(text_parts, set%polish)) &
+         //column(phrase(text_tube, set%polish))//column(phrase(text_position, set%polish)) &
+         //column(phrase(text_velocity, set%polish))//'  '//column(phrase(text_acceleration, set%polish)))
       do i = 1, proofs%count
          associate (line => proofs%lines(i))
             start = column(whole(line%step))//column(time_text(l, instant(set, line%step)))
@@ -44,26 +44,26 @@ contains
                   //column(rounded_up(line%bounds(0)))//column(rounded_up(line%bounds(1))) &
                   //'  '//column(rounded_up(line%bounds(2))))
             else
-               call put(o, start//'   '//phrase(say_not_proved, set%polish))
+               call put(o, start//'   '//phrase(text_not_proved, set%polish))
             end if
          end associate
       end do
       do i = 1, size(proofs%reasons)
          associate (r => proofs%reasons(i))
-            call put_folded(o, ' *** ', phrase(say_instant, set%polish)//' '//whole(r%step)//', T = ' &
-               //time_text(l, instant(set, r%step))//': '//phrase(say_not_proved, set%polish)//': '//words_of(r, set))
+            call write_folded(o, ' *** ', phrase(text_instant, set%polish)//' '//whole(r%step)//', T = ' &
+               //time_text(l, instant(set, r%step))//': '//phrase(text_not_proved, set%polish)//': '//words_of(r, set))
          end associate
       end do
-      if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** '//phrase(say_not_proved, &
+      if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** '//phrase(text_not_proved, &
          set%polish) &
          //': '//whole(proofs%instants - proofs%proved))
       gap = ''
-      if (proofs%gap > 0.0_wp) gap = ',  '//phrase(say_closure_error_of, set%polish)//' '//rounded_up(proofs%gap)
-      call put(o, ' '//phrase(say_proved, set%polish)//' '//whole(proofs%proved)//' / '//whole(proofs%instants) &
-         //',  '//phrase(say_parts, set%polish)//' '//whole(sum(proofs%lines(:proofs%count)%parts)) &
-         //',  '//phrase(say_tube, set%polish)//' '//rounded_up(maxval([0.0_wp, proofs%lines(:proofs%count)%tube])) &
+      if (proofs%gap > 0.0_wp) gap = ',  '//phrase(text_closure_error_of, set%polish)//' '//rounded_up(proofs%gap)
+      call put(o, ' '//phrase(text_proved, set%polish)//' '//whole(proofs%proved)//' / '//whole(proofs%instants) &
+         //',  '//phrase(text_parts, set%polish)//' '//whole(sum(proofs%lines(:proofs%count)%parts)) &
+         //',  '//phrase(text_tube, set%polish)//' '//rounded_up(maxval([0.0_wp, proofs%lines(:proofs%count)%tube])) &
             //gap)
-   end subroutine put_proofs
+   end subroutine write_proofs
 
    !> Tells why an instant is not proved.
    function words_of(reason, set) result(words)
@@ -71,16 +71,16 @@ contains
       class(set_t), intent(in) :: set          !< the set
       character(:), allocatable :: words
 
-      if (reason%mark /= mark_none) then
-         words = words_of_mark(reason%mark, reason%singularity, set%polish)
+      if (reason%mark /= flag_none) then
+         words = words_of_flag(reason%mark, reason%singularity, set%polish)
       else if (reason%is_crossed) then
-         words = phrase(say_change_inside, set%polish)
+         words = phrase(text_change_inside, set%polish)
       else
-         words = phrase(say_near_singular, set%polish)
-         if (reason%too_many > 0) words = phrase(say_too_wide, set%polish)//' '//whole(reason%too_many)
+         words = phrase(text_near_singular, set%polish)
+         if (reason%too_many > 0) words = phrase(text_too_wide, set%polish)//' '//whole(reason%too_many)
          if (.not. allocated(reason%links)) return
          associate (part => set%parts(reason%part))
-            if (size(reason%links) > 0) words = phrase(say_links, set%polish)//' ' &
+            if (size(reason%links) > 0) words = phrase(text_links, set%polish)//' ' &
                //listed(part%links(shown_links(part, reason%links))%name, set%polish)//': '//words
          end associate
       end if

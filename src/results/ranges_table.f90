@@ -4,20 +4,20 @@ module ranges_table
    use names, only: drive_name
    use ranges, only: range_t, low, high
    use listing, only: limit_words, full_turn_words
-   use listing_layout, only: put_folded
+   use listing_layout, only: write_folded
    use text_output, only: output_t, put
    use number_format, only: whole
    use phrases
    implicit none
    private
-   public :: put_ranges, side_words
+   public :: write_ranges, side_words
 
    character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
 
 contains
 
    !> Writes the ranges of drives after the last instant of a set.
-   subroutine put_ranges(o, set, list)
+   subroutine write_ranges(o, set, list)
       type(output_t), intent(inout) :: o     !< the listing
       class(set_t), intent(in) :: set          !< the set
       type(range_t), intent(in) :: list(:)   !< in the order of the drives
@@ -25,12 +25,12 @@ contains
       integer :: i, side
 
       call put(o, '')
-      call put(o, ' '//phrase(say_range, set%polish))
-      if (size(list) == 0) call put(o, '   '//phrase(say_none, set%polish))
+      call put(o, ' '//phrase(text_range, set%polish))
+      if (size(list) == 0) call put(o, '   '//phrase(text_none, set%polish))
       do i = 1, size(list)
          associate (r => list(i), m => set%parts(list(i)%part))
             words = trim(drive_name(m, m%drives(r%drive)))
-            if (r%is_of_branch) words = words//'   '//phrase(say_range_of_branch, m%polish)
+            if (r%is_of_branch) words = words//'   '//phrase(text_range_of_branch, m%polish)
             call put(o, ' '//words)
             if (r%is_all) then
                call put(o, '   '//full_turn_words(r%turns, m%polish))
@@ -39,16 +39,16 @@ contains
                   words = limit_words(m, r%limit(side))
                   ! Where no limit is told rounding is too coarse to follow the motion farther.
                   if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &
-                     words = words//'   '//phrase(say_close, m%polish)
+                     words = words//'   '//phrase(text_close, m%polish)
                   if (r%has_limit(side)) then
-                     call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
+                     call write_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
                   else
-                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' '//words)
+                     call put(o, '   '//side_words(side)//'  '//phrase(text_no_limit, m%polish)//' '//words)
                   end if
                end do
             end if
-            if (r%change_points > 0) call put(o, '   '//phrase(say_on_the_way, m%polish)//' '//whole(r%change_points))
+            if (r%change_points > 0) call put(o, '   '//phrase(text_on_the_way, m%polish)//' '//whole(r%change_points))
          end associate
       end do
-   end subroutine put_ranges
+   end subroutine write_ranges
 end module ranges_table

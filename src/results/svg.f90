@@ -6,8 +6,8 @@ module svg
    use number_format, only: fixed, whole, max_decimals
    implicit none
    private
-   public :: page_t, begin_page, end_page, put_group, put_window, put_end, put_circle, put_line, &
-      put_words, put_columns, pixels, attribute, fitted
+   public :: page_t, begin_page, end_page, open_group, draw_window, close_group, draw_circle, draw_line, &
+      draw_words, draw_columns, pixels, attribute, fitted
 
    !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
    !> first line.
@@ -81,58 +81,58 @@ contains
       call put(o, '</style>')
       call put(o, '<rect width="'//whole(width)//'" height="'//height//'" fill="#fff"/>')
       call add(o, page%body%buffer(:page%body%used))
-      call put_end(o, 'svg')
+      call close_group(o, 'svg')
    end subroutine end_page
 
    !> Begins a group of elements with the attributes `attributes`; `title`, if not '', is what a viewer says of it.
-   subroutine put_group(o, attributes, title)
+   subroutine open_group(o, attributes, title)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: attributes, title
 
       call put(o, '<g '//attributes//'>')
       if (len(title) > 0) call put(o, '<title>'//escaped(title)//'</title>')
-   end subroutine put_group
+   end subroutine open_group
 
    !> Ends the `element` begun last: 'g' a group, 'svg' a picture.
-   subroutine put_end(o, element)
+   subroutine close_group(o, element)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element
 
       call put(o, '</'//element//'>')
-   end subroutine put_end
+   end subroutine close_group
 
    !> A circle about `p` (2).
-   subroutine put_circle(o, p, radius, attributes)
+   subroutine draw_circle(o, p, radius, attributes)
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: p(2), radius
       character(*), intent(in) :: attributes
 
       call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
-   end subroutine put_circle
+   end subroutine draw_circle
 
    !> Writes a line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it.
-   subroutine put_line(o, element, p, attributes)
+   subroutine draw_line(o, element, p, attributes)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element, attributes
       real(wp), intent(in) :: p(:, :)
 
-      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ')
-   end subroutine put_line
+      call draw_columns(o, element//' '//attributes//' points="', p, ',', ' ')
+   end subroutine draw_line
 
    !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where
    !> 'start', 'end'.
-   subroutine put_words(o, p, anchor, attributes, words)
+   subroutine draw_words(o, p, anchor, attributes, words)
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: p(2)
       character(*), intent(in) :: anchor, attributes, words
 
       call put(o, '<text x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" text-anchor="'//anchor//'" '//attributes//'>' &
          //escaped(words)//'</text>')
-   end subroutine put_words
+   end subroutine draw_words
 
    !> Writes an element that begins with `begins` and has the columns of `values` (:, :) in an attribute: `inside`
    !> stands between the numbers of a column, `between` between columns.
-   subroutine put_columns(o, begins, values, inside, between)
+   subroutine draw_columns(o, begins, values, inside, between)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: begins, inside, between
       real(wp), intent(in) :: values(:, :)
@@ -147,17 +147,17 @@ contains
          end do
       end do
       call put(o, '"/>')
-   end subroutine put_columns
+   end subroutine draw_columns
 
    !> Begins a window: of what follows only the part from `low` to `high` (2) is seen.
-   subroutine put_window(o, low, high)
+   subroutine draw_window(o, low, high)
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: low(2), high(2)
 
       call put(o, '<svg x="'//pixels(low(1))//'" y="'//pixels(low(2))//'" width="'//pixels(high(1) - low(1)) &
          //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//pixels(low(1))//' '//pixels(low(2))//' ' &
          //pixels(high(1) - low(1))//' '//pixels(high(2) - low(2))//'" overflow="hidden">')
-   end subroutine put_window
+   end subroutine draw_window
 
    !> `value` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
    pure function pixels(value) result(text)

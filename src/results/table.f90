@@ -5,12 +5,12 @@ module table
    use plane_vectors, only: in_degrees
    use columns, only: cell_words, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
       last_cell
-   use number_format, only: numeral_length, full_length, max_decimals, put_fixed, put_full, whole
-   use masked_numbers, only: put_known, nothing_known, unknown_digit
+   use number_format, only: numeral_length, full_length, max_decimals, write_fixed, write_full, whole
+   use masked_numbers, only: write_known, nothing_known, unknown_digit
    use text_output, only: output_t, add, replaced
    implicit none
    private
-   public :: format_t, cell_t, words_of_cells, choose_digits, put_cell, put_number, number_text, cell_text, &
+   public :: format_t, cell_t, words_of_cells, choose_digits, write_cell, write_number, number_text, cell_text, &
       power_text, unit_of, add_name, add_number, add_cell, right, digits_after_first, order_margin
 
    !> Digits behind the first one.
@@ -52,7 +52,7 @@ contains
    end function words_of_cells
 
    !> Writes a cell of the listing: a number, or a word in its place.
-   pure subroutine put_cell(format, more, cell, value, error, words, field, masked)
+   pure subroutine write_cell(format, more, cell, value, error, words, field, masked)
       type(format_t), intent(in) :: format   !< of the column
       integer, intent(in) :: more            !< decimals in addition to those of `format`
       integer, intent(in) :: cell            !< its contents: cell_none, ...
@@ -63,7 +63,7 @@ contains
       logical, intent(inout) :: masked       !< becomes true where a digit or a word is masked
 
       if (cell == cell_number) then
-         call put_number(format, more, value, error, field, masked)
+         call write_number(format, more, value, error, field, masked)
          return
       end if
       field = words(cell)
@@ -72,10 +72,10 @@ contains
          field = repeat(' ', numeral_length - 1)//unknown_digit
          masked = .true.
       end if
-   end subroutine put_cell
+   end subroutine write_cell
 
    !> Writes a number of the listing.
-   pure subroutine put_number(format, more, value, error, field, masked)
+   pure subroutine write_number(format, more, value, error, field, masked)
       type(format_t), intent(in) :: format   !< of the column
       integer, intent(in) :: more            !< decimals in addition to those of `format`
       real(wp), intent(in) :: value          !< in the deck's units and rad
@@ -92,11 +92,11 @@ contains
          off = off/format%unit
       end if
       if (off > 0.0_wp) then
-         call put_known(printed, off, format%decimals + more, format%power, field, masked)
+         call write_known(printed, off, format%decimals + more, format%power, field, masked)
       else
-         call put_fixed(printed, format%decimals + more, format%power, field)
+         call write_fixed(printed, format%decimals + more, format%power, field)
       end if
-   end subroutine put_number
+   end subroutine write_number
 
    !> Gives a number of the listing without blanks.
    pure function number_text(format, value, error) result(text)
@@ -107,7 +107,7 @@ contains
       character(numeral_length) :: field
       logical :: masked
 
-      call put_number(format, 0, value, error, field, masked)
+      call write_number(format, 0, value, error, field, masked)
       text = field(verify(field, ' '):)
    end function number_text
 
@@ -183,9 +183,9 @@ contains
       integer :: length
 
       if (degrees) then
-         call put_full(in_degrees(value), text, length)
+         call write_full(in_degrees(value), text, length)
       else
-         call put_full(value, text, length)
+         call write_full(value, text, length)
       end if
       call add(o, text(:length))
    end subroutine add_number

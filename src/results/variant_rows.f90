@@ -6,14 +6,14 @@ module variant_rows
    use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
    use table, only: format_t, cell_t, choose_digits
-   use motion, only: mark_none
+   use motion, only: flag_none
    use drives, only: drive_motion
    use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use listing_layout, only: layout_t, angle_unit, column_name, column_unit
    use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
-   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, rows_asked, strokes_of
+   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, requested_rows, strokes_of
    use extremes_table, only: extreme_words, ratio_format
    use ranges, only: low, high
    use answers, only: answers_t
@@ -64,17 +64,17 @@ contains
       drives = drive_columns(set)
 
       allocate (s%columns(0))
-      call add_column(summary_column_t('variant', .true., phrase(say_variant, set%polish)))
+      call add_column(summary_column_t('variant', .true., phrase(text_variant, set%polish)))
       do i = 1, size(variation%numbers)
          call add_number(variation%numbers(:i))
       end do
 
-      call add_column(summary_column_t('solved', .true., phrase(say_instants, set%polish), &
-         phrase(say_are_solved, set%polish)))
-      call add_column(summary_column_t('flagged', .true., phrase(say_instants, set%polish), &
-         phrase(say_flagged, set%polish)))
-      call add_column(summary_column_t('flag.t', .true., phrase(say_first_flag, set%polish), &
-         phrase(say_at_time, set%polish), set%time_unit, format=l%time))
+      call add_column(summary_column_t('solved', .true., phrase(text_instants, set%polish), &
+         phrase(text_are_solved, set%polish)))
+      call add_column(summary_column_t('flagged', .true., phrase(text_instants, set%polish), &
+         phrase(text_flagged, set%polish)))
+      call add_column(summary_column_t('flag.t', .true., phrase(text_first_flag, set%polish), &
+         phrase(text_at_time, set%polish), set%time_unit, format=l%time))
       call add_drive(min(1, size(set%drives)), 'flag', '', '')
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
@@ -85,14 +85,14 @@ contains
          associate (own => set%parts(set%drives(i)%part))
             name = drive_name(own, own%drives(set%drives(i)%number))
          end associate
-         call add_drive(i, 'range.min', name, phrase(say_one_range, set%polish)//' MIN')
-         call add_drive(i, 'range.max', name, phrase(say_one_range, set%polish)//' MAX')
+         call add_drive(i, 'range.min', name, phrase(text_one_range, set%polish)//' MIN')
+         call add_drive(i, 'range.max', name, phrase(text_one_range, set%polish)//' MAX')
          call add_column(summary_column_t('range.turns.'//trim(drives(i)), .true., name, &
-            phrase(say_whole_turns, set%polish)))
+            phrase(text_whole_turns, set%polish)))
       end do
-      if (set%assemblies) call add_column(summary_column_t('assemblies', .true., phrase(say_assemblies, set%polish)))
-      if (set%proves) call add_column(summary_column_t('unproved', .true., phrase(say_instants, set%polish), &
-         phrase(say_not_proved, set%polish)))
+      if (set%assemblies) call add_column(summary_column_t('assemblies', .true., phrase(text_assemblies, set%polish)))
+      if (set%proves) call add_column(summary_column_t('unproved', .true., phrase(text_instants, set%polish), &
+         phrase(text_not_proved, set%polish)))
       call add_extremes()
 
    contains
@@ -154,7 +154,7 @@ contains
 
          name = trim(subject_name(m, request%kind, request%subject))
          if (request%drive > 0) &
-            name = name//' '//phrase(say_by, set%polish)//' '//trim(drive_name(m, m%drives(request%drive)))
+            name = name//' '//phrase(text_by, set%polish)//' '//trim(drive_name(m, m%drives(request%drive)))
       end function name_of
 
       !> Adds the columns of what EXTREMES asks for.
@@ -165,7 +165,7 @@ contains
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
          character(:), allocatable :: word
 
-         s%extremes = new_table(set, rows_asked(set))
+         s%extremes = new_table(set, requested_rows(set))
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
                request = request_of(set, column%request)
@@ -182,12 +182,12 @@ contains
                end do
                if (column%order > 0 .or. request%drive > 0) cycle
                c%name = trim(column%name)//'.stroke'
-               c%below = word//' '//phrase(say_stroke, set%polish)
+               c%below = word//' '//phrase(text_stroke, set%polish)
                c%by_size = .true.
                c%format%power = 0
                call add_column(c)
                call add_column(summary_column_t(trim(column%name)//'.ratio', .true., c%above, &
-                  word//' '//phrase(say_ratio, set%polish), format=ratio_format))
+                  word//' '//phrase(text_ratio, set%polish), format=ratio_format))
             end associate
          end do
       end subroutine add_extremes
@@ -223,7 +223,7 @@ contains
       n = summary%numbers + 1
       call next(cell_t(cell_count, real(row%solved, wp)))
       call next(cell_t(cell_count, real(row%flagged, wp)))
-      if (row%mark /= mark_none) then
+      if (row%mark /= flag_none) then
          call next(cell_t(cell_number, row%t))
          call next(drive_cell(set, min(1, size(set%drives)), row%t))
          call next(cell_t(cell_word, word=marks(row%mark)))

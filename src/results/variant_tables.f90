@@ -3,11 +3,11 @@ module variant_tables
    use kinds, only: wp
    use mechanism, only: settings_t
    use independent, only: set_t
-   use motion, only: mark_none
-   use listing, only: words_of_mark
-   use listing_layout, only: layout_t, line_length, put_folded
+   use motion, only: flag_none
+   use listing, only: words_of_flag
+   use listing_layout, only: layout_t, line_length, write_folded
    use table, only: cell_text, add_cell, add_name, power_text, unit_of, right
-   use listing, only: put_diagnostics
+   use listing, only: write_diagnostics
    use listing_tables, only: mask_words
    use text_output, only: output_t, put, add
    use number_format, only: whole
@@ -15,10 +15,10 @@ module variant_tables
    use phrases
    implicit none
    private
-   public :: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, put_variants_end
+   public :: summary_head, summary_row, write_variant, write_variant_heads, write_variant_row, write_variants_end
 
    !> Characters of the number of a variant, and at least of a column.
-   integer, parameter :: number_length = 10, least_width = 12
+   integer, parameter :: parameter_length = 10, least_width = 12
    !> Characters of an exponent.
    integer, parameter :: exponent_length = 4
 
@@ -55,7 +55,7 @@ contains
    end subroutine summary_row
 
    !> The lines over the tables of one variant, that of the `row`: its number and its values.
-   subroutine put_variant(o, l, summary, settings, row)
+   subroutine write_variant(o, l, summary, settings, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(summary_t), intent(in) :: summary
@@ -65,7 +65,7 @@ contains
       integer :: i
 
       call put(o, '')
-      line = ' '//phrase(say_variant, settings%polish)//' '//whole(row%number)
+      line = ' '//phrase(text_variant, settings%polish)//' '//whole(row%number)
       do i = 2, summary%numbers + 1
          associate (c => summary%columns(i))
             item = '   '//trim(c%above)//' '//trim(c%below)//' = ' &
@@ -78,10 +78,10 @@ contains
          line = line//item
       end do
       call put(o, line)
-   end subroutine put_variant
+   end subroutine write_variant
 
    !> The heads of the table: for each of its lines of columns the names, powers of ten and units.
-   subroutine put_variant_heads(o, summary)
+   subroutine write_variant_heads(o, summary)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: summary
       integer, allocatable :: starts(:)
@@ -100,16 +100,16 @@ contains
                   if (.not. c%printed .or. (i > 1 .and. i < starts(n))) cycle
                   heads = [character(len(heads)) :: c%above, c%below, '', c%unit]
                   if (c%format%power /= 0) heads(3) = power_text(c%format%power)
-                  line = line//right(trim(heads(k)), merge(number_length, width(c), i == 1))
+                  line = line//right(trim(heads(k)), merge(parameter_length, width(c), i == 1))
                end associate
             end do
             if (len_trim(line) > 0) call put(o, trim(line))
          end do
       end do
-   end subroutine put_variant_heads
+   end subroutine write_variant_heads
 
    !> The lines of the `row`, and below them why there is not all of it.
-   subroutine put_variant_row(o, l, summary, set, row)
+   subroutine write_variant_row(o, l, summary, set, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(summary_t), intent(in) :: summary
@@ -121,7 +121,7 @@ contains
 
       starts = line_starts(summary)
       do n = 1, size(starts) - 1
-         line = right(whole(row%number), number_length)
+         line = right(whole(row%number), parameter_length)
          do i = starts(n), starts(n + 1) - 1
             associate (c => summary%columns(i))
                if (c%printed) line = line//right(cell_text(c%format, c%by_size, row%cells(i), l%words), width(c))
@@ -129,26 +129,27 @@ contains
          end do
          call put(o, line)
       end do
-      if (row%rejected /= '') call put_folded(o, ' *** ', row%rejected)
+      if (row%rejected /= '') call write_folded(o, ' *** ', row%rejected)
       if (row%limit%kind /= 0) then
-         call put_diagnostics(o, set%parts(row%limit%part), [row%limit])
-      else if (row%mark /= mark_none) then
-         call put(o, ' *** '//words_of_mark(row%mark, row%singularity, set%polish))
+         call write_diagnostics(o, set%parts(row%limit%part), [row%limit])
+      else if (row%mark /= flag_none) then
+         call put(o, ' *** '//words_of_flag(row%mark, row%singularity, set%polish))
       end if
-   end subroutine put_variant_row
+   end subroutine write_variant_row
 
    !> The last line of a set of variants, below what `?` means in their rows if a closing tolerance leaves digits open.
-   subroutine put_variants_end(o, settings)
+   subroutine write_variants_end(o, settings)
       type(output_t), intent(inout) :: o
       class(settings_t), intent(in) :: settings
 
       if (settings%closing > 0.0_wp) call put(o, mask_words(settings))
       call put(o, '')
-      call put(o, ' '//phrase(say_end, settings%polish)//' '//whole(settings%set_number)//':  '//phrase(say_variants, &
+      call put(o, ' '//phrase(text_end, settings%polish)//' '//whole(settings%set_number)//':  ' &
+         //phrase(text_variants, &
          settings%polish)//' ' &
          //whole(settings%variants))
       call put(o, '')
-   end subroutine put_variants_end
+   end subroutine write_variants_end
 
    !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
    pure function line_starts(summary) result(starts)
@@ -163,7 +164,7 @@ contains
          used = used + width(summary%columns(i))
          if (used <= line_length) cycle
          starts = [starts, i]
-         used = number_length + width(summary%columns(i))
+         used = parameter_length + width(summary%columns(i))
       end do
       starts = [starts, size(summary%columns) + 1]
    end function line_starts

@@ -9,13 +9,13 @@ module set_analysis
    use structure, only: structure_report_t
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
-   use significance_check, only: safe_growth, find_amplification
+   use significance_check, only: max_amplification, find_amplification
    use link_motion, only: move_links
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, diagnostic_turned, motion_t, &
-      new_motion, turned_t, mark_inconsistent
+      new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
    use separations, only: motions_apart
    use points, only: row_t, find_row, keep_turns
@@ -25,7 +25,7 @@ module set_analysis
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, foresee_closure, renew_set_analysis, advance_set, &
-      take_state, &
+      accept_state, &
       rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
       set_closing_diagnostics
 
@@ -181,13 +181,13 @@ contains
       s%is_in_lane = .false.
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
-         if (s%now%motions(c)%mark == mark_inconsistent) call tell_surplus_drives(s, c)
+         if (s%now%motions(c)%mark == flag_inconsistent) call tell_surplus_drives(s, c)
       end do
       call keep_instant(s)
    end subroutine advance_set
 
    !> Takes the instant `t` of a set of one mechanism, with the motion that a lane has put into the engine's state.
-   subroutine take_state(s, t, is_taken)
+   subroutine accept_state(s, t, is_taken)
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t              !< time
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
@@ -203,7 +203,7 @@ contains
       is_taken = is_finite .and. .not. in_doubt
       s%is_in_lane = .true.
       if (is_taken) call keep_instant(s)
-   end subroutine take_state
+   end subroutine accept_state
 
    !> Keeps what later instants need of the instant at which all motions of the set are, whether its engines or a lane
    !> have found them. A row has no second place for what it keeps from instant to instant. An instant that a lane hands
@@ -356,7 +356,7 @@ contains
             end do
             if (.not. present(always)) return
             call estimate_errors(s%estimators(c), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
-            if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
+            if (present(growth)) growth = merge(max_amplification, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
             do i = 1, size(list)
                error(:, :, i) = estimate_of(rows(i), own, estimate, s%now%rows(list(i))%number)

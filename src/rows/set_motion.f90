@@ -3,7 +3,7 @@
 module set_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, wanted_links
-   use motion, only: motion_t, new_motion, mark_none
+   use motion, only: motion_t, new_motion, flag_none
    use independent, only: set_t, divide, request_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: structure_report_t, structure_t, make_structure
@@ -145,7 +145,7 @@ contains
    pure logical function is_flagged(s)
       type(set_motion_t), intent(in) :: s
 
-      is_flagged = any(s%motions%mark /= mark_none)
+      is_flagged = any(s%motions%mark /= flag_none)
    end function is_flagged
 
    !> Tells whether the instant has marks or diagnostics in addition to its numbers.

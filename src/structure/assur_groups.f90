@@ -63,15 +63,15 @@ contains
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (.not. has_guide(m%pairs(i)%kind)) then
                do axis = 1, 2
-                  call note_component(p, axis_directions(:, axis))
-                  call note_component(q, axis_directions(:, axis))
+                  call record_component(p, axis_directions(:, axis))
+                  call record_component(q, axis_directions(:, axis))
                   call close_equation()
                end do
             else
                call note(m%points(p)%link, angle)
                call note(m%points(q)%link, angle)
                call close_equation()
-               call note_projection(i, across=.true.)
+               call record_projection(i, across=.true.)
                call close_equation()
             end if
          end associate
@@ -86,11 +86,11 @@ contains
                call note(subject, angle)
                call note(m%drives(i)%second, angle)
             case (drive_x)
-               call note_component(subject, axis_directions(:, 1))
+               call record_component(subject, axis_directions(:, 1))
             case (drive_y)
-               call note_component(subject, axis_directions(:, 2))
+               call record_component(subject, axis_directions(:, 2))
             case (drive_slide)
-               call note_projection(subject, across=.false.)
+               call record_projection(subject, across=.false.)
             end select
          end associate
          call close_equation()
@@ -110,15 +110,15 @@ contains
       end subroutine note
 
       !> Notes the coordinates in the component of a point along a fixed direction.
-      subroutine note_component(point, direction)
+      subroutine record_component(point, direction)
          integer, intent(in) :: point        !< its number
          real(wp), intent(in) :: direction(2)   !< x and y; a zero tells that the coordinate is not in the equation
 
          call note(m%points(point)%link, [abs(direction) > zero_component, any(abs(m%points(point)%offset) > 0.0_wp)])
-      end subroutine note_component
+      end subroutine record_component
 
       !> Notes the coordinates in the projection of a prismatic pair.
-      subroutine note_projection(i, across)
+      subroutine record_projection(i, across)
          integer, intent(in) :: i            !< the number of the pair
          logical, intent(in) :: across       !< on the normal of its guide; otherwise along the guide
          real(wp) :: angle
@@ -126,14 +126,14 @@ contains
          associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
             if (m%links(m%points(p)%link)%ground) then
                angle = m%links(m%points(p)%link)%position(3) + m%pairs(i)%alpha
-               if (across) call note_component(q, [-sin(angle), cos(angle)])
-               if (.not. across) call note_component(q, [cos(angle), sin(angle)])
+               if (across) call record_component(q, [-sin(angle), cos(angle)])
+               if (.not. across) call record_component(q, [cos(angle), sin(angle)])
             else
                call note(m%points(p)%link, spread(.true., 1, 3))
-               call note_component(q, [1.0_wp, 1.0_wp])
+               call record_component(q, [1.0_wp, 1.0_wp])
             end if
          end associate
-      end subroutine note_projection
+      end subroutine record_projection
 
       !> Completes the equation at hand.
       subroutine close_equation()

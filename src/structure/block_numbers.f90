@@ -1,5 +1,5 @@
 !> What the numbers of a mechanism's cards make of its blocks. A variant, or a mechanism with one number off, has the
-!> same blocks with other numbers: `put_numbers` fills these straight from it.
+!> same blocks with other numbers: `evaluate_geometry` fills these straight from it.
 !>
 !> Each vector loop is in its own lengths: its rows, and the slides that its block solves for, in units of its largest
 !> body vector. A residual, closure error or correction is then small or large for that loop and not for the largest
@@ -13,12 +13,12 @@ module block_numbers
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use vector_loops, only: vanishes
-   use loop_equations, only: put_equation_numbers, find_unknowns
+   use loop_equations, only: assign_equation_numbers, find_unknowns
    use blocks, only: blocks_t, block_t, block_loop_t, geometry_t, loop_numbers_t, loop_angles, loop_components, &
       loop_projection
    implicit none
    private
-   public :: put_numbers, fill_numbers, find_units, lipschitz_of
+   public :: evaluate_geometry, fill_numbers, find_units, lipschitz_of
 
    !> A loop below this part of the largest loop of its block has a unit of its own.
    real(wp), parameter :: much_smaller = 0.0625_wp
@@ -30,7 +30,7 @@ contains
 
    !> Puts the numbers of a mechanism into the geometry of its blocks. The structure stays as it is. If the numbers do
    !> not fit, `x` leaves out the unknowns and body vectors that `b` leaves out.
-   subroutine put_numbers(m, b, x, fits)
+   subroutine evaluate_geometry(m, b, x, fits)
       type(mechanism_t), intent(in) :: m     !< with the links, points, pairs and drives of which `b` was made
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(inout) :: x   !< a geometry of `b`
@@ -39,7 +39,7 @@ contains
 
       x%span = solver_length(m)
       x%closing = m%closing
-      call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
+      call assign_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
       if (.not. fits) return
 
@@ -49,7 +49,7 @@ contains
       fits = all(has_vector .eqv. b%equations%has_vector) .and. all(counts .eqv. b%equations%counts)
       call fill_numbers(b, x)
       call find_units(b, x)
-   end subroutine put_numbers
+   end subroutine evaluate_geometry
 
    !> Fills a geometry from the numbers of its equations, in their unit of length, and allocates its lists if needed.
    pure subroutine fill_numbers(b, x)

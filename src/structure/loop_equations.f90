@@ -10,13 +10,14 @@ module loop_equations
    use disjoint_sets, only: sorted_t, sorted
    use mechanism, only: mechanism_t, pair_links, has_guide, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
-   use spanning_tree, only: spanning_tree_t, axes_t, put_axes, guide
+   use spanning_tree, only: spanning_tree_t, axes_t, assign_axes, guide
    use vector_loops, only: search_t, find_path, vector_loops_t, &
-      add_vector_loop, loop_sums_t, put_sums, vanishes
+      add_vector_loop, loop_sums_t, assign_sums, vanishes
    use matching, only: incidence_t
    implicit none
    private
-   public :: equation_t, equations_t, new_equations, equation_numbers_t, new_equation_numbers, put_equation_numbers, &
+   public :: equation_t, equations_t, new_equations, equation_numbers_t, new_equation_numbers, &
+      assign_equation_numbers, &
       incidence, find_unknowns
    public :: equation_x, equation_y, equation_projection, equation_angle, equation_slide
 
@@ -168,14 +169,14 @@ contains
          allocate (x%axes%angle_offset(size(m%links)), x%axes%turn(2, size(m%links)))
          allocate (x%sums%body_vector(2, p%vectors), x%sums%largest(p%vectors), x%sums%slide_body_vector(2, p%slides))
          allocate (x%direction(2, equations%count), x%constant(equations%count), source=0.0_wp)
-         call put_equation_numbers(m, tree, length, equations, x)
+         call assign_equation_numbers(m, tree, length, equations, x)
          allocate (equations%has_vector(p%vectors), equations%counts(2, p%slides))
       end associate
       call find_unknowns(equations, x, equations%has_vector, equations%counts)
    end function new_equation_numbers
 
    !> Puts the numbers of a mechanism into those of its equations.
-   subroutine put_equation_numbers(m, tree, length, equations, numbers)
+   subroutine assign_equation_numbers(m, tree, length, equations, numbers)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       real(wp), intent(in) :: length         !< unit of length of the equations, in the deck's unit
@@ -184,8 +185,8 @@ contains
       integer :: i
 
       numbers%length = length
-      call put_axes(m, tree, numbers%axes)
-      call put_sums(m, tree, numbers%axes, length, equations%vector_loops, numbers%sums)
+      call assign_axes(m, tree, numbers%axes)
+      call assign_sums(m, tree, numbers%axes, length, equations%vector_loops, numbers%sums)
       do i = 1, equations%count
          associate (q => equations%list(i), angle => numbers%axes%angle_offset, across => equations%list(i)%kind == &
             equation_projection)
@@ -217,7 +218,7 @@ contains
             end if
          end associate
       end do
-   end subroutine put_equation_numbers
+   end subroutine assign_equation_numbers
 
    !> Finds which body vectors and slides are in equations with given numbers. A slide is not if it is at right angles
    !> to the direction of the equation in every position.

@@ -11,7 +11,8 @@ module spanning_tree
    use mechanism, only: mechanism_t, has_guide, pair_links, plane_origin
    implicit none
    private
-   public :: spanning_tree_t, new_tree, axes_t, put_axes, other_link, link_offset_t, place_on_tree, point_offset, guide
+   public :: spanning_tree_t, new_tree, axes_t, assign_axes, other_link, link_offset_t, place_on_tree, point_offset, &
+      guide
 
    type :: spanning_tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -179,7 +180,7 @@ contains
    end function new_tree
 
    !> Puts the numbers of a mechanism into the axes of its links.
-   pure subroutine put_axes(m, tree, axes)
+   pure subroutine assign_axes(m, tree, axes)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(inout) :: axes
@@ -195,7 +196,7 @@ contains
             + merge(-m%pairs(k)%beta, m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
          axes%turn(:, link) = direction(axes%angle_offset(link))
       end do
-   end subroutine put_axes
+   end subroutine assign_axes
 
    !> Gives the number of the link at the other end of a pair.
    pure integer function other_link(m, k, link) result(other)

@@ -17,7 +17,7 @@ module vector_loops
    use spanning_tree, only: spanning_tree_t, axes_t, point_offset, guide, other_link
    implicit none
    private
-   public :: vector_loops_t, add_vector_loop, loop_sums_t, put_sums, vanishes
+   public :: vector_loops_t, add_vector_loop, loop_sums_t, assign_sums, vanishes
    public :: search_t, find_path
 
    !> The memory of a search; links are nodes, all ground links one, node 0.
@@ -142,7 +142,7 @@ contains
    end subroutine add_vector_loop
 
    !> Sums up body vectors and slides of all loops from the numbers of a mechanism.
-   pure subroutine put_sums(m, tree, axes, length, loops, sums)
+   pure subroutine assign_sums(m, tree, axes, length, loops, sums)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
@@ -192,7 +192,7 @@ contains
                across=.false.)
          end if
       end do
-   end subroutine put_sums
+   end subroutine assign_sums
 
    !> Tells whether a sum of body vectors that cancel is rounding only. Rounding would put an angle into equations that
    !> do not hold it.

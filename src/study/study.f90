@@ -106,7 +106,7 @@ contains
          if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
          do i = 1, size(sets)
             if (only_times) then
-               call put_times(sets(i))
+               call write_times(sets(i))
             else
                call study_set(sets(i), findings(i)%redundant > 0)
             end if
@@ -124,7 +124,7 @@ contains
 
       !> Prints iterations and time of a step of a set, as the deck has it. If a position is not found, the status
       !> becomes status_flagged.
-      subroutine put_times(m)
+      subroutine write_times(m)
          type(mechanism_t), intent(in) :: m
          type(trial_t) :: t
          type(truth_t) :: nothing
@@ -144,7 +144,7 @@ contains
             write (line(27:), '(3f15.4)') median(t%time), minval(t%time), maxval(t%time)
          end if
          call put(o, trim(line))
-      end subroutine put_times
+      end subroutine write_times
 
       !> Prints the study of a set.
       subroutine study_set(m, redundant)
@@ -209,12 +209,12 @@ contains
 
          standard = findloc(trials%tolerance, 0.0_dp, dim=1)
          do i = 1, size(trials)
-            call put_trial(trials(i), median(trials(standard)%time))
+            call write_trial(trials(i), median(trials(standard)%time))
          end do
       end subroutine study_set
 
       !> Prints the row of a trial.
-      subroutine put_trial(trial, unit)
+      subroutine write_trial(trial, unit)
          type(trial_t), intent(in) :: trial
          real(dp), intent(in) :: unit        !< microseconds of a step by default; 0: the default misses a position
          character(120) :: line
@@ -241,7 +241,7 @@ contains
             end if
          end do
          call put(o, trim(line))
-      end subroutine put_trial
+      end subroutine write_trial
    end subroutine run_study
 
    !> Solves a set by one trial, and finds its missed instants, iterations and seconds, and its errors if something is

@@ -4,7 +4,7 @@ module bench_scenes
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, method_dense
-   use motion, only: motion_t, new_motion, mark_none
+   use motion, only: motion_t, new_motion, flag_none
    use deck, only: read_deck
    use scales, only: characteristic_length, characteristic_rate
    use lapack, only: gesv
@@ -156,8 +156,8 @@ contains
          if (mod(k, every) /= 0) cycle
          if (method == by_closed_form) call move_fast(s, instant_of(s, k), found)
          call move_exactly(s, instant_of(s, k), exact)
-         if (method == by_closed_form .or. found%mark == mark_none) call widen(s, found, exact, .true., g)
-         if (method /= by_closed_form .and. found%mark /= mark_none) g%flagged = g%flagged + 1
+         if (method == by_closed_form .or. found%mark == flag_none) call widen(s, found, exact, .true., g)
+         if (method /= by_closed_form .and. found%mark /= flag_none) g%flagged = g%flagged + 1
          if (g%flagged == 5 .and. g%instants == 0) exit
       end do
    end function error_of
@@ -178,9 +178,9 @@ contains
       do k = 0, steps
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)
-         if (one%mark /= mark_none) g%flagged = g%flagged + 1
-         if (two%mark /= mark_none) g%has_change_point = .true.
-         if (one%mark /= mark_none .or. two%mark /= mark_none) cycle
+         if (one%mark /= flag_none) g%flagged = g%flagged + 1
+         if (two%mark /= flag_none) g%has_change_point = .true.
+         if (one%mark /= flag_none .or. two%mark /= flag_none) cycle
          g%condition = max(g%condition, condition_of(dense%dense))
          call widen(s, one, two, .false., g)
       end do

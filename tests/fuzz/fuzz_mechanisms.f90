@@ -12,7 +12,7 @@ program fuzz_mechanisms
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: options_t, out_listing, out_csv
    use job, only: run_job
-   use phrases, only: phrase, say_too_long
+   use phrases, only: phrase, text_too_long
    use quad_jet, only: qp
    use schemes, only: scheme_t, write_scheme
    use random_schemes, only: random_scheme, class_of, surplus_scheme, add_measures
@@ -127,7 +127,7 @@ contains
       call write_deck(s, options%deck)
       call run_job(options, status, message)
       if (status == 0 .or. status == 2) then
-         call judge(s, options%files(out_csv)%text, has_line(directory//'/listing', phrase(say_too_long, .false.)), v)
+         call judge(s, options%files(out_csv)%text, has_line(directory//'/listing', phrase(text_too_long, .false.)), v)
          if (status == 0 .and. v%lost + v%flagged > 0 .and. .not. allocated(v%text)) v%text = 'STATUS 0 WITH FLAGS'
       else
          v%text = 'STATUS '//whole_text(status)//': '//message

@@ -16,10 +16,10 @@ program print_expected
    use listing_layout, only: layout_t
    use answers, only: answers_t
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
-   use variant_tables, only: put_variant, put_variant_heads, put_variant_row, put_variants_end
+   use variant_tables, only: write_variant, write_variant_heads, write_variant_row, write_variants_end
    use text_output, only: output_t, open_output, close_output, put
    use listing, only: new_layout, listing_head, listing_end
-   use listing, only: put_diagnostics
+   use listing, only: write_diagnostics
    use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
    use hand_rows, only: hand_row_t, row_by_hand
@@ -94,15 +94,15 @@ contains
          call build_variant(v, n, variant, report)
          if (report /= '') call give_up(report)
          row = new_row(summary, v, n)
-         call put_variant(o, layout, summary, m, row)
+         call write_variant(o, layout, summary, m, row)
          call print_motion(o, name, variant)
          row%solved = instant_count(variant)
          call divide(variant, set)
          call fill_row(summary, set, nothing, row)
-         call put_variant_heads(o, summary)
-         call put_variant_row(o, layout, summary, set, row)
+         call write_variant_heads(o, summary)
+         call write_variant_row(o, layout, summary, set, row)
       end do
-      call put_variants_end(o, m)
+      call write_variants_end(o, m)
    end subroutine print_variants
 
    !> The motion of one set or variant.
@@ -149,7 +149,7 @@ contains
             was_flagged(k) = .true.
             call put(o, ' *** OUT OF STROKE')
          end if
-         call put_diagnostics(o, m, diagnostics)
+         call write_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on.
       tally%followed = instant_count(m) - 1

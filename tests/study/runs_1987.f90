@@ -2,7 +2,7 @@
 module runs_1987
    use kinds, only: wp
    use mechanism, only: instant_count, instant, method_newton, method_dense, method_matrix
-   use motion, only: motion_t, new_motion, mark_none
+   use motion, only: motion_t, new_motion, flag_none
    use analysis, only: analysis_t, make_analysis, advance
    use bench_scenes, only: bench_t => scene_t, new_bench => new_scene, by_method, by_closed_form, move_exactly, &
       steps_of_turn
@@ -121,7 +121,7 @@ contains
       iterations = [integer ::]
       do k = 0, instant_count(s%m) - 1
          call advance(a, instant(s%m, k), found)
-         if (found%mark /= mark_none) cycle
+         if (found%mark /= flag_none) cycle
          iterations = [iterations, a%convergence%iterations]
          call move_exactly(s, instant(s%m, k), there)
          error(1) = max(error(1), largest(s, found%position - there%position, .true.))

@@ -34,15 +34,15 @@ function put(text) {
    else out[++n_out] = text
 }
 # A card with its first `n` numbers x.
-function put_numbers(head, n,  k, line) {
+function write_numbers(head, n,  k, line) {
    line = "*       "
    for (k = 1; k <= n; k++) line = line sprintf("%-24s", sprintf("%.16E", x[k]))
    sub(/ *$/, "", line); sub(/ *$/, "", head)
    put(head "\n" line)
 }
-function put_card(name, a, b, c, n, x1, x2, x3) {
+function write_card(name, a, b, c, n, x1, x2, x3) {
    x[1] = x1; x[2] = x2; x[3] = x3
-   if (n) put_numbers(sprintf("%-8s%-8s%-8s%-8s", name, a, b, c), n)
+   if (n) write_numbers(sprintf("%-8s%-8s%-8s%-8s", name, a, b, c), n)
    else put(sprintf("%-8s%-8s%-8s%s", name, a, b, c))
 }
 
@@ -137,14 +137,14 @@ function put_instants(  k, next_one, i, n) {
    for (k = start; k >= 0 && k <= last[set]; k = next_one) {
       next_one = k + way
       x[++n] = time[set, k]
-      if (n == 3) { put_numbers("AT", n); n = 0 }
+      if (n == 3) { write_numbers("AT", n); n = 0 }
       for (i = 1; i <= n_switch; i++) {
          if (switch_set[i] != set || !((set, next_one) in time)) continue
          if ((time[set, k] - switch_time[i])*(time[set, next_one] - switch_time[i]) < 0) branches[i] = time[set, k]
       }
    }
-   if (n) put_numbers("AT", n)
-   for (i in branches) put_card("BRANCH", switch_link[i], "", "", 1, branches[i])
+   if (n) write_numbers("AT", n)
+   for (i in branches) write_card("BRANCH", switch_link[i], "", "", 1, branches[i])
    split("", branches)
 }
 # A four-bar linkage, a thousandth as large as 1, that turns by 20 rad in the time of the set.
@@ -152,17 +152,17 @@ function put_companion(  rate, first) {
    first = time[set, 0]
    rate = time[set, last[set]] - first
    rate = 20/unit/(rate == 0 ? 1 : rate)
-   put_card("GROUND", "Q-BASE", "", "", 3, 5, 7, 0.5/unit)
-   put_card("LINK", "Q-CRANK", "", "", 3, 5, 7, 0.5/unit)
-   put_card("LINK", "Q-COUP", "", "", 3, 5.0009, 7.0005, 1.4/unit)
-   put_card("LINK", "Q-ROCK", "", "", 3, 5.0035, 7.0019, 2.4/unit)
-   put_card("POINT", "Q-A0", "Q-BASE", "", 2, 0, 0); put_card("POINT", "Q-B0", "Q-BASE", "", 2, 0.004, 0)
-   put_card("POINT", "Q-A0C", "Q-CRANK", "", 2, 0, 0); put_card("POINT", "Q-AC", "Q-CRANK", "", 2, 0.001, 0)
-   put_card("POINT", "Q-A", "Q-COUP", "", 2, 0, 0); put_card("POINT", "Q-B", "Q-COUP", "", 2, 0.0035, 0)
-   put_card("POINT", "Q-B0R", "Q-ROCK", "", 2, 0, 0); put_card("POINT", "Q-BR", "Q-ROCK", "", 2, 0.003, 0)
-   put_card("REVOLUTE", "Q-A0", "Q-A0C", "Q-PA0"); put_card("REVOLUTE", "Q-AC", "Q-A", "Q-PA")
-   put_card("REVOLUTE", "Q-B", "Q-BR", "Q-PB"); put_card("REVOLUTE", "Q-B0R", "Q-B0", "Q-PB0")
-   put_card("DRIVE", "ANGLE", "Q-CRANK", "", 2, 0.5/unit - rate*first, rate)
+   write_card("GROUND", "Q-BASE", "", "", 3, 5, 7, 0.5/unit)
+   write_card("LINK", "Q-CRANK", "", "", 3, 5, 7, 0.5/unit)
+   write_card("LINK", "Q-COUP", "", "", 3, 5.0009, 7.0005, 1.4/unit)
+   write_card("LINK", "Q-ROCK", "", "", 3, 5.0035, 7.0019, 2.4/unit)
+   write_card("POINT", "Q-A0", "Q-BASE", "", 2, 0, 0); put_card("POINT", "Q-B0", "Q-BASE", "", 2, 0.004, 0)
+   write_card("POINT", "Q-A0C", "Q-CRANK", "", 2, 0, 0); put_card("POINT", "Q-AC", "Q-CRANK", "", 2, 0.001, 0)
+   write_card("POINT", "Q-A", "Q-COUP", "", 2, 0, 0); put_card("POINT", "Q-B", "Q-COUP", "", 2, 0.0035, 0)
+   write_card("POINT", "Q-B0R", "Q-ROCK", "", 2, 0, 0); put_card("POINT", "Q-BR", "Q-ROCK", "", 2, 0.003, 0)
+   write_card("REVOLUTE", "Q-A0", "Q-A0C", "Q-PA0"); put_card("REVOLUTE", "Q-AC", "Q-A", "Q-PA")
+   write_card("REVOLUTE", "Q-B", "Q-BR", "Q-PB"); put_card("REVOLUTE", "Q-B0R", "Q-B0", "Q-PB0")
+   write_card("DRIVE", "ANGLE", "Q-CRANK", "", 2, 0.5/unit - rate*first, rate)
 }
 
 # The position of the link in hand at the first instant.
@@ -172,7 +172,7 @@ function estimate(  k) {
 # The JOINT card in hand: its points in the axes of their links, which stand where the cards of the links put them.
 function put_joint_point(point, link,  dx, dy, phi) {
    dx = x[1] - drawn[link, 1]; dy = x[2] - drawn[link, 2]; phi = drawn[link, 3]*unit
-   put_card("POINT", point, link, "", 2, dx*cos(phi) + dy*sin(phi), dy*cos(phi) - dx*sin(phi))
+   write_card("POINT", point, link, "", 2, dx*cos(phi) + dy*sin(phi), dy*cos(phi) - dx*sin(phi))
 }
 function put_joint(  first, second, x1, x2) {
    first = rests[b] ? substr(a, 1, 6) "-2" : a; second = rests[b] ? a : substr(a, 1, 6) "-2"
@@ -180,7 +180,7 @@ function put_joint(  first, second, x1, x2) {
    put_joint_point(first, b)
    x[1] = x1; x[2] = x2
    put_joint_point(second, c)
-   put_card("REVOLUTE", first, second, a)
+   write_card("REVOLUTE", first, second, a)
 }
 
 # The numbers of the PRISM, CYLINDER or DRIVE card number k in hand that are as drawn: only in a set with JOINT cards. The place
@@ -241,7 +241,7 @@ function change_card(k,  n) {
    if (change == "mirrored") change_side()
    if (change == "moved") move()
    if (name == "LINK" && change ~ /^(middle|back)$/) estimate()
-   put_numbers(substr(card, 1, 32), n)
+   write_numbers(substr(card, 1, 32), n)
 }
 
 BEGIN { if (csv != "") read_results() }

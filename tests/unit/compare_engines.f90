@@ -2,7 +2,7 @@
 module compare_engines
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_dense, wanted_links
-   use motion, only: motion_t, new_motion, mark_none
+   use motion, only: motion_t, new_motion, flag_none
    use structure, only: structure_report_t, find_structure
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
@@ -48,8 +48,8 @@ contains
          call advance(blocks, t(k), q)
          call advance(dense, t(k), r)
          ! Where there is no motion to begin with, later assemblies are anyone's choice.
-         if (k == 1 .and. (q%mark /= mark_none .or. r%mark /= mark_none)) exit
-         if (q%mark == mark_none .and. r%mark == mark_none) then
+         if (k == 1 .and. (q%mark /= flag_none .or. r%mark /= flag_none)) exit
+         if (q%mark == flag_none .and. r%mark == flag_none) then
             c%solved = c%solved + 1
             share = apart(q, r, wanted_links(m), dense%geometry%equations%length, &
                0.1_wp*dense%convergence%min_pivot)
@@ -58,9 +58,9 @@ contains
                c%condition = 0.1_wp*dense%convergence%min_pivot
             end if
             c%share = max(c%share, share)
-         else if (q%mark == mark_none) then
+         else if (q%mark == flag_none) then
             c%only_blocks = c%only_blocks + 1
-         else if (r%mark == mark_none) then
+         else if (r%mark == flag_none) then
             c%only_dense = c%only_dense + 1
          end if
       end do

@@ -2,7 +2,7 @@
 module sample_blocks
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use spanning_tree, only: spanning_tree_t, new_tree, put_axes
+   use spanning_tree, only: spanning_tree_t, new_tree, assign_axes
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, geometry_t
    use block_structure, only: new_blocks
@@ -26,7 +26,7 @@ contains
       allocate (x%unit(0:b%unknowns), source=1.0_wp)
       associate (a => x%equations%axes)
          allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
-         call put_axes(m, b%tree, a)
+         call assign_axes(m, b%tree, a)
       end associate
    end subroutine tree_blocks
 

@@ -1,23 +1,25 @@
 !> The numbers on the cards of a mechanism: where each is in `mechanism_t`, its name, its unit, and its value. TOLER and
 !> VARY cards give other values to these numbers, and so do estimates of errors.
 !>
-!> An address (`card_number_t`) is four integers: it stays as it is if the number or the deck's units change.
-module card_numbers
+!> An address (`parameter_t`) is four integers: it stays as it is if the number or the deck's units change.
+module parameters
    use kinds, only: wp, label_length
    use plane_vectors, only: pi, degree, direction, rotated, point_of
-   use mechanism, only: mechanism_t, drive_t, card_number_t, number_link, number_point, number_joint, number_pair, &
-      number_drive, number_knot, number_time, number_length, number_hole, term_harmonic, term_power, term_table, &
+   use mechanism, only: mechanism_t, drive_t, parameter_t, parameter_link, parameter_point, parameter_joint, &
+      parameter_pair, &
+      parameter_drive, parameter_knot, parameter_time, parameter_length, parameter_hole, term_harmonic, term_power, &
+         term_table, &
       term_kinds
    use scales, only: is_length
    use splines, only: new_spline
    use drawn_values, only: follow_drawing
-   use drawn_lengths, only: put_lengths
+   use drawn_lengths, only: apply_lengths
    use names, only: drive_name
    use number_format, only: whole
    implicit none
    private
-   public :: unit_t, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
-      put_number, put_table, angle_in_radians, minute_in, turns_a_minute
+   public :: unit_t, takes_tolerance, is_as_drawn, parameter_name, parameter_unit, parameter_value, change_parameter, &
+      set_parameter, set_table, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
    type :: unit_t
@@ -34,7 +36,7 @@ module card_numbers
    real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
 
    !> The words of the cards for their numbers R1 to R3, by the kind of the number.
-   character(12), parameter :: number_words(3, number_link:number_drive) = reshape([character(12) :: &
+   character(12), parameter :: number_words(3, parameter_link:parameter_drive) = reshape([character(12) :: &
       'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
 
 contains
@@ -42,11 +44,11 @@ contains
    !> Tells whether a number is blank on its card: the drawing gives its value.
    pure logical function is_as_drawn(m, number)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
 
       is_as_drawn = .false.
-      if (number%kind == number_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)
-      if (number%kind == number_drive .and. number%term == 0 .and. number%place == 1) is_as_drawn = &
+      if (number%kind == parameter_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)
+      if (number%kind == parameter_drive .and. number%term == 0 .and. number%place == 1) is_as_drawn = &
          m%drives(number%subject)%drawn
    end function is_as_drawn
 
@@ -54,16 +56,16 @@ contains
    !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
    pure logical function takes_tolerance(m, number)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
 
       takes_tolerance = .false.
       select case (number%kind)
-      case (number_link)
+      case (parameter_link)
          if (m%links(number%subject)%ground) takes_tolerance = .not. any(m%points%link == &
             number%subject .and. m%points%drawn)
-      case (number_point:number_pair, number_length, number_hole)
+      case (parameter_point:parameter_pair, parameter_length, parameter_hole)
          takes_tolerance = .true.
-      case (number_drive)
+      case (parameter_drive)
          takes_tolerance = .true.
          if (number%term == 0) return
          associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
@@ -74,34 +76,34 @@ contains
 
    !> Names a number in tables and messages: its card, the name that the card defines, and the word of the card for the
    !> number.
-   pure function number_name(m, number) result(name)
+   pure function parameter_name(m, number) result(name)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       character(:), allocatable :: name
 
       associate (k => number%subject)
          select case (number%kind)
-         case (number_link)
+         case (parameter_link)
             name = trim(merge('GROUND', 'LINK  ', m%links(k)%ground))//' '//trim(m%links(k)%name)
-         case (number_point)
+         case (parameter_point)
             name = 'POINT '//trim(m%points(k)%name)
-         case (number_joint)
+         case (parameter_joint)
             name = 'JOINT '//trim(m%points(k)%name)
 
-         case (number_pair)
+         case (parameter_pair)
             name = trim(merge('SLOT ', 'PRISM', m%pairs(k)%pin > 0))//' '//trim(m%pairs(k)%name)
-         case (number_hole)
+         case (parameter_hole)
             name = trim(m%points(k)%name)//' IN '//trim(m%links(m%points(k)%link)%name)//' ' &
-               //trim(number_words(number%place, number_joint))
+               //trim(number_words(number%place, parameter_joint))
             return
 
-         case (number_length)
+         case (parameter_length)
             associate (one => m%lengths(k))
                name = trim('LENGTH '//trim(m%points(one%point(1))%name)//' '//trim(m%points(one%point(2))%name)//' ' &
                   //one%link)
             end associate
             return
-         case (number_time)
+         case (parameter_time)
             name = 'TIME T'//whole(number%place - 1)
             if (number%place == 2 .and. m%turns > 0.0_wp) name = 'TIME TURNS'
             return
@@ -119,27 +121,27 @@ contains
       associate (kind => term_kinds(m%drives(number%subject)%terms(number%term)%kind))
          name = name//' '//trim(kind%word)//' '//whole(number%term)//' '
          if (kind%has_rows) then
-            name = name//trim(merge('TIME', 'ROW ', number%kind == number_knot))//' '//whole(number%place)
+            name = name//trim(merge('TIME', 'ROW ', number%kind == parameter_knot))//' '//whole(number%place)
          else
             name = name//trim(kind%numbers(number%place))
          end if
       end associate
-   end function number_name
+   end function parameter_name
 
    !> Finds the unit of a number on a card.
-   function number_unit(m, number) result(unit)
+   function parameter_unit(m, number) result(unit)
       type(mechanism_t), intent(in) :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       type(unit_t) :: unit
 
       select case (number%kind)
-      case (number_link)
+      case (parameter_link)
          unit = unit_of(number%place == 3)
-      case (number_point, number_joint, number_length, number_hole)
+      case (parameter_point, parameter_joint, parameter_length, parameter_hole)
          unit = unit_of(.false.)
-      case (number_pair)
+      case (parameter_pair)
          unit = unit_of(number%place /= 2)
-      case (number_drive)
+      case (parameter_drive)
          unit = unit_of(.not. is_length(m%drives(number%subject)))
          if (number%term == 0) then
             if (number%place > 1) call divide(real(number%place - 1, wp), merge('**2', '   ', number%place == 3))
@@ -185,45 +187,45 @@ contains
          unit%powers(2) = -power
          unit%name = trim(unit%name)//'/'//trim(m%time_unit)//end_of_name
       end subroutine divide
-   end function number_unit
+   end function parameter_unit
 
    !> Gives the value of a number, in the units of `mechanism_t`. The value of a number of a JOINT card, or of a hole,
    !> is a coordinate in the drawing.
-   real(wp) function number_value(m, number) result(value)
+   real(wp) function parameter_value(m, number) result(value)
       type(mechanism_t), intent(in), target :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       real(wp), pointer :: x
       real(wp) :: place(2)
 
       x => number_in(m, number)
       value = x
-      if (all(number%kind /= [number_joint, number_hole])) return
+      if (all(number%kind /= [parameter_joint, parameter_hole])) return
       place = point_of(m%links(m%points(number%subject)%link)%position, m%points(number%subject)%offset)
       value = place(number%place)
-   end function number_value
+   end function parameter_value
 
    !> Points to the component of a mechanism that has a number; of a JOINT card, to the offset of its first point.
    function number_in(m, number) result(x)
       type(mechanism_t), intent(in), target :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       real(wp), pointer :: x
 
       associate (k => number%subject, i => number%place)
          select case (number%kind)
-         case (number_link)
+         case (parameter_link)
             x => m%links(k)%position(i)
-         case (number_point, number_joint, number_hole)
+         case (parameter_point, parameter_joint, parameter_hole)
             x => m%points(k)%offset(i)
-         case (number_pair)
+         case (parameter_pair)
             x => m%pairs(k)%alpha
             if (i == 2) x => m%pairs(k)%offset
             if (i == 3) x => m%pairs(k)%beta
 
-         case (number_length)
+         case (parameter_length)
             x => m%lengths(k)%length
-         case (number_knot)
+         case (parameter_knot)
             x => m%drives(k)%terms(number%term)%table%x(i)
-         case (number_time)
+         case (parameter_time)
             x => m%t0
             if (i == 2) x => m%t1
             if (i == 2 .and. m%turns > 0.0_wp) x => m%turns
@@ -241,53 +243,53 @@ contains
 
    !> Gives a number a value. All other numbers that are as drawn follow. Points follow a length; numbers as drawn
    !> follow neither a length nor the hole of one link.
-   subroutine set_number(m, number, value)
+   subroutine change_parameter(m, number, value)
       type(mechanism_t), intent(inout) :: m  !< its links are where the cards put them
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       type(mechanism_t), allocatable :: before
 
       if (allocated(m%lengths)) before = m
-      call put_number(m, number, value)
+      call set_parameter(m, number, value)
       ! As if the drawing had other coordinates: lengths and axes along bars are put again.
-      if (number%kind == number_length .or. number%kind == number_joint .and. &
-         (allocated(m%lengths) .or. any(m%links%from > 0))) call put_lengths(m)
-      if (any(number%kind == [number_drive, number_knot])) call put_table(m%drives(number%subject), number%term)
-      if (number%kind > number_pair) return
+      if (number%kind == parameter_length .or. number%kind == parameter_joint .and. &
+         (allocated(m%lengths) .or. any(m%links%from > 0))) call apply_lengths(m)
+      if (any(number%kind == [parameter_drive, parameter_knot])) call set_table(m%drives(number%subject), number%term)
+      if (number%kind > parameter_pair) return
       call follow_drawing(m, before)
       ! It may have been as drawn itself.
-      if (number%kind == number_pair) call put_number(m, number, value)
-   end subroutine set_number
+      if (number%kind == parameter_pair) call set_parameter(m, number, value)
+   end subroutine change_parameter
 
    !> Gives a number a value, and leaves all other numbers as they are. A coordinate of a JOINT card moves both of its
    !> points, the coordinate of a hole one of them; all points of their holes move with them. After all numbers of a
-   !> table are put, `put_table` must follow.
-   subroutine put_number(m, number, value)
+   !> table are put, `set_table` must follow.
+   subroutine set_parameter(m, number, value)
       type(mechanism_t), intent(inout), target :: m
-      type(card_number_t), intent(in) :: number
+      type(parameter_t), intent(in) :: number
       real(wp), intent(in) :: value          !< in the units of `mechanism_t`
       real(wp), pointer :: x
       real(wp) :: way(2)
       integer :: i, j
 
-      if (all(number%kind /= [number_joint, number_hole])) then
+      if (all(number%kind /= [parameter_joint, parameter_hole])) then
          x => number_in(m, number)
          x = value
          return
       end if
       way = 0.0_wp
-      way(number%place) = value - number_value(m, number)
-      do i = number%subject, number%subject + merge(1, 0, number%kind == number_joint)
+      way(number%place) = value - parameter_value(m, number)
+      do i = number%subject, number%subject + merge(1, 0, number%kind == parameter_joint)
          do j = 1, size(m%points)
             if (j /= i .and. (m%points(j)%hole == 0 .or. m%points(j)%hole /= m%points(i)%hole)) cycle
             m%points(j)%offset = m%points(j)%offset + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
-            if (number%kind == number_joint) m%points(j)%place = m%points(j)%place + way
+            if (number%kind == parameter_joint) m%points(j)%place = m%points(j)%place + way
          end do
       end do
-   end subroutine put_number
+   end subroutine set_parameter
 
    !> Solves the spline of a term for its rows, if the term is a table.
-   subroutine put_table(drive, term)
+   subroutine set_table(drive, term)
       type(drive_t), intent(inout) :: drive
       integer, intent(in) :: term            !< number of the term; 0: none
 
@@ -295,7 +297,7 @@ contains
       associate (one => drive%terms(term))
          if (term_kinds(one%kind)%has_rows) one%table = new_spline(one%table%x, one%table%y)
       end associate
-   end subroutine put_table
+   end subroutine set_table
 
    !> Gives the unit of angles on the cards, in radians.
    pure real(wp) function angle_in_radians(m)
@@ -313,4 +315,4 @@ contains
       minute_in = 0.0_wp
       if (i > 0) minute_in = minutes(i)
    end function minute_in
-end module card_numbers
+end module parameters
