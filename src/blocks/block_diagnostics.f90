@@ -138,11 +138,11 @@ contains
    !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
    !> that comes to one; blocks that build on it come to it as well. `creeps`: the motion has come so near in so many
    !> substeps that the infinity of a slide is its limit, before `t` or after.
-   function limit_diagnostic(b, x, path, h, s, t, creeps) result(list)
+   function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(history_t), intent(in) :: h
+      type(history_t), intent(in) :: history
       type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
       logical, intent(in) :: creeps
@@ -153,7 +153,7 @@ contains
       integer :: d, k
 
       allocate (list(0))
-      if (h%filled == 0) return
+      if (history%filled == 0) return
       do k = 1, size(b%moving)
          if (b%list(b%moving(k))%direct) cycle
          left = time_to_limit(b%moving(k))
@@ -161,8 +161,8 @@ contains
          if (abs(left) <= 0.0_wp) cycle
          associate (i => b%moving(k))
             r = new_diagnostic(diagnostic_limit, links_of(b, x, b%moving(k)))
-            r%in_line = is_in_line(b, x, i, r, h%past%value)
-            r%t = h%t(0) + left
+            r%in_line = is_in_line(b, x, i, r, history%past%value)
+            r%t = history%t(0) + left
          end associate
          exit
       end do
@@ -200,13 +200,13 @@ contains
          integer :: fastest
 
          left = 0.0_wp
-         if (h%jacobian(i)%pivot > near_pivot*x%blocks(i)%lipschitz) return
-         associate (past => h%past, step => t - h%t(0), &
+         if (history%jacobian(i)%pivot > near_pivot*x%blocks(i)%lipschitz) return
+         associate (past => history%past, step => t - history%t(0), &
                     u => own_unknowns(b, i))
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
-            if (h%uncertain(0) > 0.0_wp .and. &
+            if (history%uncertain(0) > 0.0_wp .and. &
                maxval(abs(past(u)%rate(0))) <= fast*largest_drive_rate(s)) return
             left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
             if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
@@ -224,7 +224,7 @@ contains
          left = 0.0_wp
          longest = far_slide
          do k = b%list(i)%first, b%list(i)%last
-            associate (slide => h%past(b%unknown(k)), step => t - h%t(0))
+            associate (slide => history%past(b%unknown(k)), step => t - history%t(0))
                if (b%unknown(k) <= b%orientations .or. .not. abs(slide%rate(0)) > 0.0_wp) cycle
                if (abs(slide%value) < longest) cycle
                if (abs(slide%value*slide%acceleration(0)/slide%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
@@ -311,19 +311,19 @@ contains
       r%here = .true.
    end function diagnostic_at_change
 
-   !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
-   !> the unknowns have the values `value` (0:unknowns).
-   pure logical function is_in_line(b, x, i, r, value)
+   !> The two links of `diagnostic`, all that block `i` moves, share a revolute pair, and their body vectors are
+   !> parallel where the unknowns have the values `value` (0:unknowns).
+   pure logical function is_in_line(b, x, i, diagnostic, value)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      type(diagnostic_t), intent(in) :: r
+      type(diagnostic_t), intent(in) :: diagnostic
       real(wp), intent(in) :: value(0:)
       real(wp), allocatable :: angle(:)
       integer :: m, k
 
-      is_in_line = count(r%links > 0) == 2 .and. any([(all(b%joint(:, k) == r%links(:2)) &
-         .or. all(b%joint(:, k) == r%links(2:1:-1)), k=1, size(b%joint, 2))])
+      is_in_line = count(diagnostic%links > 0) == 2 .and. any([(all(b%joint(:, k) == diagnostic%links(:2)) &
+         .or. all(b%joint(:, k) == diagnostic%links(2:1:-1)), k=1, size(b%joint, 2))])
       allocate (angle(0))
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          do k = b%loops(m)%first_own, b%loops(m)%last_vector

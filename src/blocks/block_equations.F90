@@ -39,13 +39,13 @@ contains
       call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
    end subroutine find_known_parts
 
-   !> All of the Jacobian of block `i` at the state, zeros as well, `a` (rows, n), and its residual `r` (rows).
-   pure subroutine assemble_dense(b, x, i, s, a, r)
+   !> All of the Jacobian of block `i` at the state, zeros as well, `a` (rows, n), and its residual `residuals` (rows).
+   pure subroutine assemble_dense(b, x, i, s, a, residuals)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), r(*)
+      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), residuals(*)
       real(wp) :: v(b%list(i)%shape%rows)
       real(wp), allocatable :: entries(:)
       integer :: c, k
@@ -54,12 +54,12 @@ contains
       associate (block => b%list(i), shape => b%list(i)%shape, right_sides => x%blocks(i)%has_right_sides)
          if (shape%pattern == 0) then
             call assemble(block, right_sides, b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
-               s%drive_value, s%u, s%own, s%guide, s%loop, a, r, v)
+               s%drive_value, s%u, s%own, s%guide, s%loop, a, residuals, v)
             return
          end if
          allocate (entries(shape%entries))
          call assemble(block, right_sides, b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, &
-            s%drive_value, s%u, s%own, s%guide, s%loop, entries, r, v)
+            s%drive_value, s%u, s%own, s%guide, s%loop, entries, residuals, v)
          a(:, :shape%n) = 0.0_wp
          associate (p => b%patterns(shape%pattern))
             do c = 1, shape%n
@@ -71,25 +71,25 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> Finds the right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations
-   !> (2) of block `i`: the derivatives of the drives less what is given. Closure errors, directions and rotated body
-   !> vectors are those of the last assembly.
-   pure subroutine right_hand_side(b, x, i, order, s, v)
+   !> Finds the right-hand side `right_side` (rows) for the velocities (`order` 1) or, once these are known, the
+   !> accelerations (2) of block `i`: the derivatives of the drives less what is given. Closure errors, directions and
+   !> rotated body vectors are those of the last assembly.
+   pure subroutine right_hand_side(b, x, i, order, s, right_side)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
-      real(wp), intent(inout) :: v(*)
+      real(wp), intent(inout) :: right_side(*)
       integer :: m
 
       associate (block => b%list(i))
          do m = block%first_loop, block%last_loop
-            if (order == 1) call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), v)
+            if (order == 1) call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), right_side)
             if (order == 2) &
-               call acceleration_rows(b%loops(m), b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
+               call acceleration_rows(b%loops(m), b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), right_side)
          end do
          if (x%blocks(i)%has_right_sides) &
-            call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
+            call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, right_side)
       end associate
    end subroutine right_hand_side
 

@@ -78,47 +78,47 @@ contains
    end function new_workspace
 
    !> Solves the blocks of the `list` in turn, up to the first without a position, at the drive values that `s` has; the
-   !> values of unknowns start from those of `s`. `c`: how that ended in the worst block. A block whose Jacobian there
-   !> has no inverse keeps its rates and accelerations.
-   subroutine solve_blocks(b, x, list, w, s, c)
+   !> values of unknowns start from those of `s`. `convergence`: how that ended in the worst block. A block whose
+   !> Jacobian there has no inverse keeps its rates and accelerations.
+   subroutine solve_blocks(b, x, list, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in), contiguous :: list(:)
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(out) :: convergence
       real(wp) :: ratio
       integer :: k
 
-      c = nothing_gathered
+      convergence = nothing_gathered
       k = 0
-      do while (k < size(list) .and. is_solved(c))
-         call solve_next(b, x, list, .true., w, s, k, ratio, c)
-         if (is_solved(c) .and. s%is_singular(list(k))) call settle(b, x, list(k), s)
+      do while (k < size(list) .and. is_solved(convergence))
+         call solve_next(b, x, list, .true., w, s, k, ratio, convergence)
+         if (is_solved(convergence) .and. s%is_singular(list(k))) call settle(b, x, list(k), s)
       end do
    end subroutine solve_blocks
 
    !> Solves block `i` for rate and acceleration of its unknowns and, if it `moves`, first for their values, which start
    !> from those of `s`. If its Jacobian there has no inverse, c%singular says so, and rates and accelerations stay.
-   subroutine solve_block(b, x, i, moves, w, s, c)
+   subroutine solve_block(b, x, i, moves, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       logical, intent(in) :: moves
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(out) :: c      !< how it ended
+      type(convergence_t), intent(out) :: convergence      !< how it ended
       real(wp) :: ratio
       integer :: k
 
-      c = nothing_gathered
+      convergence = nothing_gathered
       k = 0
-      call solve_next(b, x, [i], moves, w, s, k, ratio, c)
-      c%kantorovich_ratio = ratio
+      call solve_next(b, x, [i], moves, w, s, k, ratio, convergence)
+      convergence%kantorovich_ratio = ratio
    end subroutine solve_block
 
    !> Solves blocks of the `list` after number `k`, up to the first without a position or without rates.
-   subroutine solve_next(b, x, list, moves, w, s, k, ratio, c)
+   subroutine solve_next(b, x, list, moves, w, s, k, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in), contiguous :: list(:)
@@ -127,11 +127,11 @@ contains
       type(state_t), intent(inout) :: s
       integer, intent(inout) :: k                !< the number in the list of the block solved last
       real(wp), intent(out) :: ratio             !< the Kantorovich ratio of that
-      type(convergence_t), intent(inout) :: c    !< how all have ended
+      type(convergence_t), intent(inout) :: convergence    !< how all have ended
 
       call solve_list(b, x, size(list), list, moves, b%list, x%blocks, b%unknown, b%loops, x%loops, b%body_vectors, &
          x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, s%jacobian, &
-         s%is_singular, w%a, w%r, w%scratch_t, k, ratio, c)
+         s%is_singular, w%a, w%r, w%scratch_t, k, ratio, convergence)
    end subroutine solve_next
 
    !> Solves block `i`, a drive's own unknown: nothing to iterate.
@@ -149,8 +149,9 @@ contains
 
    !> Solves blocks of the `list` (`n`) as `solve_next` does, which shows what the arrays are of: on plain arrays, whose
    !> descriptors are read once for all blocks.
-   subroutine solve_list(b, x, n, list, moves, blocks, numbers, unknown, loops, loop_numbers, vectors, d, slides, e, &
-      equations, constants, values, excursion, u, own, guide, now, jacobian, is_singular, a, r, w, k, ratio, c)
+   subroutine solve_list(b, x, n, list, moves, blocks, numbers, unknown, loops, loop_numbers, vectors, unrotated, &
+      slides, unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, jacobian, &
+      is_singular, a, right_sides, scratch, k, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: n, list(n)
@@ -162,20 +163,20 @@ contains
       type(loop_numbers_t), intent(in) :: loop_numbers(*)
       type(body_vector_t), intent(in) :: vectors(*)
       type(slide_t), intent(in) :: slides(*)
-      type(vector_t), intent(in) :: d(*), e(*)
+      type(vector_t), intent(in) :: unrotated(*), unrotated_guide(*)
       type(equation_row_t), intent(in) :: equations(*)
       type(row_numbers_t), intent(in) :: constants(*)
       real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
-      type(unknown_t), intent(inout) :: u(0:*)
+      type(unknown_t), intent(inout) :: unknowns(0:*)
       type(vector_t), intent(inout) :: own(*), guide(*)
       type(loop_state_t), intent(inout) :: now(*)
       type(jacobian_t), intent(inout) :: jacobian(*)
       logical, intent(inout) :: is_singular(*)
-      real(wp), intent(inout) :: a(*), r(*)
-      type(scratch_t), intent(inout) :: w
+      real(wp), intent(inout) :: a(*), right_sides(*)
+      type(scratch_t), intent(inout) :: scratch
       integer, intent(inout) :: k
       real(wp), intent(out) :: ratio
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       integer :: i
 
       ratio = 0.0_wp
@@ -184,8 +185,8 @@ contains
          i = list(k)
          associate (block => blocks(i))
             if (block%direct) then
-               associate (row => equations(block%first_row), f => u(unknown(block%first)))
-                  call find_direct(row, constants(block%first_row), values, u(row%other), f)
+               associate (row => equations(block%first_row), f => unknowns(unknown(block%first)))
+                  call find_direct(row, constants(block%first_row), values, unknowns(row%other), f)
                   if (unknown(block%first) <= b%orientations) then
                      f%c = cos(f%value)
                      f%s = sin(f%value)
@@ -194,18 +195,19 @@ contains
                cycle
             end if
             call solve_arrays(b, x, i, block, numbers(i), moves, unknown(block%first), loops, loop_numbers, vectors, &
-               d, slides, e, equations, constants, values, excursion, u, own, guide, now, a, r, w, jacobian(i), &
-               is_singular(i), ratio, c)
-            if (block%shape%pattern > 0) call release(w%sparse)
+               unrotated, slides, unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, &
+               a, right_sides, scratch, jacobian(i), is_singular(i), ratio, convergence)
+            if (block%shape%pattern > 0) call release(scratch%sparse)
          end associate
-         if (is_singular(i) .or. .not. is_solved(c)) return
-         c%kantorovich_ratio = max(c%kantorovich_ratio, ratio)
+         if (is_singular(i) .or. .not. is_solved(convergence)) return
+         convergence%kantorovich_ratio = max(convergence%kantorovich_ratio, ratio)
       end do
    end subroutine solve_list
 
    !> Solves `block`, number `i`, which is not direct, by Newton's method.
-   subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, d, slides, e, &
-      equations, constants, values, excursion, u, own, guide, now, a, r, w, jacobian, is_singular, ratio, c)
+   subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, unrotated, slides, &
+      unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, a, right_sides, scratch, &
+      jacobian, is_singular, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
@@ -217,19 +219,19 @@ contains
       type(loop_numbers_t), intent(in) :: loop_numbers(*)
       type(body_vector_t), intent(in) :: vectors(*)
       type(slide_t), intent(in) :: slides(*)
-      type(vector_t), intent(in) :: d(*), e(*)
+      type(vector_t), intent(in) :: unrotated(*), unrotated_guide(*)
       type(equation_row_t), intent(in) :: equations(*)
       type(row_numbers_t), intent(in) :: constants(*)
       real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
-      type(unknown_t), intent(inout) :: u(0:*)
+      type(unknown_t), intent(inout) :: unknowns(0:*)
       type(vector_t), intent(inout) :: own(*), guide(*)
       type(loop_state_t), intent(inout) :: now(*)
-      real(wp), intent(inout) :: a(*), r(block%shape%rows, 2)
-      type(scratch_t), intent(inout) :: w
+      real(wp), intent(inout) :: a(*), right_sides(block%shape%rows, 2)
+      type(scratch_t), intent(inout) :: scratch
       type(jacobian_t), intent(inout) :: jacobian   !< stays if it has no inverse, but for the sign
       logical, intent(inout) :: is_singular      !< stays if there is no position
       real(wp), intent(out) :: ratio             !< Kantorovich ratio
-      type(convergence_t), intent(inout) :: c    !< how the blocks so far have ended
+      type(convergence_t), intent(inout) :: convergence    !< how the blocks so far have ended
       real(wp) :: before, size_of, own_size, cosine, residual, step, change, least, bound
       integer :: rows, n, info, ended, iteration, iterations, side, sign_of, k
       logical :: is_closed, is_right, singular
@@ -239,8 +241,8 @@ contains
       size_of = 1.0_wp
       if (moves) then
          do k = 1, n
-            associate (f => u(unknown(k)))
-               w%start(k) = f%value
+            associate (f => unknowns(unknown(k)))
+               scratch%start(k) = f%value
                size_of = max(size_of, abs(f%value))
                if (unknown(k) <= b%orientations) then
                   f%c = cos(f%value)
@@ -249,9 +251,9 @@ contains
             end associate
          end do
       end if
-      call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, d, u, now)
+      call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, unrotated, unknowns, now)
       before = huge(before)
-      w%near%distance = 0.0_wp
+      scratch%near%distance = 0.0_wp
       ended = ended_limit
       singular = .false.
       change = 0.0_wp
@@ -266,21 +268,23 @@ contains
             exit
          end if
          iterations = iteration
-         call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, d, slides, e, equations, &
-            constants, values, u, own, guide, now, a, r, r(1, 2))
-         if (w%near%distance > 0.0_wp) then
-            w%near%a = a(:4)
-            a(:4) = w%near%factors
+         call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, unrotated, slides, &
+            unrotated_guide, equations, constants, values, unknowns, own, guide, now, a, right_sides, &
+            right_sides(1, 2))
+         if (scratch%near%distance > 0.0_wp) then
+            scratch%near%a = a(:4)
+            a(:4) = scratch%near%factors
          end if
-         residual = largest_size(rows, r)
-         if (rows > n) w%gap(:rows) = r(:, 1)
+         residual = largest_size(rows, right_sides)
+         if (rows > n) scratch%gap(:rows) = right_sides(:, 1)
          is_closed = residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
          side = merge(2, 1, is_closed)
          info = 0
-         if (w%near%distance > 0.0_wp) then
-            call solve_nearby(w%near, r(1, side))
+         if (scratch%near%distance > 0.0_wp) then
+            call solve_nearby(scratch%near, right_sides(1, side))
          else
-            call solve_first(block%shape, a, w%pivots, w%work, r(1, side), info, b%patterns, w%sparse)
+            call solve_first(block%shape, a, scratch%pivots, scratch%work, right_sides(1, side), info, b%patterns, &
+               scratch%sparse)
          end if
          if (is_closed) then
             step = 0.0_wp
@@ -293,7 +297,7 @@ contains
             ended = merge(ended_stalled, ended_singular, singular)
             exit
          end if
-         step = largest_size(n, r)
+         step = largest_size(n, right_sides)
          ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
          ! it is their gap. A step so small that no longer falls is rounding, whatever sums have left it.
          if (step > 0.5_wp*before .and. (step <= small_turn .or. &
@@ -305,7 +309,7 @@ contains
             size_of = 1.0_wp
             is_right = .true.
             do k = 1, n
-               associate (f => u(unknown(k)), turn => r(k, 1))
+               associate (f => unknowns(unknown(k)), turn => right_sides(k, 1))
                   f%value = f%value - turn
                   own_size = max(1.0_wp, abs(f%value))
                   size_of = max(size_of, own_size)
@@ -326,52 +330,56 @@ contains
          end if
          before = step
          if (ended == ended_limit) then
-            call stay_near(block%shape, a, w%pivots, numbers%lipschitz*step, w%near)
+            call stay_near(block%shape, a, scratch%pivots, numbers%lipschitz*step, scratch%near)
             cycle
          end if
          do k = block%first_loop, block%last_loop
-            call velocity_rows(loops(k), slides, u, guide, now(k), r(1, 2))
+            call velocity_rows(loops(k), slides, unknowns, guide, now(k), right_sides(1, 2))
          end do
-         if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 1, values, r(1, 2))
-         call solve_next_side(block%shape, a, w%pivots, w%work, w%near, w%sparse, r(1, 2))
+         if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 1, values, &
+            right_sides(1, 2))
+         call solve_next_side(block%shape, a, scratch%pivots, scratch%work, scratch%near, scratch%sparse, &
+            right_sides(1, 2))
          exit
       end do
       if ((iterations > 1 .or. step > 0.0_wp) .and. ended /= ended_diverged) then
          do k = 1, n
-            change = max(change, abs(u(unknown(k))%value - w%start(k)))
+            change = max(change, abs(unknowns(unknown(k))%value - scratch%start(k)))
          end do
       end if
       if (rows > n .and. moves) then
-         if (iterations > 0) call record_closure_error(b, x, i, w%gap, c)
+         if (iterations > 0) call record_closure_error(b, x, i, scratch%gap, convergence)
          if (any(ended == [ended_converged, ended_stalled]) .and. &
-            c%open%value > max(inconsistent_level*c%open%level, x%closing)) ended = ended_inconsistent
+            convergence%open%value > max(inconsistent_level*convergence%open%level, x%closing)) &
+            ended = ended_inconsistent
       end if
-      if (ended /= ended_converged) c%ended = ended
-      c%iterations = max(c%iterations, iterations)
-      c%residual = max(c%residual, residual)
-      c%step = max(c%step, step)
-      c%change = max(c%change, change)
+      if (ended /= ended_converged) convergence%ended = ended
+      convergence%iterations = max(convergence%iterations, iterations)
+      convergence%residual = max(convergence%residual, residual)
+      convergence%step = max(convergence%step, step)
+      convergence%change = max(convergence%change, change)
       if (.not. any(ended == [ended_converged, ended_stalled])) return
       if (moves .and. .not. singular) call judge()
       is_singular = singular
       jacobian%sign_of = sign_of
-      c%determinant = c%determinant*sign_of
-      c%singular = c%singular .or. singular
+      convergence%determinant = convergence%determinant*sign_of
+      convergence%singular = convergence%singular .or. singular
       if (singular) return
       if (moves) jacobian = jacobian_t(sign_of, least, bound)
 
       do k = 1, n
-         u(unknown(k))%rate = r(k, 2)
+         unknowns(unknown(k))%rate = right_sides(k, 2)
       end do
       do k = block%first_loop, block%last_loop
-         call acceleration_rows(loops(k), vectors, slides, u, own, guide, now(k), r)
+         call acceleration_rows(loops(k), vectors, slides, unknowns, own, guide, now(k), right_sides)
       end do
-      if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 2, values, r)
-      call solve_next_side(block%shape, a, w%pivots, w%work, w%near, w%sparse, r)
+      if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 2, values, right_sides)
+      call solve_next_side(block%shape, a, scratch%pivots, scratch%work, scratch%near, scratch%sparse, right_sides)
       do k = 1, n
-         u(unknown(k))%acceleration = r(k, 1)
+         unknowns(unknown(k))%acceleration = right_sides(k, 1)
       end do
-      if (rows > n) c%rates_open = contradict_rates(b, i, values, u, r, numbers%coarse, x%closing)
+      if (rows > n) convergence%rates_open = contradict_rates(b, i, values, unknowns, right_sides, numbers%coarse, &
+         x%closing)
 
    contains
 
@@ -383,10 +391,10 @@ contains
          real(wp) :: largest, inverse
          logical :: suspicious
 
-         call pivot_range(block%shape, a, w%pivots, least, largest, sign_of, w%sparse)
+         call pivot_range(block%shape, a, scratch%pivots, least, largest, sign_of, scratch%sparse)
          if (block%shape%pattern > 0) then
             ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
-            inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
+            inverse = inverse_norm(block%shape, a, scratch%pivots, scratch%work, scratch%iwork, scratch%sparse)
             least = 1.0_wp/inverse
          end if
          bound = 0.0_wp
@@ -401,52 +409,54 @@ contains
             if (.not. suspicious .and. ratio <= small_kantorovich_ratio .and. &
                excursion*numbers%lipschitz*bound**2*real(n, wp)**4 <= small_amplification) return
          end if
-         if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, w%pivots, w%work, w%iwork, w%sparse)
+         if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, scratch%pivots, scratch%work, &
+            scratch%iwork, scratch%sparse)
          bound = min(inverse, 1.0_wp/min_inverse)
          ratio = change*numbers%lipschitz*inverse
          if (.not. suspicious) return
-         size_of = max(numbers%coarse, maxval(abs(u(unknown(:n))%value)))
+         size_of = max(numbers%coarse, maxval(abs(unknowns(unknown(:n))%value)))
          singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-         if (singular) singular = is_beyond_linear(b, x, i, n, u, now, a, w%pivots, w%work, w%sparse)
+         if (singular) singular = is_beyond_linear(b, x, i, n, unknowns, now, a, scratch%pivots, scratch%work, &
+            scratch%sparse)
       end subroutine judge
    end subroutine solve_arrays
 
-   !> Solves for another right-hand side `v` (rows), from the factors.
-   subroutine solve_next_side(shape, a, pivots, work, near, sparse, v)
+   !> Solves for another right-hand side `right_side` (rows), from the factors.
+   subroutine solve_next_side(shape, a, pivots, work, near, sparse, right_side)
       type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       type(nearby_t), intent(in) :: near
       type(sparse_factors_t), intent(inout) :: sparse
-      real(wp), intent(inout) :: v(*)
+      real(wp), intent(inout) :: right_side(*)
 
       if (near%distance > 0.0_wp) then
-         call solve_nearby(near, v)
+         call solve_nearby(near, right_side)
       else
-         call solve_again(shape, a, pivots, work, v, sparse)
+         call solve_again(shape, a, pivots, work, right_side, sparse)
       end if
    end subroutine solve_next_side
 
-   !> The largest of the sizes of `n` numbers `x`; no number where the last of them is none.
-   pure real(wp) function largest_size(n, x) result(largest)
+   !> The largest of the sizes of `n` `numbers`; no number where the last of them is none.
+   pure real(wp) function largest_size(n, numbers) result(largest)
       integer, intent(in) :: n
-      real(wp), intent(in) :: x(*)
+      real(wp), intent(in) :: numbers(*)
       integer :: k
 
       largest = 0.0_wp
       do k = 1, n
-         if (.not. abs(x(k)) <= largest) largest = abs(x(k))
+         if (.not. abs(numbers(k)) <= largest) largest = abs(numbers(k))
       end do
    end function largest_size
 
    !> Tells the same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the
    !> rows hold beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
-   logical function is_beyond_linear(b, x, i, n, u, now, a, pivots, work, sparse) result(is)
+   logical function is_beyond_linear(b, x, i, n, unknowns, now, a, pivots, work, sparse) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i, n, pivots(*)
-      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
       type(loop_state_t), intent(in) :: now(*)
       real(wp), intent(in) :: a(*)
       real(wp), intent(inout) :: work(*)
@@ -454,21 +464,21 @@ contains
       real(wp) :: off(n), more(n)
 
       associate (shape => b%list(i)%shape)
-         call spread_by_inverse(shape, a, pivots, work, rounding_level*rounded_sizes(b, x, i, u), off, sparse)
-         call spread_by_inverse(shape, a, pivots, work, second_order_bounds(b, x, i, u, now, off), more, sparse)
+         call spread_by_inverse(shape, a, pivots, work, rounding_level*rounded_sizes(b, x, i, unknowns), off, sparse)
+         call spread_by_inverse(shape, a, pivots, work, second_order_bounds(b, x, i, unknowns, now, off), more, sparse)
       end associate
       is = .not. all(more < largest_error*off)
    end function is_beyond_linear
 
    !> Tells whether the redundant equations of block `i` contradict its rates or accelerations, by what both columns of
-   !> `r` leave of them; beside the largest rate and acceleration of anything that goes into the equations: angles,
-   !> slides, drives, known or not.
-   pure logical function contradict_rates(b, i, values, u, r, coarse, closing) result(do)
+   !> `left_over` leave of them; beside the largest rate and acceleration of anything that goes into the equations:
+   !> angles, slides, drives, known or not.
+   pure logical function contradict_rates(b, i, values, unknowns, left_over, coarse, closing) result(do)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: values(0:2, 0:*)
-      type(unknown_t), intent(in) :: u(0:b%unknowns)
-      real(wp), intent(in) :: r(b%list(i)%shape%rows, 2), coarse
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
+      real(wp), intent(in) :: left_over(b%list(i)%shape%rows, 2), coarse
       real(wp), intent(in) :: closing        !< the closing tolerance (characteristic lengths, rad)
       real(wp) :: largest(2)
       integer :: k
@@ -477,32 +487,32 @@ contains
       do k = b%list(i)%first_row, b%list(i)%last_row
          largest = max(largest, abs(values(1:2, b%rows(k)%drive)))
       end do
-      associate (known => u(known_to(b, i)), n => b%list(i)%shape%n)
+      associate (known => unknowns(known_to(b, i)), n => b%list(i)%shape%n)
          largest = max(largest, [maxval(abs(known%rate)), maxval(abs(known%acceleration))])
-         do = contradict(r(n + 1:, 2), largest(1), coarse, closing) &
-            .or. contradict(r(n + 1:, 1), max(largest(2), largest(1)**2), coarse, closing)
+         do = contradict(left_over(n + 1:, 2), largest(1), coarse, closing) &
+            .or. contradict(left_over(n + 1:, 1), max(largest(2), largest(1)**2), coarse, closing)
       end associate
    end function contradict_rates
 
    !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
-   pure function rounded_sizes(b, x, i, u) result(sizes)
+   pure function rounded_sizes(b, x, i, unknowns) result(sizes)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
       real(wp) :: sizes(b%list(i)%shape%rows), size_of
       integer :: m, k
 
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            size_of = max(x%loops(m)%coarse, abs(u(g%orientation)%value), abs(u(g%less)%value))
+            size_of = max(x%loops(m)%coarse, abs(unknowns(g%orientation)%value), abs(unknowns(g%less)%value))
             do k = g%first_own, g%last_vector
-               size_of = max(size_of, abs(u(b%body_vectors(k)%orientation)%value))
+               size_of = max(size_of, abs(unknowns(b%body_vectors(k)%orientation)%value))
             end do
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k))
-                  size_of = max(size_of, abs(u(slide%unknown)%value)*length_of(x%e(k)), &
-                     abs(u(slide%orientation)%value))
+                  size_of = max(size_of, abs(unknowns(slide%unknown)%value)*length_of(x%e(k)), &
+                     abs(unknowns(slide%orientation)%value))
                end associate
             end do
             if (g%row_x > 0) sizes(g%row_x) = size_of
@@ -511,20 +521,20 @@ contains
       end do
    end function rounded_sizes
 
-   !> (rows) Bounds of d . r'' d for changes `d` (n, none negative) of the unknowns of block `i` from the
-   !> values of `u`, whose loops are `now`: twice what the rows r hold beyond their linear part. A projection that turns
-   !> with an angle of the block turns its loop.
-   pure function second_order_bounds(b, x, i, u, now, d) result(bounds)
+   !> (rows) Bounds of d . r'' d for `changes` (n, none negative) of the unknowns of block `i` from the
+   !> values of `unknowns`, whose loops are `now`: twice what the rows r hold beyond their linear part. A projection
+   !> that turns with an angle of the block turns its loop.
+   pure function second_order_bounds(b, x, i, unknowns, now, changes) result(bounds)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      type(unknown_t), intent(in) :: u(0:b%unknowns)
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
       type(loop_state_t), intent(in) :: now(*)
-      real(wp), intent(in) :: d(:)
-      real(wp) :: bounds(b%list(i)%shape%rows), change(0:size(d)), first, second
+      real(wp), intent(in) :: changes(:)
+      real(wp) :: bounds(b%list(i)%shape%rows), change(0:size(changes)), first, second
       integer :: m, k
 
-      change = [0.0_wp, d]
+      change = [0.0_wp, changes]
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
             first = 0.0_wp
@@ -538,7 +548,7 @@ contains
             end do
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k), turn => change(b%slides(k)%orientation_column), &
-                  length => abs(u(b%slides(k)%unknown)%value))
+                  length => abs(unknowns(b%slides(k)%unknown)%value))
                   first = first + length_of(x%e(k))*(change(slide%column) + length*turn)
                   second = second + length_of(x%e(k))*turn*(2.0_wp*change(slide%column) + length*turn)
                end associate

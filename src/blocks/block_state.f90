@@ -60,27 +60,27 @@ contains
       end do
    end subroutine set_drive_values
 
-   !> Cosine and sine of unknown `u`, if it is an angle.
-   pure subroutine set_direction(b, u, s)
+   !> Cosine and sine of `unknown`, if it is an angle.
+   pure subroutine set_direction(b, unknown, s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
+      integer, intent(in) :: unknown
       type(state_t), intent(inout) :: s
 
-      if (u > b%orientations) return
-      s%u(u)%c = cos(s%u(u)%value)
-      s%u(u)%s = sin(s%u(u)%value)
+      if (unknown > b%orientations) return
+      s%u(unknown)%c = cos(s%u(unknown)%value)
+      s%u(unknown)%s = sin(s%u(unknown)%value)
    end subroutine set_direction
 
-   !> Gives the unknowns of block `i` the values `x` (n).
-   pure subroutine set_values(b, i, x, s)
+   !> Gives the unknowns of block `i` the `values` (n).
+   pure subroutine set_values(b, i, values, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: x(:)
+      real(wp), intent(in) :: values(:)
       type(state_t), intent(inout) :: s
       integer :: k
 
-      do k = 1, size(x)
-         s%u(b%unknown(b%list(i)%first + k - 1))%value = x(k)
+      do k = 1, size(values)
+         s%u(b%unknown(b%list(i)%first + k - 1))%value = values(k)
          call set_direction(b, b%unknown(b%list(i)%first + k - 1), s)
       end do
    end subroutine set_values

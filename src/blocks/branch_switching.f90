@@ -73,8 +73,8 @@ contains
    !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
    !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended. Of the cards not used
    !> yet that name one of the links, or none, that counts whose time was passed first on the way there.
-   pure subroutine decide(c, block, links, before, t, at, other)
-      type(branch_requests_t), intent(inout) :: c
+   pure subroutine decide(requests, block, links, before, t, at, other)
+      type(branch_requests_t), intent(inout) :: requests
       integer, intent(in) :: block
       logical, intent(in) :: links(:)
       real(wp), intent(in) :: before, t, at
@@ -82,43 +82,43 @@ contains
       real(wp) :: way, here
       integer :: i, best
 
-      do i = 1, size(c%branch_switches)
-         associate (p => c%branch_switches(i))
+      do i = 1, size(requests%branch_switches)
+         associate (p => requests%branch_switches(i))
             other = p%other
             if (p%block == block .and. abs(p%t - at) <= p%width + abs(t - before)) return
          end associate
       end do
       way = sign(1.0_wp, t - before)
       here = at
-      if (allocated(c%stood_until)) here = way*max(way*at, way*c%stood_until)
+      if (allocated(requests%stood_until)) here = way*max(way*at, way*requests%stood_until)
       best = 0
-      do i = 1, size(c%cards)
-         associate (card => c%cards(i))
-            if (c%used(i) .or. (card%link > 0 .and. .not. links(max(card%link, 1)))) cycle
+      do i = 1, size(requests%cards)
+         associate (card => requests%cards(i))
+            if (requests%used(i) .or. (card%link > 0 .and. .not. links(max(card%link, 1)))) cycle
             if (way*(card%t - here) > abs(t - before) + digits_of_time*max(abs(card%t), abs(here))) cycle
             if (best > 0) then
-               if (way*(card%t - c%cards(best)%t) >= 0.0_wp) cycle
+               if (way*(card%t - requests%cards(best)%t) >= 0.0_wp) cycle
             end if
             best = i
          end associate
       end do
       other = best > 0
-      if (other) c%used(best) = .true.
-      c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
+      if (other) requests%used(best) = .true.
+      requests%branch_switches = [requests%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
    end subroutine decide
 
    !> Passes the change points before the time of `s`, each as the BRANCH cards have it: `requests`. `list`: one for
-   !> each. c%keeps_signs: the motion found last, with its record `c`, is that which goes on; otherwise the list
-   !> says why there is none, or is empty where a determinant has changed its sign without a change point.
-   subroutine pass(b, x, path, h, w, s, requests, c, list)
+   !> each. c%keeps_signs: the motion found last, with its record `convergence`, is that which goes on; otherwise the
+   !> list says why there is none, or is empty where a determinant has changed its sign without a change point.
+   subroutine pass(b, x, path, history, w, s, requests, convergence, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(history_t), intent(inout) :: h
+      type(history_t), intent(inout) :: history
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(branch_requests_t), intent(inout) :: requests
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       type(diagnostic_t), allocatable, intent(out) :: list(:)
       type(diagnostic_t) :: r
       logical :: crossed(size(b%list)), passed
@@ -127,23 +127,24 @@ contains
       allocate (list(0))
       crossed = s%crossed
       ! A prediction that leaps too far is not solved at all.
-      passed = any(crossed) .and. is_short_and_right(b, x, h, s, c%change)
+      passed = any(crossed) .and. is_short_and_right(b, x, history, s, convergence%change)
       do k = 1, size(b%moving)
          if (.not. passed) exit
-         associate (i => b%moving(k), before => h%t(0), t => s%t)
+         associate (i => b%moving(k), before => history%t(0), t => s%t)
             if (.not. crossed(i)) cycle
             r = new_diagnostic(diagnostic_change, links_of(b, x, i))
             ! The least pivot goes through zero in proportion to the values of the drives.
-            r%t = time_at_part(path, before, t, h%jacobian(i)%pivot/(h%jacobian(i)%pivot + s%jacobian(i)%pivot))
+            r%t = time_at_part(path, before, t, history%jacobian(i)%pivot/(history%jacobian(i)%pivot + &
+               s%jacobian(i)%pivot))
             if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(b, x, i), before, t, r%t, r%other)
-               if (r%other) call switch_branch(b, x, h, w, s, i, c, passed)
+               if (r%other) call switch_branch(b, x, history, w, s, i, convergence, passed)
             end if
             if (.not. passed) r%kind = diagnostic_dead_end
             list = [list, r]
          end associate
       end do
-      c%keeps_signs = passed
+      convergence%keeps_signs = passed
    end subroutine pass
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
@@ -151,10 +152,10 @@ contains
    !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of what drives move by, where that is more
    !> than what is predicted does. A longer substep has to be right to a part that is smaller as its square, by which
    !> the same circuits are distinguished.
-   pure logical function is_short_and_right(b, x, h, s, correction) result(is)
+   pure logical function is_short_and_right(b, x, history, s, correction) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(history_t), intent(in) :: h
+      type(history_t), intent(in) :: history
       type(state_t), intent(in) :: s
       real(wp), intent(in) :: correction
       real(wp), dimension(size(b%moving)) :: lipschitz, rounded
@@ -164,27 +165,27 @@ contains
       crosses = s%crossed(b%moving)
       lipschitz = x%blocks(b%moving)%lipschitz
       is_short = s%change <= short_step &
-         .or. h%jacobian(b%moving)%pivot + s%jacobian(b%moving)%pivot <= short_pivots*lipschitz
+         .or. history%jacobian(b%moving)%pivot + s%jacobian(b%moving)%pivot <= short_pivots*lipschitz
       is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
       if (.not. is) return
-      driven = abs(s%t - h%t(0))*largest_drive_rate(s)
-      rounded = rounding*lipschitz/h%jacobian(b%moving)%pivot**2*max(s%change, driven)
+      driven = abs(s%t - history%t(0))*largest_drive_rate(s)
+      rounded = rounding*lipschitz/history%jacobian(b%moving)%pivot**2*max(s%change, driven)
       right = right_part*(short_step/max(short_step, s%change))**2*s%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
       is = correction <= min(right, max_wrong*s%change)
    end function is_short_and_right
 
-   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`:
-   !> how that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are
-   !> no guide to what comes.
-   subroutine switch_branch(b, x, h, w, s, i, c, found)
+   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it;
+   !> `convergence`: how that ended, `found`: it is there. On that branch the determinant has the other sign. The
+   !> motions before are no guide to what comes.
+   subroutine switch_branch(b, x, history, w, s, i, convergence, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(history_t), intent(inout) :: h
+      type(history_t), intent(inout) :: history
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       integer, intent(in) :: i
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       logical, intent(out) :: found
       type(svd_t) :: v
       real(wp), dimension(b%list(i)%shape%n) :: direction, here
@@ -200,14 +201,14 @@ contains
       if (.not. found) return
       away = -2.0_wp*v%s(v%n)/curvature
       call set_values(b, i, here + away*direction, s)
-      call solve_blocks(b, x, b%moving, w, s, c)
-      if (is_solved(c)) call compare(b, x, b%moving, h, s, c)
+      call solve_blocks(b, x, b%moving, w, s, convergence)
+      if (is_solved(convergence)) call compare(b, x, b%moving, history, s, convergence)
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(b, i, s) - (here + away*direction)))
       crossed(i) = .not. crossed(i)
       same = .not. any(s%crossed .and. .not. crossed)
-      found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
-         .and. c%open%value <= max_closure_part*abs(curvature)*away**2
-      h%filled = 0
+      found = is_solved(convergence) .and. same .and. .not. convergence%singular .and. correction <= 0.5_wp*abs(away) &
+         .and. convergence%open%value <= max_closure_part*abs(curvature)*away**2
+      history%filled = 0
    end subroutine switch_branch
 end module branch_switching

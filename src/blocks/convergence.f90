@@ -68,45 +68,45 @@ module convergence
 contains
 
    !> A position was found.
-   pure logical function is_solved(c)
-      type(convergence_t), intent(in) :: c
+   pure logical function is_solved(convergence)
+      type(convergence_t), intent(in) :: convergence
 
-      is_solved = c%ended == ended_converged .or. c%ended == ended_stalled
+      is_solved = convergence%ended == ended_converged .or. convergence%ended == ended_stalled
    end function is_solved
 
    !> The record of the whole: the largest of each count, the worst of each ending.
-   pure subroutine gather(one, c)
+   pure subroutine gather(one, convergence)
       type(convergence_t), intent(in) :: one
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
 
-      if (one%ended /= ended_converged) c%ended = one%ended
-      c%iterations = max(c%iterations, one%iterations)
-      c%residual = max(c%residual, one%residual)
-      c%step = max(c%step, one%step)
-      c%determinant = c%determinant*one%determinant
-      if (one%open%value > c%open%value .or. one%ended == ended_elsewhere) c%open = one%open
-      c%singular = c%singular .or. one%singular
-      c%rates_open = c%rates_open .or. one%rates_open
+      if (one%ended /= ended_converged) convergence%ended = one%ended
+      convergence%iterations = max(convergence%iterations, one%iterations)
+      convergence%residual = max(convergence%residual, one%residual)
+      convergence%step = max(convergence%step, one%step)
+      convergence%determinant = convergence%determinant*one%determinant
+      if (one%open%value > convergence%open%value .or. one%ended == ended_elsewhere) convergence%open = one%open
+      convergence%singular = convergence%singular .or. one%singular
+      convergence%rates_open = convergence%rates_open .or. one%rates_open
    end subroutine gather
 
    !> The word for how it ended.
-   pure function ending(c) result(word)
-      type(convergence_t), intent(in) :: c
+   pure function ending(convergence) result(word)
+      type(convergence_t), intent(in) :: convergence
       character(9) :: word
       character(9), parameter :: words(8) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
          'OPEN', 'UNSOUGHT', 'ELSEWHERE']
 
-      word = words(c%ended)
+      word = words(convergence%ended)
    end function ending
 
-   !> The pair or drive that is open the most by the residuals `r`: a revolute pair by the distance of its points. Of
+   !> The pair or drive that is open the most by the `residuals`: a revolute pair by the distance of its points. Of
    !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
-   pure subroutine record_closure_error(b, x, i, r, c)
+   pure subroutine record_closure_error(b, x, i, residuals, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: r(*)
-      type(convergence_t), intent(inout) :: c
+      real(wp), intent(in) :: residuals(*)
+      type(convergence_t), intent(inout) :: convergence
       real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
       real(wp) :: largest
       integer :: m
@@ -114,20 +114,20 @@ contains
       opening = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            if (g%row_x > 0) opening(m) = abs(r(g%row_x))
-            if (g%row_y > 0) opening(m) = hypot(opening(m), r(g%row_y))
+            if (g%row_x > 0) opening(m) = abs(residuals(g%row_x))
+            if (g%row_y > 0) opening(m) = hypot(opening(m), residuals(g%row_y))
             level(m) = max(1.0_wp, x%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
          end associate
       end do
       largest = maxval(opening/level)
-      c%open%value = 0.0_wp
-      c%open%pair = 0
-      c%open%drive = 0
+      convergence%open%value = 0.0_wp
+      convergence%open%pair = 0
+      convergence%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
             if (opening(m)/level(m) < (1.0_wp - alike)*largest) cycle
-            if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
-            c%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
+            if (row%pair < convergence%open%pair .or. (row%pair == 0 .and. row%drive < convergence%open%drive)) cycle
+            convergence%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
    end subroutine record_closure_error

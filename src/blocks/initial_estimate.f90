@@ -119,10 +119,10 @@ contains
    end function distance_open
 
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
-   function estimated_directions(m, t, a, span) result(phi)
+   function estimated_directions(m, tree, axes, span) result(phi)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
-      type(axes_t), intent(in) :: a
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(in) :: axes
       real(wp), intent(in) :: span
       real(wp), dimension(size(m%links)) :: phi, u, v, w
       real(wp) :: before, after
@@ -133,11 +133,11 @@ contains
 
       ! Links of one class have one angle, that of its first link.
       phi = m%links%position(3)
-      classes = sorted(t%orientation, t%orientations)
+      classes = sorted(tree%orientation, tree%orientations)
       u = phi
-      do i = 1, t%orientations
+      do i = 1, tree%orientations
          list = members(classes, i)
-         u(list) = a%angle_offset(list) + (phi(list(1)) - a%angle_offset(list(1)))
+         u(list) = axes%angle_offset(list) + (phi(list(1)) - axes%angle_offset(list(1)))
       end do
       placed = .true.
       if (largest_opening(u) <= good_part*span) return
@@ -167,37 +167,37 @@ contains
          real(wp) :: e(4), angle, sum_of
          integer :: i, j, k, class, pair, points(2)
 
-         do class = 1, t%orientations
+         do class = 1, tree%orientations
             list = members(classes, class)
             e = 0.0_wp
             do j = 0, 4
                angle = 0.4_wp*pi*real(j, wp)
-               v(list) = a%angle_offset(list) + angle
+               v(list) = axes%angle_offset(list) + angle
                sum_of = 0.0_wp
                do i = 1, size(list)
-                  do k = t%near%first(list(i)), t%near%first(list(i) + 1) - 1
-                     pair = t%near%member(k)
+                  do k = tree%near%first(list(i)), tree%near%first(list(i) + 1) - 1
+                     pair = tree%near%member(k)
                      points = [m%pairs(pair)%point_i, m%pairs(pair)%point_j]
-                     if (all(placed(points) .or. t%orientation(m%points(points)%link) == class)) &
+                     if (all(placed(points) .or. tree%orientation(m%points(points)%link) == class)) &
                         sum_of = sum_of + distance_open(m, pair, v)**2
                   end do
                end do
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
             end do
-            angle = w(list(1)) - a%angle_offset(list(1))
+            angle = w(list(1)) - axes%angle_offset(list(1))
             if (maxval(abs(e)) > min_form_part*span**2) then
                angle = least(e, angle)
-               where (t%orientation(m%points%link) == class) placed = .true.
+               where (tree%orientation(m%points%link) == class) placed = .true.
             end if
-            v(list) = a%angle_offset(list) + angle
+            v(list) = axes%angle_offset(list) + angle
          end do
       end subroutine minimize_closure_errors
 
       !> A link that turns far has a pair, both sides of which have their places, that is open by more than a part of
-      !> that link's size, from the places of the deck and the angles `v`. Its size is the longest vector to such a
+      !> that link's size, from the places of the deck and the `angles`. Its size is the longest vector to such a
       !> pair: how far a pair beside its origin is open says nothing of its angle.
-      pure logical function is_contradicted(v) result(is)
-         real(wp), intent(in) :: v(:)
+      pure logical function is_contradicted(angles) result(is)
+         real(wp), intent(in) :: angles(:)
          real(wp) :: size_of, open, arm
          integer :: link, k
 
@@ -206,64 +206,66 @@ contains
             if (.not. is_far(link)) cycle
             size_of = 0.0_wp
             open = 0.0_wp
-            do k = t%near%first(link), t%near%first(link + 1) - 1
-               associate (pair => t%near%member(k), i => m%pairs(t%near%member(k))%point_i, &
-                          j => m%pairs(t%near%member(k))%point_j)
+            do k = tree%near%first(link), tree%near%first(link + 1) - 1
+               associate (pair => tree%near%member(k), i => m%pairs(tree%near%member(k))%point_i, &
+                          j => m%pairs(tree%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
                   arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
                   if (has_guide(m%pairs(pair)%kind)) arm = arm + norm2(way_of(m, m%pairs(pair), &
-                     turned(m, m%points(i)%link, v), turned(m, m%points(j)%link, v)))
+                     turned(m, m%points(i)%link, angles), turned(m, m%points(j)%link, angles)))
                   size_of = max(size_of, arm)
-                  open = max(open, distance_open(m, pair, v))
+                  open = max(open, distance_open(m, pair, angles))
                end associate
             end do
             is = is .or. open > open_part*size_of
          end do
       end function is_contradicted
 
-      !> The largest distance, from the places of the deck and the angles `v`, by which a pair is open of which both
+      !> The largest distance, from the places of the deck and the `angles`, by which a pair is open of which both
       !> sides are `placed` (points).
-      pure real(wp) function largest_opening(v) result(largest)
-         real(wp), intent(in) :: v(:)
+      pure real(wp) function largest_opening(angles) result(largest)
+         real(wp), intent(in) :: angles(:)
          integer :: k
 
          largest = 0.0_wp
          do k = 1, size(m%pairs)
             if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) &
-               largest = max(largest, distance_open(m, k, v))
+               largest = max(largest, distance_open(m, k, angles))
          end do
       end function largest_opening
    end function estimated_directions
 
-   !> The angle at which the form `e` is least: of two sides of a guide, which fit alike, the nearer to `start`.
-   pure real(wp) function least(e, start) result(u)
-      real(wp), intent(in) :: e(4), start
+   !> The angle at which the form `coefficients` is least: of two sides of a guide, which fit alike, the nearer to
+   !> `start`.
+   pure real(wp) function least(coefficients, start) result(u)
+      real(wp), intent(in) :: coefficients(4), start
       real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)
       real(wp) :: lowest, slope, lipschitz
       integer :: i
 
-      if (maxval(abs(e(3:))) <= alike*sum(abs(e))) then
-         u = atan2(-e(2), -e(1))
+      if (maxval(abs(coefficients(3:))) <= alike*sum(abs(coefficients))) then
+         u = atan2(-coefficients(2), -coefficients(1))
          return
       end if
-      lowest = minval([(form(e, start + step*real(i, wp)), i=1, samples)])
+      lowest = minval([(form(coefficients, start + step*real(i, wp)), i=1, samples)])
       do i = 1, samples + 1
          u = start + merge(step, -step, modulo(i, 2) == 0)*real(i/2, wp)
-         if (form(e, u) > lowest + better_part**2*sum(abs(e))) cycle
+         if (form(coefficients, u) > lowest + better_part**2*sum(abs(coefficients))) cycle
          ! Rounding shall not choose.
-         if (form(e, u) <= min(form(e, u - step), form(e, u + step)) + alike*sum(abs(e))) exit
+         if (form(coefficients, u) <= min(form(coefficients, u - step), form(coefficients, u + step)) + &
+            alike*sum(abs(coefficients))) exit
       end do
       do i = 1, 3
-         slope = form([e(2), -e(1), 2.0_wp*e(4), -2.0_wp*e(3)], u)
-         lipschitz = -form([e(1), e(2), 4.0_wp*e(3), 4.0_wp*e(4)], u)
+         slope = form([coefficients(2), -coefficients(1), 2.0_wp*coefficients(4), -2.0_wp*coefficients(3)], u)
+         lipschitz = -form([coefficients(1), coefficients(2), 4.0_wp*coefficients(3), 4.0_wp*coefficients(4)], u)
          if (lipschitz > abs(slope)) u = u - slope/lipschitz
       end do
    end function least
 
-   !> The trigonometric form with coefficients `e` at the angle `u`.
-   pure real(wp) function form(e, u)
-      real(wp), intent(in) :: e(4), u
+   !> The trigonometric form with `coefficients` at the `angle`.
+   pure real(wp) function form(coefficients, angle)
+      real(wp), intent(in) :: coefficients(4), angle
 
-      form = dot_product(e, [direction(u), direction(2.0_wp*u)])
+      form = dot_product(coefficients, [direction(angle), direction(2.0_wp*angle)])
    end function form
 end module initial_estimate

@@ -63,15 +63,15 @@ contains
       call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> Puts into `c` the pair or drive of block `i` that is open the most where the sum of squares is least, as in `s`,
-   !> and by how much that one is open at least while all others are closed; 0: no such position is found. Of equations
-   !> that are too many: its part of the least sum, since they share what is lacking.
-   subroutine find_closure_error(b, x, i, s, c)
+   !> Puts into `convergence` the pair or drive of block `i` that is open the most where the sum of squares is least, as
+   !> in `s`, and by how much that one is open at least while all others are closed; 0: no such position is found. Of
+   !> equations that are too many: its part of the least sum, since they share what is lacking.
+   subroutine find_closure_error(b, x, i, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       type(convergence_t) :: one
       logical :: own(0:b%list(i)%shape%rows)
       real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
@@ -79,15 +79,16 @@ contains
 
       if (size(best) == 0 .or. size(best) > max_unknowns) return
       best = values_of(b, i, s)
-      call record_closure_error(b, x, i, residual_of(b, x, i, best, s), c)
+      call record_closure_error(b, x, i, residual_of(b, x, i, best, s), convergence)
       if (size(r) > size(best)) return
 
-      c%open%value = 0.0_wp
+      convergence%open%value = 0.0_wp
       if (size(best) > max_alone) return
       own = .false.
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m), row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (row%pair == c%open%pair .and. row%drive == c%open%drive .and. (row%angular .eqv. c%open%is_angle)) &
+            if (row%pair == convergence%open%pair .and. row%drive == &
+               convergence%open%drive .and. (row%angular .eqv. convergence%open%is_angle)) &
                own([g%row_x, g%row_y]) = .true.
          end associate
       end do
@@ -99,19 +100,19 @@ contains
          r = residual_of(b, x, i, values_of(b, i, s), s)
          call record_closure_error(b, x, i, r, one)
          if (any(.not. own(1:) .and. .not. stiff(2)*abs(r) <= one%open%value)) cycle
-         if (c%open%value <= 0.0_wp .or. one%open%value < c%open%value) c%open = one%open
+         if (convergence%open%value <= 0.0_wp .or. one%open%value < convergence%open%value) convergence%open = one%open
       end do
    end subroutine find_closure_error
 
-   !> Start number `k` around `x`: off by nothing at first, then by more and more, up to half a turn.
-   pure function around(x, k) result(y)
-      real(wp), intent(in) :: x(:)
+   !> Start number `k` around `values`: off by nothing at first, then by more and more, up to half a turn.
+   pure function around(values, k) result(y)
+      real(wp), intent(in) :: values(:)
       integer, intent(in) :: k
-      real(wp) :: y(size(x))
+      real(wp) :: y(size(values))
       integer :: m
 
-      y = [(2.0_wp*modulo(golden*real(2*k*size(x) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(x))]
-      y = x + 3.0_wp*real(k, wp)/real(starts, wp)*y
+      y = [(2.0_wp*modulo(golden*real(2*k*size(values) + m, wp), 1.0_wp) - 1.0_wp, m=1, size(values))]
+      y = values + 3.0_wp*real(k, wp)/real(starts, wp)*y
    end function around
 
    !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`.

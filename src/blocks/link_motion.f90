@@ -48,16 +48,16 @@ contains
       call assign_chain(m, b, x, c)
    end function new_chain
 
-   !> Gives the chain `c` the numbers of `m`, whose blocks are `b`.
-   subroutine assign_chain(m, b, x, c)
+   !> Gives the `chain` the numbers of `m`, whose blocks are `b`.
+   subroutine assign_chain(m, b, x, chain)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(chain_t), intent(inout) :: c
+      type(chain_t), intent(inout) :: chain
       integer :: i
 
-      do i = 1, size(c%links)
-         associate (h => c%links(i), link => c%links(i)%link, t => b%tree, a => x%equations%axes)
+      do i = 1, size(chain%links)
+         associate (h => chain%links(i), link => chain%links(i)%link, t => b%tree, a => x%equations%axes)
             h%orientation = t%orientation(link)
             h%angle_offset = a%angle_offset(link)
             if (t%parent(link) == 0) then
@@ -75,41 +75,41 @@ contains
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
          end associate
       end do
-      do i = 1, size(c%ground)
-         c%ground_position(:, i) = m%links(c%ground(i))%position - [x%equations%axes%origin, 0.0_wp]
+      do i = 1, size(chain%ground)
+         chain%ground_position(:, i) = m%links(chain%ground(i))%position - [x%equations%axes%origin, 0.0_wp]
       end do
-      c%origin = x%equations%axes%origin
-      c%length = x%equations%length
+      chain%origin = x%equations%axes%origin
+      chain%length = x%equations%length
    end subroutine assign_chain
 
-   !> Puts the motion of the first `n` links of the chain `c` at state `s` into `q`. `finite`: no number is out of
+   !> Puts the motion of the first `n` links of the `chain` at state `s` into `q`. `finite`: no number is out of
    !> range; false may be said of sums alone.
-   pure subroutine move_links(c, n, s, q, finite)
-      type(chain_t), intent(in) :: c
+   pure subroutine move_links(chain, n, s, q, finite)
+      type(chain_t), intent(in) :: chain
       integer, intent(in) :: n               !< c%wanted, or all
       type(state_t), intent(in) :: s
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
       integer :: i, k
 
-      q%origin = c%origin
+      q%origin = chain%origin
       ! One by one, since a column at once would be a call of its own.
-      do i = 1, size(c%ground)
-         k = c%ground(i)
-         q%position(1, k) = c%ground_position(1, i)
-         q%position(2, k) = c%ground_position(2, i)
-         q%position(3, k) = c%ground_position(3, i)
+      do i = 1, size(chain%ground)
+         k = chain%ground(i)
+         q%position(1, k) = chain%ground_position(1, i)
+         q%position(2, k) = chain%ground_position(2, i)
+         q%position(3, k) = chain%ground_position(3, i)
       end do
-      call move_chain(n, c%links, s%u, c%length, q%position, q%velocity, q%acceleration, finite)
+      call move_chain(n, chain%links, s%u, chain%length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
    !> Puts the motion of the `n` moving `links` into that of all links, on plain arrays, which cost no descriptors.
-   pure subroutine move_chain(n, links, u, length, p, v, a, finite)
+   pure subroutine move_chain(n, links, unknowns, length, positions, velocities, accelerations, finite)
       integer, intent(in) :: n
       type(chain_link_t), intent(in) :: links(n)
-      type(unknown_t), intent(in) :: u(0:*)
+      type(unknown_t), intent(in) :: unknowns(0:*)
       real(wp), intent(in) :: length
-      real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
+      real(wp), intent(inout) :: positions(3, *), velocities(3, *), accelerations(3, *)
       logical, intent(out) :: finite
       real(wp), dimension(2) :: x, x_t, x_tt, e, e_t
       real(wp) :: check
@@ -117,46 +117,46 @@ contains
 
       check = 0.0_wp
       do i = 1, n
-         associate (h => links(i), f => u(links(i)%orientation))
-            associate (p => u(h%parent_orientation), r => h%place%reach, d => h%place%body_vector)
+         associate (h => links(i), f => unknowns(links(i)%orientation))
+            associate (parent => unknowns(h%parent_orientation), r => h%place%reach, d => h%place%body_vector)
                if (h%parent_orientation == 0) then
                   x = r
                   x_t = 0.0_wp
                   x_tt = 0.0_wp
                else
-                  x = rotated(r, [p%c, p%s])
-                  x_t = p%rate*quarter_turn(x)
-                  x_tt = p%acceleration*quarter_turn(x) - p%rate**2*x
+                  x = rotated(r, [parent%c, parent%s])
+                  x_t = parent%rate*quarter_turn(x)
+                  x_tt = parent%acceleration*quarter_turn(x) - parent%rate**2*x
                end if
                if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
                   f%acceleration, x, x_t, x_tt)
                if (h%slide > 0) then
                   ! s R e with its derivatives.
-                  e = length*rotated(h%place%slide_body_vector, [p%c, p%s])
+                  e = length*rotated(h%place%slide_body_vector, [parent%c, parent%s])
                   e_t = quarter_turn(e)
-                  associate (slide => u(h%slide))
+                  associate (slide => unknowns(h%slide))
                      x = x + slide%value*e
-                     x_t = x_t + slide%rate*e + slide%value*p%rate*e_t
-                     x_tt = x_tt + slide%acceleration*e + 2.0_wp*slide%rate*p%rate*e_t &
-                        + slide%value*(p%acceleration*e_t - p%rate**2*e)
+                     x_t = x_t + slide%rate*e + slide%value*parent%rate*e_t
+                     x_tt = x_tt + slide%acceleration*e + 2.0_wp*slide%rate*parent%rate*e_t &
+                        + slide%value*(parent%acceleration*e_t - parent%rate**2*e)
                   end associate
                end if
             end associate
             ! A link that no pair joins to the ground has unknowns of its own for x and y.
             if (h%root > 0) then
-               x = length*h%root_unit*u(h%root:h%root + 1)%value
-               x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
-               x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+               x = length*h%root_unit*unknowns(h%root:h%root + 1)%value
+               x_t = length*h%root_unit*unknowns(h%root:h%root + 1)%rate
+               x_tt = length*h%root_unit*unknowns(h%root:h%root + 1)%acceleration
             end if
             if (h%parent > 0) then
-               x = x + p(:2, h%parent)
-               x_t = x_t + v(:2, h%parent)
-               x_tt = x_tt + a(:2, h%parent)
+               x = x + positions(:2, h%parent)
+               x_t = x_t + velocities(:2, h%parent)
+               x_tt = x_tt + accelerations(:2, h%parent)
             end if
             k = h%link
-            p(:, k) = [x, f%value + h%angle_offset]
-            v(:, k) = [x_t, f%rate]
-            a(:, k) = [x_tt, f%acceleration]
+            positions(:, k) = [x, f%value + h%angle_offset]
+            velocities(:, k) = [x_t, f%rate]
+            accelerations(:, k) = [x_tt, f%acceleration]
             check = check + ((x(1) + x(2)) + (x_t(1) + x_t(2)) + ((x_tt(1) + x_tt(2)) + f%acceleration))
          end associate
       end do
@@ -165,15 +165,15 @@ contains
 
    !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
    !> unknowns by which it and its parents move; links that are not wanted count as known.
-   subroutine flag_links(c, missing, found)
-      type(chain_t), intent(in) :: c
+   subroutine flag_links(chain, missing, found)
+      type(chain_t), intent(in) :: chain
       integer, intent(in) :: missing(0:)
       type(motion_t), intent(inout) :: found
       integer :: of_link(0:size(found%position, 2)), k
 
       of_link = missing_nothing
-      do k = 1, c%wanted
-         associate (h => c%links(k))
+      do k = 1, chain%wanted
+         associate (h => chain%links(k))
             of_link(h%link) = max(missing(h%orientation), missing(h%slide), of_link(h%parent))
             if (h%root > 0) of_link(h%link) = max(of_link(h%link), missing(h%root), missing(h%root + 1))
          end associate

@@ -74,24 +74,24 @@ contains
    end function new_history
 
    !> Makes the motion `s` the latest: the one that is followed.
-   subroutine accept(b, x, s, h)
+   subroutine accept(b, x, s, history)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      type(history_t), intent(inout) :: h
+      type(history_t), intent(inout) :: history
       real(wp) :: uncertain, least
       integer :: k
 
-      if (h%filled == 0) h%jacobian = s%jacobian
-      call keep(size(b%moving), b%moving, s%jacobian, h%jacobian, least)
+      if (history%filled == 0) history%jacobian = s%jacobian
+      call keep(size(b%moving), b%moving, s%jacobian, history%jacobian, least)
       uncertain = 0.0_wp
       if (least <= certain_pivot) then
          do k = 1, size(b%moving)
-            uncertain = max(uncertain, uncertain_part(b, x, b%moving(k), h%jacobian(b%moving(k))%pivot, s))
+            uncertain = max(uncertain, uncertain_part(b, x, b%moving(k), history%jacobian(b%moving(k))%pivot, s))
          end do
       end if
-      call remember(h, s%t, s%u, uncertain)
-      if (b%redundant > 0) h%entries = jacobian_of(b, x, 1, s)
+      call remember(history, s%t, s%u, uncertain)
+      if (b%redundant > 0) history%entries = jacobian_of(b, x, 1, s)
    end subroutine accept
 
    !> Puts the Jacobians `found` of the blocks of the `list` (`n`) among those `kept`, with their `least` pivot. Plain
@@ -110,29 +110,29 @@ contains
       end do
    end subroutine keep
 
-   !> Compares the motion `s`, for which the blocks of the `list` are solved, with the latest. `c` gets whether
-   !> determinants keep their signs, and how its Kantorovich ratio grows with the excursion of the drives.
-   subroutine compare(b, x, list, h, s, c)
+   !> Compares the motion `s`, for which the blocks of the `list` are solved, with the latest. `convergence` gets
+   !> whether determinants keep their signs, and how its Kantorovich ratio grows with the excursion of the drives.
+   subroutine compare(b, x, list, history, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in), contiguous :: list(:)
-      type(history_t), intent(in) :: h
+      type(history_t), intent(in) :: history
       type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(inout) :: convergence
       logical :: crosses
       integer :: k
 
-      if (allocated(h%entries)) then
-         s%jacobian(1)%sign_of = h%jacobian(1)%sign_of*relative_sign(b, x, 1, h%entries, s)
-         c%determinant = product(s%jacobian(list)%sign_of)
+      if (allocated(history%entries)) then
+         s%jacobian(1)%sign_of = history%jacobian(1)%sign_of*relative_sign(b, x, 1, history%entries, s)
+         convergence%determinant = product(s%jacobian(list)%sign_of)
       end if
-      call compare_signs(size(list), list, h%jacobian, s%jacobian, s%is_singular, s%crossed, crosses)
-      if (crosses) c%keeps_signs = .false.
+      call compare_signs(size(list), list, history%jacobian, s%jacobian, s%is_singular, s%crossed, crosses)
+      if (crosses) convergence%keeps_signs = .false.
       if (.not. s%excursion > 0.0_wp) return
       do k = 1, size(list)
          associate (i => list(k))
-            if (.not. s%is_singular(i)) c%growth = max(c%growth, &
-               x%blocks(i)%lipschitz*max(s%jacobian(i)%inverse, h%jacobian(i)%inverse)**2)
+            if (.not. s%is_singular(i)) convergence%growth = max(convergence%growth, &
+               x%blocks(i)%lipschitz*max(s%jacobian(i)%inverse, history%jacobian(i)%inverse)**2)
          end associate
       end do
    end subroutine compare
@@ -158,19 +158,19 @@ contains
 
    !> Makes `s`, the motion found last, the latest that was accepted; before the first that of the `estimated` values,
    !> but for what drives alone give.
-   subroutine recall(b, x, path, h, estimated, s)
+   subroutine recall(b, x, path, history, estimated, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(history_t), intent(in) :: h
+      type(history_t), intent(in) :: history
       real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad, unit of the block
       type(state_t), intent(inout) :: s
       integer :: k
 
-      if (h%filled > 0) then
-         call set_drive_values(path, h%t(0), s)
-         do k = 1, size(h%predicted)
-            associate (i => h%predicted(k), past => h%past(h%predicted(k)))
+      if (history%filled > 0) then
+         call set_drive_values(path, history%t(0), s)
+         do k = 1, size(history%predicted)
+            associate (i => history%predicted(k), past => history%past(history%predicted(k)))
                s%u(i)%value = past%value
                s%u(i)%rate = past%rate(0)
                s%u(i)%acceleration = past%acceleration(0)
@@ -182,25 +182,25 @@ contains
          associate (i => b%needed(k))
             if (b%list(i)%direct) then
                call solve_explicit(b, x, i, s)
-            else if (h%filled == 0) then
+            else if (history%filled == 0) then
                call set_values(b, i, estimated(own_unknowns(b, i)), s)
             end if
          end associate
       end do
    end subroutine recall
 
-   !> Makes the motion `u` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities in a
-   !> unit of time.
-   pure subroutine remember(h, t, u, uncertain)
-      type(history_t), intent(inout) :: h
+   !> Makes the motion `unknown` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities
+   !> in a unit of time.
+   pure subroutine remember(history, t, unknown, uncertain)
+      type(history_t), intent(inout) :: history
       real(wp), intent(in) :: t, uncertain
-      type(unknown_t), intent(in) :: u(0:*)
+      type(unknown_t), intent(in) :: unknown(0:*)
       integer :: k
 
-      h%t = [t, h%t(0), h%t(1)]
-      h%uncertain = [uncertain, h%uncertain(0), h%uncertain(1)]
-      do k = 1, size(h%predicted)
-         associate (x => h%past(h%predicted(k)), now => u(h%predicted(k)))
+      history%t = [t, history%t(0), history%t(1)]
+      history%uncertain = [uncertain, history%uncertain(0), history%uncertain(1)]
+      do k = 1, size(history%predicted)
+         associate (x => history%past(history%predicted(k)), now => unknown(history%predicted(k)))
             x%value = now%value
             ! One by one: an array of three would be made first, and copied.
             x%rate(2) = x%rate(1)
@@ -211,56 +211,57 @@ contains
             x%acceleration(0) = now%acceleration
          end associate
       end do
-      h%filled = min(h%filled + 1, 3)
+      history%filled = min(history%filled + 1, 3)
    end subroutine remember
 
    !> Puts the latest motion at the parameter `t` of another path: the rates remembered are no guide from there.
-   pure subroutine begin_at(h, t)
-      type(history_t), intent(inout) :: h
+   pure subroutine begin_at(history, t)
+      type(history_t), intent(inout) :: history
       real(wp), intent(in) :: t
 
-      h%t(0) = t
-      h%filled = 0
+      history%t(0) = t
+      history%filled = 0
    end subroutine begin_at
 
-   !> Sets the values of `u` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`: the
-   !> largest difference from the latest.
-   pure subroutine predict(h, t, u, change)
-      type(history_t), intent(in) :: h
+   !> Sets the values of `unknown` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`:
+   !> the largest difference from the latest.
+   pure subroutine predict(history, t, unknown, change)
+      type(history_t), intent(in) :: history
       real(wp), intent(in) :: t
-      type(unknown_t), intent(inout) :: u(0:*)
+      type(unknown_t), intent(inout) :: unknown(0:*)
       real(wp), intent(out) :: change
       real(wp) :: step, d, w(3)
       integer :: i, k, known
 
       change = 0.0_wp
-      step = t - h%t(0)
+      step = t - history%t(0)
       known = 0
-      if (max(h%uncertain(0), h%uncertain(1), h%uncertain(2))*abs(step) > largest_part) then
-         known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
-      else if (is_even(h, step)) then
-         do k = 1, size(h%predicted)
-            associate (p => h%past(h%predicted(k)))
+      if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > largest_part) then
+         known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
+      else if (is_even(history, step)) then
+         do k = 1, size(history%predicted)
+            associate (p => history%past(history%predicted(k)))
                d = step*(weight(0)*p%rate(0) + weight(1)*p%rate(1) + weight(2)*p%rate(2) + step*(weight2(0) &
                   *p%acceleration(0) + weight2(1)*p%acceleration(1) + weight2(2)*p%acceleration(2)))
-               u(h%predicted(k))%value = p%value + d
+               unknown(history%predicted(k))%value = p%value + d
             end associate
             change = max(change, abs(d))
          end do
          return
       end if
-      if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
-      do k = 1, size(h%predicted)
-         i = h%predicted(k)
-         associate (v => h%past(i)%rate, a => h%past(i)%acceleration)
-            if (h%order /= own_predictor) then
+      if (history%order /= own_predictor) w = order_weights(history%order, step, merge(history%t(0) - history%t(1), &
+         0.0_wp, history%filled > 1))
+      do k = 1, size(history%predicted)
+         i = history%predicted(k)
+         associate (v => history%past(i)%rate, a => history%past(i)%acceleration)
+            if (history%order /= own_predictor) then
                d = w(1)*v(0) + w(2)*a(0) + w(3)*(a(0) - a(1))
             else
                d = step*v(0)
                if (known >= 0) d = step*(v(0) + 0.5_wp*step*a(known))
             end if
          end associate
-         u(i)%value = h%past(i)%value + d
+         unknown(i)%value = history%past(i)%value + d
          change = max(change, abs(d))
       end do
    end subroutine predict
@@ -304,13 +305,13 @@ contains
    end function order_weights
 
    !> Three motions are remembered, and the next comes after the same step; no other order is asked for.
-   pure logical function is_even(h, step)
-      type(history_t), intent(in) :: h
+   pure logical function is_even(history, step)
+      type(history_t), intent(in) :: history
       real(wp), intent(in) :: step
 
-      is_even = h%filled == 3 .and. h%order == own_predictor
+      is_even = history%filled == 3 .and. history%order == own_predictor
       if (.not. is_even) return
-      is_even = abs(h%t(0) - h%t(1) - step) <= equal_step*abs(step) &
-         .and. abs(h%t(1) - h%t(2) - step) <= equal_step*abs(step)
+      is_even = abs(history%t(0) - history%t(1) - step) <= equal_step*abs(step) &
+         .and. abs(history%t(1) - history%t(2) - step) <= equal_step*abs(step)
    end function is_even
 end module predictor

@@ -86,164 +86,166 @@ contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
    !> `begin_following`.
-   subroutine make_analysis(a, m, structure)
-      type(analysis_t), intent(out) :: a
+   subroutine make_analysis(analysis, m, structure)
+      type(analysis_t), intent(out) :: analysis
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
 
       if (m%method == method_newton) then
-         call begin_following(a%following_t, m, structure)
+         call begin_following(analysis%following_t, m, structure)
       else
-         call begin_following(a%following_t, for_blocks(m), structure)
-         allocate (a%dense)
-         call make_dense(a%dense, m)
+         call begin_following(analysis%following_t, for_blocks(m), structure)
+         allocate (analysis%dense)
+         call make_dense(analysis%dense, m)
       end if
    end subroutine make_analysis
 
-   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the
-   !> structure that it has. `is_done`: that fits; otherwise `a` is of no use.
-   subroutine renew_analysis(a, m, is_done)
-      type(analysis_t), intent(inout) :: a
+   !> Makes `analysis`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the
+   !> structure that it has. `is_done`: that fits; otherwise `analysis` is of no use.
+   subroutine renew_analysis(analysis, m, is_done)
+      type(analysis_t), intent(inout) :: analysis
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: is_done
       type(following_t) :: kept
 
-      call move_memory(a%following_t, kept)
-      a = analysis_t()
-      call move_memory(kept, a%following_t)
-      is_done = a%blocks%solvable
-      if (is_done) call assign_geometry(m, a%blocks, a%geometry, a%path, is_done)
-      if (is_done) call begin_motion(a%following_t, m)
+      call move_memory(analysis%following_t, kept)
+      analysis = analysis_t()
+      call move_memory(kept, analysis%following_t)
+      is_done = analysis%blocks%solvable
+      if (is_done) call assign_geometry(m, analysis%blocks, analysis%geometry, analysis%path, is_done)
+      if (is_done) call begin_motion(analysis%following_t, m)
    end subroutine renew_analysis
 
    !> Solves for the instant `t`; `found` is its motion in the deck's units, with what could not be found flagged. Links
    !> that no request needs may be left out.
-   subroutine advance(a, t, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine advance(analysis, t, found)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
 
-      call come_back(a)
-      iterations = a%iterations
+      call come_back(analysis)
+      iterations = analysis%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       if (allocated(found%by)) deallocate (found%by)
       found%t = t
-      if (limit_before(a%limits, t) > 0) then
-         call pass_over(a, t, found)
+      if (limit_before(analysis%limits, t) > 0) then
+         call pass_over(analysis, t, found)
          return
       end if
-      call reach(a, t, step, list)
+      call reach(analysis, t, step, list)
       if (step%ending >= step_there) then
-         call arrive(a, step, list, found)
-         if (size(a%geometry%cylinders) > 0) call flag_strokes(a, found)
+         call arrive(analysis, step, list, found)
+         if (size(analysis%geometry%cylinders) > 0) call flag_strokes(analysis, found)
       else
-         call stop_at(a, t, step, found)
+         call stop_at(analysis, t, step, found)
       end if
-      a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
-      if (allocated(a%dense)) a%iterations = iterations + merge(a%convergence%iterations, 0, step%ending >= step_there)
-      a%last = t
+      analysis%certificate_counts%passed = analysis%certificate_counts%passed + passed_of(step)
+      if (allocated(analysis%dense)) analysis%iterations = iterations + merge(analysis%convergence%iterations, 0, &
+         step%ending >= step_there)
+      analysis%last = t
    end subroutine advance
 
    !> Continues the motion to `t`. `step`: how that went; `list`: what there is to say of it if it stands on a change
    !> point, or returns from a singular position.
-   subroutine reach(a, t, step, list)
-      type(analysis_t), intent(inout) :: a
+   subroutine reach(analysis, t, step, list)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
 
-      if (allocated(a%singular)) then
-         if (.not. any(moving_drives(a%path, a%last, t))) then
-            call rest(a, t, step)
+      if (allocated(analysis%singular)) then
+         if (.not. any(moving_drives(analysis%path, analysis%last, t))) then
+            call rest(analysis, t, step)
             return
          end if
       end if
-      if (.not. a%follows) then
-         call begin(a, t, step, list)
-      else if (allocated(a%singular)) then
-         call leave_position(a, t, step, list)
+      if (.not. analysis%follows) then
+         call begin(analysis, t, step, list)
+      else if (allocated(analysis%singular)) then
+         call leave_position(analysis, t, step, list)
       else
-         call follow(a, t, step, list)
+         call follow(analysis, t, step, list)
       end if
    end subroutine reach
 
    !> Finds the first motion, at `t`. From a first position that is singular more than one motion begins: the one to `t`
    !> begins in the assembly that is the nearest close to that position. At `t` another one may be, if the step is wide.
-   subroutine begin(a, t, step, list)
-      type(analysis_t), intent(inout) :: a
+   subroutine begin(analysis, t, step, list)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       real(wp) :: beside
 
-      if (allocated(a%singular)) then
-         beside = time_beside(a%path, a%last, t, beside_start)
-         call continue_to(a%following_t, beside, step)
-         if (step%ending >= step_there .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
-            call go_on_from(a%following_t, beside)
+      if (allocated(analysis%singular)) then
+         beside = time_beside(analysis%path, analysis%last, t, beside_start)
+         call continue_to(analysis%following_t, beside, step)
+         if (step%ending >= step_there .and. &
+            .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
+            call go_on_from(analysis%following_t, beside)
       end if
-      call follow(a, t, step, list)
+      call follow(analysis, t, step, list)
    end subroutine begin
 
    !> Follows the motion to `t`, by time or by the value of a drive.
-   subroutine follow(a, t, step, list)
-      type(analysis_t), intent(inout) :: a
+   subroutine follow(analysis, t, step, list)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
 
-      call continue_to(a%following_t, t, step)
-      if (step%ending < step_there) call go_by_value(a%following_t, t, step, list)
+      call continue_to(analysis%following_t, t, step)
+      if (step%ending < step_there) call go_by_value(analysis%following_t, t, step, list)
    end subroutine follow
 
    !> Follows the motion to `t` from the singular position on which it stands. Back in time it is what it was, unless a
    !> BRANCH card asks for another branch.
-   subroutine leave_position(a, t, step, list)
-      type(analysis_t), intent(inout) :: a
+   subroutine leave_position(analysis, t, step, list)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t), allocatable :: returns(:)
 
-      if ((a%t - a%last)*(t - a%last) < 0.0_wp) then
-         call leave(a%following_t, a%last, t, &
-            pack(a%blocks%moving, a%singular(a%blocks%moving)), returns)
+      if ((analysis%t - analysis%last)*(t - analysis%last) < 0.0_wp) then
+         call leave(analysis%following_t, analysis%last, t, pack(analysis%blocks%moving, &
+            analysis%singular(analysis%blocks%moving)), returns)
          step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
          if (size(step%dead_end) > 0) then
             step%ending = step_blocked
             return
          end if
       end if
-      call follow(a, t, step, list)
+      call follow(analysis, t, step, list)
       if (allocated(returns) .and. step%ending >= step_there .and. .not. (allocated(list) .or. passed_of(step) > 0 &
-         .or. a%convergence%singular)) call move_alloc(returns, list)
+         .or. analysis%convergence%singular)) call move_alloc(returns, list)
    end subroutine leave_position
 
    !> Stays on the singular position on which the motion stands, since no drive moves until `t`. Blocks without
    !> velocities keep their position; the others find their velocities and accelerations.
-   subroutine rest(a, t, step)
-      type(analysis_t), intent(inout) :: a
+   subroutine rest(analysis, t, step)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
 
-      if (a%is_left) call return_to(a%following_t, a%left)
-      call set_drive_values(a%path, t, a%state)
-      associate (moving => a%blocks%moving)
-         call solve_blocks(a%blocks, a%geometry, pack(moving, .not. a%state%is_singular(moving)), a%work, a%state, &
-            a%convergence)
+      if (analysis%is_left) call return_to(analysis%following_t, analysis%left)
+      call set_drive_values(analysis%path, t, analysis%state)
+      associate (moving => analysis%blocks%moving)
+         call solve_blocks(analysis%blocks, analysis%geometry, pack(moving, .not. analysis%state%is_singular(moving)), &
+            analysis%work, analysis%state, analysis%convergence)
       end associate
-      a%convergence%singular = .true.
+      analysis%convergence%singular = .true.
       step%ending = step_rests
    end subroutine rest
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
    !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
    !> until `come_back`. `is_found`: it has a position, velocities and accelerations.
-   subroutine look_at(a, t, found, is_found)
-      type(analysis_t), intent(inout) :: a
+   subroutine look_at(analysis, t, found, is_found)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: is_found
@@ -251,117 +253,118 @@ contains
       type(diagnostic_t), allocatable :: list(:)
 
       is_found = .false.
-      if (.not. a%follows .or. limit_before(a%limits, t) > 0) return
-      if (.not. a%is_left) then
-         call record_checkpoint(a%following_t, a%left)
-         a%left_iterations = a%iterations
-         a%is_left = .true.
+      if (.not. analysis%follows .or. limit_before(analysis%limits, t) > 0) return
+      if (.not. analysis%is_left) then
+         call record_checkpoint(analysis%following_t, analysis%left)
+         analysis%left_iterations = analysis%iterations
+         analysis%is_left = .true.
       end if
-      call reach(a, t, step, list)
+      call reach(analysis, t, step, list)
       if (step%ending >= step_there .and. (step%ending == step_rests &
-         .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
+         .or. .not. (analysis%convergence%singular .or. analysis%convergence%rates_open))) then
          found%t = t
-         call accept_motion(a, found)
-         is_found = found%known == 2 .and. is_solved(a%convergence)
+         call accept_motion(analysis, found)
+         is_found = found%known == 2 .and. is_solved(analysis%convergence)
       end if
       if (.not. is_found) then
-         call go_back(a%following_t, step)
+         call go_back(analysis%following_t, step)
       else if (step%tries > 1) then
-         call go_on_from(a%following_t, t)
+         call go_on_from(analysis%following_t, t)
       end if
    end subroutine look_at
 
    !> Follows the motion from the last instant again, if it was left.
-   subroutine come_back(a)
-      type(analysis_t), intent(inout) :: a
+   subroutine come_back(analysis)
+      type(analysis_t), intent(inout) :: analysis
 
-      if (.not. a%is_left) return
-      call return_to(a%following_t, a%left)
-      a%iterations = a%left_iterations
-      a%is_left = .false.
+      if (.not. analysis%is_left) return
+      call return_to(analysis%following_t, analysis%left)
+      analysis%iterations = analysis%left_iterations
+      analysis%is_left = .false.
    end subroutine come_back
 
    !> Takes the motion at the end of `step` as `found`, with what is verified of it and what there is to say of it; a
    !> regular one is followed from there on. `list`: what there is to say if it stands on a change point, or returns.
-   subroutine arrive(a, step, list, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine arrive(analysis, step, list, found)
+      type(analysis_t), intent(inout) :: analysis
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
       integer :: was
       logical :: had_missed, crosses, goes_on
 
-      was = min(a%phase, on_motion)
-      had_missed = a%has_missed
-      if (a%convergence%singular .and. step%ending == step_there) then
-         call go_by_value(a%following_t, found%t, step, list)
-         if (a%convergence%singular .and. a%follows .and. .not. allocated(list)) then
-            list = change_diagnostics(a%blocks, a%geometry, a%state, found%t)
+      was = min(analysis%phase, on_motion)
+      had_missed = analysis%has_missed
+      if (analysis%convergence%singular .and. step%ending == step_there) then
+         call go_by_value(analysis%following_t, found%t, step, list)
+         if (analysis%convergence%singular .and. analysis%follows .and. .not. allocated(list)) then
+            list = change_diagnostics(analysis%blocks, analysis%geometry, analysis%state, found%t)
             if (size(list) > 0) step%ending = step_stands
          end if
       end if
-      call accept_motion(a, found)
-      a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
+      call accept_motion(analysis, found)
+      analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       crosses = passed_of(step) > 0
       if (crosses) call add_diagnostics(step%passed, found)
       if (allocated(list)) then
          call add_diagnostics(list, found)
          crosses = crosses .or. any(list%other)
       end if
-      if (a%has_missed) then
+      if (analysis%has_missed) then
          call cut(found, -1, flag_not_converged)
-         call get_driven_links(a%blocks, a%geometry, a%path, found%t, a%work, a%state, found)
-         a%branch = branch_t()
+         call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, found%t, analysis%work, &
+            analysis%state, found)
+         analysis%branch = branch_t()
          ! Of instants in a row this is said once.
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
-            other=a%convergence%ended == ended_elsewhere)], found)
+            other=analysis%convergence%ended == ended_elsewhere)], found)
       else
-         call certify(a, was, step, crosses)
-         if (was /= on_motion) call tell_first(a, was, found)
+         call certify(analysis, was, step, crosses)
+         if (was /= on_motion) call tell_first(analysis, was, found)
       end if
 
       goes_on = found%known == 2 .and. .not. found%rests
-      if (allocated(a%dense)) goes_on = .not. any(a%state%is_singular(a%blocks%needed))
-      if (allocated(a%singular)) deallocate (a%singular)
+      if (allocated(analysis%dense)) goes_on = .not. any(analysis%state%is_singular(analysis%blocks%needed))
+      if (allocated(analysis%singular)) deallocate (analysis%singular)
       if (goes_on) then
-         call go_on_from(a%following_t, found%t)
+         call go_on_from(analysis%following_t, found%t)
       else
-         call go_back(a%following_t, step)
-         if (any(a%state%is_singular(a%blocks%needed))) a%singular = a%state%is_singular
+         call go_back(analysis%following_t, step)
+         if (any(analysis%state%is_singular(analysis%blocks%needed))) analysis%singular = analysis%state%is_singular
       end if
-      if (a%follows) then
-         a%phase = on_motion
-      else if (.not. a%has_missed) then
-         a%phase = at_start
+      if (analysis%follows) then
+         analysis%phase = on_motion
+      else if (.not. analysis%has_missed) then
+         analysis%phase = at_start
       end if
    end subroutine arrive
 
    !> Notes what is verified of the position at the end of `step`, from the phase `was`; `crosses`: change points lie
    !> before it.
-   subroutine certify(a, was, step, crosses)
-      type(analysis_t), intent(inout) :: a
+   subroutine certify(analysis, was, step, crosses)
+      type(analysis_t), intent(inout) :: analysis
       integer, intent(in) :: was
       type(step_record_t), intent(in) :: step
       logical, intent(in) :: crosses
 
       if (step%ending == step_rests) then
-         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
+         analysis%branch = branch_t(kind=min(analysis%branch%kind, branch_same))
       else
-         a%branch = step%branch
-         a%branch%kind = merge(branch_crossed, branch_same, crosses)
-         if (a%convergence%singular .and. step%ending == step_there) a%branch%kind = branch_none
+         analysis%branch = step%branch
+         analysis%branch%kind = merge(branch_crossed, branch_same, crosses)
+         if (analysis%convergence%singular .and. step%ending == step_there) analysis%branch%kind = branch_none
       end if
-      if (was /= on_motion) a%branch%kind = branch_first
-      associate (counts => a%certificate_counts)
-         if (a%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
-         if (a%branch%kind >= branch_same) counts%followed = counts%followed + 1
+      if (was /= on_motion) analysis%branch%kind = branch_first
+      associate (counts => analysis%certificate_counts)
+         if (analysis%branch%kind == branch_none) counts%uncertain = counts%uncertain + 1
+         if (analysis%branch%kind >= branch_same) counts%followed = counts%followed + 1
       end associate
    end subroutine certify
 
    !> Says what there is to say of the first position, or of the first motion after such positions: `was`. A motion that
    !> began beside a singular position is no longer near the deck's estimate.
-   subroutine tell_first(a, was, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine tell_first(analysis, was, found)
+      type(analysis_t), intent(inout) :: analysis
       integer, intent(in) :: was
       type(motion_t), intent(inout) :: found
 
@@ -369,15 +372,15 @@ contains
          if (found%known < 2) return
          call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
       end if
-      if (.not. a%follows) call add_diagnostics(start_diagnostics(a%blocks, a%geometry, a%guess, a%state, found, &
-         a%convergence%singular), found)
+      if (.not. analysis%follows) call add_diagnostics(start_diagnostics(analysis%blocks, analysis%geometry, &
+         analysis%guess, analysis%state, found, analysis%convergence%singular), found)
    end subroutine tell_first
 
    !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
    !> that is said once. The motion is followed from where it was. `t` lies beyond a limit if no substep could be made
    !> and it is further behind that place than `near_part` of the step, or if it is only known that it was not reached.
-   subroutine stop_at(a, t, step, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine stop_at(analysis, t, step, found)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(step_record_t), intent(in) :: step
       type(motion_t), intent(inout) :: found
@@ -386,75 +389,78 @@ contains
       logical :: inconsistent
 
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-      a%branch = branch_t()
-      inconsistent = a%convergence%ended == ended_inconsistent
+      analysis%branch = branch_t()
+      inconsistent = analysis%convergence%ended == ended_inconsistent
       if (inconsistent) then
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
          call cut(found, -1, flag_inconsistent)
          ! Not where the last substep has ended, but at the instant itself.
-         if (step%tries > 1) call measure_closure_error(a%following_t, t)
-         a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
+         if (step%tries > 1) call measure_closure_error(analysis%following_t, t)
+         analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
          call cut(found, -1, flag_not_converged)
-         call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
+         call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, analysis%work, analysis%state, &
+            found)
       end if
 
       allocate (list(0))
-      if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
-         associate (open => a%convergence%open)
+      if (analysis%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. analysis%follows)) then
+         associate (open => analysis%convergence%open)
             call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
-               is_angle=open%is_angle, value=open%value &
-               *merge(1.0_wp, a%geometry%equations%length*open%unit, open%is_angle))], &
-               found)
+               is_angle=open%is_angle, value=open%value *merge(1.0_wp, analysis%geometry%equations%length*open%unit, &
+               open%is_angle))], found)
          end associate
       else
          ahead = t
          ! To where a slide is infinite there are more substeps than are tried.
          if (step%ending == step_creeps) &
-            ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-         list = limit_diagnostic(a%blocks, a%geometry, a%path, a%history, a%state, ahead, step%ending == step_creeps)
-         if (.not. a%follows .and. a%convergence%ended == ended_elsewhere .and. a%convergence%open%pair > 0) &
-            list = [diagnostic_t(kind=diagnostic_stroke, pair=a%convergence%open%pair)]
-         if (a%follows .and. size(a%geometry%cylinders) > 0) call find_length_limit(a, t, list)
-         if (size(list) == 0 .and. a%follows .and. step%ending == step_blocked) &
-            list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
+            ahead = analysis%t + sign(min(abs(t - analysis%t), almost_there*abs(analysis%t - analysis%place%t)), &
+               t - analysis%t)
+         list = limit_diagnostic(analysis%blocks, analysis%geometry, analysis%path, analysis%history, analysis%state, &
+            ahead, step%ending == step_creeps)
+         if (.not. analysis%follows .and. analysis%convergence%ended == &
+            ended_elsewhere .and. analysis%convergence%open%pair > 0) &
+            list = [diagnostic_t(kind=diagnostic_stroke, pair=analysis%convergence%open%pair)]
+         if (analysis%follows .and. size(analysis%geometry%cylinders) > 0) call find_length_limit(analysis, t, list)
+         if (size(list) == 0 .and. analysis%follows .and. step%ending == step_blocked) &
+            list = [diagnostic_t(kind=diagnostic_close, t=analysis%t)]
       end if
       if (step%ending == step_creeps) then
-         if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
+         if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=analysis%place%t)]
       else if (allocated(step%dead_end)) then
          if (size(step%dead_end) > 0) list = step%dead_end
       end if
-      if (a%phase <= on_motion) call add_diagnostics(list, found)
+      if (analysis%phase <= on_motion) call add_diagnostics(list, found)
 
-      if (a%follows .and. .not. inconsistent .and. abs(t - a%place%t) > 0.0_wp) &
-         a%limits(merge(2, 1, t > a%place%t)) = limit_t(.true., &
-         merge(a%t + near_part*(t - a%place%t), t, step%ending == step_blocked), list)
-      call go_back(a%following_t, step)
-      if (a%follows) a%phase = lost
-      if (allocated(a%singular)) deallocate (a%singular)
+      if (analysis%follows .and. .not. inconsistent .and. abs(t - analysis%place%t) > 0.0_wp) &
+         analysis%limits(merge(2, 1, t > analysis%place%t)) = limit_t(.true., &
+         merge(analysis%t + near_part*(t - analysis%place%t), t, step%ending == step_blocked), list)
+      call go_back(analysis%following_t, step)
+      if (analysis%follows) analysis%phase = lost
+      if (allocated(analysis%singular)) deallocate (analysis%singular)
    end subroutine stop_at
 
    !> `t` lies beyond a limit, and nothing is solved for. The first of such instants gets the reason.
-   subroutine pass_over(a, t, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine pass_over(analysis, t, found)
+      type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       integer :: side
 
       call cut(found, -1, flag_not_converged)
-      call get_driven_links(a%blocks, a%geometry, a%path, t, a%work, a%state, found)
-      a%convergence = convergence_t(ended=ended_unsought)
-      a%branch = branch_t()
-      side = limit_before(a%limits, t)
-      associate (told => a%limits(side)%diagnostics)
-         if (a%phase <= on_motion) then
+      call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, analysis%work, analysis%state, found)
+      analysis%convergence = convergence_t(ended=ended_unsought)
+      analysis%branch = branch_t()
+      side = limit_before(analysis%limits, t)
+      associate (told => analysis%limits(side)%diagnostics)
+         if (analysis%phase <= on_motion) then
             call add_diagnostics(told, found)
          else if (any(told%kind == diagnostic_limit)) then
             call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
                t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
          end if
       end associate
-      a%phase = beyond
+      analysis%phase = beyond
    end subroutine pass_over
 
    !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
@@ -470,34 +476,35 @@ contains
    !> Takes the motion at found%t, where the blocks have found one, by the method, and flags what does not exist. If all
    !> drives rest, a motion that has come to a singular position rests there, too. A first position says less: undriven
    !> links may move.
-   subroutine accept_motion(a, found)
-      type(analysis_t), intent(inout) :: a
+   subroutine accept_motion(analysis, found)
+      type(analysis_t), intent(inout) :: analysis
       type(motion_t), intent(inout) :: found
       integer :: link, last
       logical :: finite
 
-      if (allocated(a%dense)) then
-         call solve_all_links(a%dense, a%blocks, a%geometry, a%path, a%guess%values, a%history, a%state, found, &
-            a%convergence)
-         a%has_missed = .not. is_solved(a%convergence)
+      if (allocated(analysis%dense)) then
+         call solve_all_links(analysis%dense, analysis%blocks, analysis%geometry, analysis%path, &
+            analysis%guess%values, analysis%history, analysis%state, found, analysis%convergence)
+         analysis%has_missed = .not. is_solved(analysis%convergence)
          finite = .false.
       else
-         call move_links(a%geometry%chain, a%geometry%chain%wanted, a%state, found, finite)
+         call move_links(analysis%geometry%chain, analysis%geometry%chain%wanted, analysis%state, found, finite)
       end if
-      if (size(a%blocks%ratios) > 0) call get_ratios(a%blocks, a%geometry, &
-         a%path, a%state%is_singular, a%state, a%work, found)
+      if (size(analysis%blocks%ratios) > 0) call get_ratios(analysis%blocks, analysis%geometry, analysis%path, &
+         analysis%state%is_singular, analysis%state, analysis%work, found)
 
       call cut(found, 2, flag_none)
-      found%rests = a%convergence%singular .and. a%follows
-      if (found%rests) found%rests = .not. any(moving_drives(a%path, found%t, found%t))
+      found%rests = analysis%convergence%singular .and. analysis%follows
+      if (found%rests) found%rests = .not. any(moving_drives(analysis%path, found%t, found%t))
       if (found%rests) then
          found%velocity = 0.0_wp
          found%acceleration = 0.0_wp
       else
-         if (a%convergence%singular) call cut(found, 0, flag_singular)
-         if (a%convergence%rates_open) call cut(found, 0, flag_inconsistent)
+         if (analysis%convergence%singular) call cut(found, 0, flag_singular)
+         if (analysis%convergence%rates_open) call cut(found, 0, flag_inconsistent)
          ! Where rates contradict one another no link has any.
-         if (found%mark == flag_singular) call get_link_flags(a%blocks, a%geometry, a%state, allocated(a%dense), found)
+         if (found%mark == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
+            allocated(analysis%dense), found)
       end if
       if (finite) return
       ! What is out of the range of the real kind is not known.
@@ -533,64 +540,66 @@ contains
    end subroutine cut
 
    !> By how much redundant equations have differed at most, in characteristic lengths or rad; -1 where there are none.
-   pure real(wp) function redundancy_error(a)
-      type(analysis_t), intent(in) :: a
+   pure real(wp) function redundancy_error(analysis)
+      type(analysis_t), intent(in) :: analysis
 
       redundancy_error = -1.0_wp
-      if (a%blocks%redundant > 0) redundancy_error = a%max_closure_error
+      if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error
    end function redundancy_error
 
    !> Puts the limit at which the length of a cylinder comes to its bound in the place of `list`, if the motion that is
    !> followed on the way to `t` is that near.
-   subroutine find_length_limit(a, t, list)
-      type(analysis_t), intent(in) :: a
+   subroutine find_length_limit(analysis, t, list)
+      type(analysis_t), intent(in) :: analysis
       real(wp), intent(in) :: t              !< time
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t) :: limit
-      real(wp) :: lengths(0:2, size(a%geometry%cylinders)), f(3), left, nearest
+      real(wp) :: lengths(0:2, size(analysis%geometry%cylinders)), f(3), left, nearest
       integer :: d, k, side
 
-      lengths = lengths_followed(a%following_t)
-      nearest = near_part*abs(t - a%place%t)
-      do k = 1, size(a%geometry%cylinders)
-         associate (bounds => a%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
+      lengths = lengths_followed(analysis%following_t)
+      nearest = near_part*abs(t - analysis%place%t)
+      do k = 1, size(analysis%geometry%cylinders)
+         associate (bounds => analysis%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
             do side = 1, 2
                left = huge(left)
                if (abs(rate) > 0.0_wp .and. bounds(side) < huge(1.0_wp)) left = (bounds(side) - length)/rate
                ! It may begin out of its stroke.
                if ((length - bounds(1))*(length - bounds(2)) >= 0.0_wp .and. left < huge(left)) left = 0.0_wp
-               if (left*sign(1.0_wp, t - a%t) < 0.0_wp .or. abs(left) > nearest) cycle
+               if (left*sign(1.0_wp, t - analysis%t) < 0.0_wp .or. abs(left) > nearest) cycle
                nearest = abs(left)
-               limit = diagnostic_t(kind=diagnostic_limit, pair=a%geometry%cylinders(k)%pair, t=a%t + left, &
+               limit = diagnostic_t(kind=diagnostic_limit, pair=analysis%geometry%cylinders(k)%pair, t=analysis%t + &
+                  left, &
                   value=bounds(side), other=bounds(side) > 0.0_wp)
             end do
          end associate
       end do
       if (limit%pair == 0) return
-      do d = 1, size(a%path%laws)
-         f = drive_at(a%path, d, limit%t)
+      do d = 1, size(analysis%path%laws)
+         f = drive_at(analysis%path, d, limit%t)
          if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          limit%drive = d
          if (abs(f(2)) > 0.0_wp) exit
       end do
-      associate (law => a%path%laws(limit%drive))
+      associate (law => analysis%path%laws(limit%drive))
          limit%is_angle = .not. is_length(law)
-         f = drive_at(a%path, limit%drive, limit%t)
+         f = drive_at(analysis%path, limit%drive, limit%t)
          if (law%kind /= drive_slide .or. law%subject /= limit%pair) limit%value = f(1)
       end associate
       list = [limit]
    end subroutine find_length_limit
 
    !> Flags the motion `found`, which is complete, where a cylinder is out of its stroke.
-   subroutine flag_strokes(a, found)
-      type(analysis_t), intent(in) :: a
+   subroutine flag_strokes(analysis, found)
+      type(analysis_t), intent(in) :: analysis
       type(motion_t), intent(inout) :: found
       integer :: k
 
       if (found%known < 2 .or. found%mark /= flag_none) return
-      do k = 1, size(a%geometry%cylinders)
-         associate (one => a%geometry%cylinders(k), length => cylinder_length(a%geometry%cylinders(k), &
-               found%position(:, a%geometry%cylinders(k)%i), found%position(:, a%geometry%cylinders(k)%j)))
+      do k = 1, size(analysis%geometry%cylinders)
+         associate (one => analysis%geometry%cylinders(k), length => cylinder_length(analysis%geometry%cylinders(k), &
+               found%position(:, analysis%geometry%cylinders(k)%i), found%position(:, &
+                  analysis%geometry%cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
             found%mark = flag_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)

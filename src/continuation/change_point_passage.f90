@@ -27,8 +27,8 @@ contains
    !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
    !> that they select. `list`: a diagnostic for each block, for a motion that goes back; diagnostic_dead_end: the
    !> branch of a card is not found.
-   subroutine leave(f, last, t, blocks, list)
-      type(following_t), intent(inout) :: f
+   subroutine leave(following, last, t, blocks, list)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: last, t
       integer, intent(in) :: blocks(:)
       type(diagnostic_t), allocatable, intent(out) :: list(:)
@@ -41,31 +41,32 @@ contains
 
       allocate (list(size(blocks)))
       do k = 1, size(blocks)
-         list(k) = diagnostic_at_change(f%blocks, f%geometry, blocks(k), last)
+         list(k) = diagnostic_at_change(following%blocks, following%geometry, blocks(k), last)
          list(k)%returns = .true.
       end do
-      if (size(f%branch_requests%cards) == 0) return
+      if (size(following%branch_requests%cards) == 0) return
 
-      beside = time_beside(f%path, last, t, leaving)
-      f%branch_requests%stood_until = beside
-      call record_checkpoint(f, before)
-      call continue_to(f, beside, step)
-      if (step%ending < step_there) call go_by_value(f, beside, step, at_end)
-      if (step%ending < step_there .or. passed_of(step) > 0 .or. f%convergence%singular) then
-         call return_to(f, before)
+      beside = time_beside(following%path, last, t, leaving)
+      following%branch_requests%stood_until = beside
+      call record_checkpoint(following, before)
+      call continue_to(following, beside, step)
+      if (step%ending < step_there) call go_by_value(following, beside, step, at_end)
+      if (step%ending < step_there .or. passed_of(step) > 0 .or. following%convergence%singular) then
+         call return_to(following, before)
          return
       end if
-      call go_on_from(f, beside)
+      call go_on_from(following, beside)
       do k = 1, size(blocks)
-         call decide(f%branch_requests, blocks(k), links_of(f%blocks, f%geometry, blocks(k)), last, beside, last, &
-            list(k)%other)
+         call decide(following%branch_requests, blocks(k), links_of(following%blocks, following%geometry, blocks(k)), &
+            last, beside, last, list(k)%other)
          if (.not. list(k)%other) cycle
-         call switch_branch(f%blocks, f%geometry, f%history, f%work, f%state, blocks(k), f%convergence, found)
+         call switch_branch(following%blocks, following%geometry, following%history, following%work, following%state, &
+            blocks(k), following%convergence, found)
          if (found) then
-            call go_on_from(f, beside)
+            call go_on_from(following, beside)
          else
             list(k)%kind = diagnostic_dead_end
-            f%place = before
+            following%place = before
             return
          end if
       end do
@@ -76,8 +77,8 @@ contains
    !> and never across. So it is followed by the drive's value instead, from turn to turn. Then the `step` arrives. If
    !> `t` itself is at a singular position, `list` is that of `change_diagnostics`, and at a change point the step
    !> stands; otherwise `list` is not allocated.
-   subroutine go_by_value(f, t, step, list)
-      type(following_t), intent(inout) :: f
+   subroutine go_by_value(following, t, step, list)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(out) :: list(:)
@@ -86,37 +87,37 @@ contains
       integer :: drive
       logical :: arrived, stands
 
-      if (.not. f%follows) return
-      drive = slow_drive(f%path, merge(f%place%t, f%t, step%tries > 1), t, &
-         merge(t, f%t, step%ending >= step_there), [f%drives%first, f%drives%last])
+      if (.not. following%follows) return
+      drive = slow_drive(following%path, merge(following%place%t, following%t, step%tries > 1), t, &
+         merge(t, following%t, step%ending >= step_there), [following%drives%first, following%drives%last])
       if (drive == 0) return
 
-      call record_checkpoint(f, reached)
-      call go_back(f, step)
-      call record_checkpoint(f, before)
-      call go_from_turn_to_turn(f, drive, t, passed, arrived, stands)
-      deallocate (f%path%leg)
-      if (arrived .and. .not. stands) call resume_motion(f, t, arrived)
-      f%place = before
+      call record_checkpoint(following, reached)
+      call go_back(following, step)
+      call record_checkpoint(following, before)
+      call go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
+      deallocate (following%path%leg)
+      if (arrived .and. .not. stands) call resume_motion(following, t, arrived)
+      following%place = before
       if (.not. arrived) then
          ! As the step has ended: that tells where the limit is, and which.
-         call return_to(f, reached)
-         f%place = before
+         call return_to(following, reached)
+         following%place = before
          return
       end if
       step%ending = step_there
       step%passed = passed
       if (.not. stands) return
-      list = change_diagnostics(f%blocks, f%geometry, f%state, t)
+      list = change_diagnostics(following%blocks, following%geometry, following%state, t)
       if (size(list) > 0) step%ending = step_stands
-      call follow_from(f, before)
+      call follow_from(following, before)
    end subroutine go_by_value
 
    !> Follows the motion to the value of `drive` at `t`, the other drives held, from one place at which it turns to the
    !> next. It begins a little way back, since rates are uncertain close to a change point. `passed`: change points on
    !> the way; `arrived`: it came there; `stands`: at a singular position.
-   subroutine go_from_turn_to_turn(f, drive, t, passed, arrived, stands)
-      type(following_t), intent(inout) :: f
+   subroutine go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
+      type(following_t), intent(inout) :: following
       integer, intent(in) :: drive
       real(wp), intent(in) :: t
       type(diagnostic_t), allocatable, intent(out) :: passed(:)
@@ -125,22 +126,22 @@ contains
       type(place_t) :: first
       real(wp) :: turn, next
 
-      call record_checkpoint(f, first)
-      turn = f%t
-      next = next_turn(f%path, drive, turn, t)
-      associate (value => value_at(f%path, drive, turn))
-         call go_to(next, value - sign(short_step/f%drives%unit(drive), &
-            value_at(f%path, drive, next) - value))
+      call record_checkpoint(following, first)
+      turn = following%t
+      next = next_turn(following%path, drive, turn, t)
+      associate (value => value_at(following%path, drive, turn))
+         call go_to(next, value - sign(short_step/following%drives%unit(drive), value_at(following%path, drive, &
+            next) - value))
       end associate
-      if (.not. arrived .or. stands .or. passed_of(one) > 0) call return_to(f, first)
+      if (.not. arrived .or. stands .or. passed_of(one) > 0) call return_to(following, first)
       allocate (passed(0))
       do while (abs(t - turn) > 0.0_wp)
-         next = next_turn(f%path, drive, turn, t)
-         call go_to(next, value_at(f%path, drive, next))
+         next = next_turn(following%path, drive, turn, t)
+         call go_to(next, value_at(following%path, drive, next))
          if (.not. arrived) return
          if (allocated(one%passed)) passed = [passed, one%passed]
          turn = next
-         if (stands .and. abs(t - turn) > 0.0_wp) call go_back(f, one)
+         if (stands .and. abs(t - turn) > 0.0_wp) call go_back(following, one)
       end do
 
    contains
@@ -150,29 +151,30 @@ contains
          real(wp), intent(in) :: to, value
          real(wp) :: now(3)
 
-         now = drive_at(f%path, drive, f%t)
-         call lead(f%path, drive, f%t, (value - now(1))/(to - turn), [turn, to])
-         call resume_motion(f, turn, arrived)
+         now = drive_at(following%path, drive, following%t)
+         call lead(following%path, drive, following%t, (value - now(1))/(to - turn), [turn, to])
+         call resume_motion(following, turn, arrived)
          stands = .false.
          if (.not. arrived) return
-         call continue_to(f, to, one)
+         call continue_to(following, to, one)
          arrived = one%ending >= step_there
-         stands = arrived .and. f%convergence%singular
-         if (arrived .and. .not. stands) call go_on_from(f, to)
+         stands = arrived .and. following%convergence%singular
+         if (arrived .and. .not. stands) call go_on_from(following, to)
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
-   !> The motion that is followed becomes that at the parameter `p`, where the drives have the same values. `passed`: so
+   !> The motion that is followed becomes that at the `parameter`, where the drives have the same values. `passed`: so
    !> it does.
-   subroutine resume_motion(f, p, passed)
-      type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: p
+   subroutine resume_motion(following, parameter, passed)
+      type(following_t), intent(inout) :: following
+      real(wp), intent(in) :: parameter
       logical, intent(out) :: passed
 
-      call begin_at(f%history, p)
-      f%t = p
-      call solve_at(f, p)
-      passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
-      if (passed) call go_on_from(f, p)
+      call begin_at(following%history, parameter)
+      following%t = parameter
+      call solve_at(following, parameter)
+      passed = following%convergence%keeps_signs .and. is_solved(following%convergence) &
+         .and. .not. following%convergence%singular
+      if (passed) call go_on_from(following, parameter)
    end subroutine resume_motion
 end module change_point_passage

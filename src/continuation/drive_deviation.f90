@@ -65,8 +65,8 @@ contains
 
    !> Finds the part `allowed` of the `substep` from the parameter `t` on that the drives allow at once. `away`: how far
    !> they leave their chords in it, in radians or characteristic lengths, at most; see `examine`.
-   pure subroutine limit_substep(p, path, t, substep, allowed, away)
-      type(drive_deviation_t), intent(in) :: p
+   pure subroutine limit_substep(deviation, path, t, substep, allowed, away)
+      type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t, substep
       real(wp), intent(out) :: allowed, away
@@ -74,43 +74,43 @@ contains
       logical :: inside, is_plain
 
       allowed = substep
-      inside = is_within(p, path, t, t + substep)
-      call judge_step(p, substep, away, is_plain)
+      inside = is_within(deviation, path, t, t + substep)
+      call judge_step(deviation, substep, away, is_plain)
       if (is_plain .and. inside) return
       do while (abs((t + allowed) - t) > 0.0_wp)
-         call examine(p, path, t, t + allowed, change, away)
-         inside = is_within(p, path, t, t + allowed)
-         if (change > largest_change .and. .not. (inside .and. abs(allowed) <= p%longest)) then
+         call examine(deviation, path, t, t + allowed, change, away)
+         inside = is_within(deviation, path, t, t + allowed)
+         if (change > largest_change .and. .not. (inside .and. abs(allowed) <= deviation%longest)) then
             allowed = allowed*max(min_factor, a_little_less*largest_change/change)
-            if (inside) allowed = sign(max(abs(allowed), p%longest), substep)
+            if (inside) allowed = sign(max(abs(allowed), deviation%longest), substep)
          else if (away > max_deviation) then
             allowed = 0.5_wp*allowed
          else
             exit
          end if
       end do
-      if (inside .and. p%curve < huge(1.0_wp)) away = 0.125_wp*allowed**2*p%curve
+      if (inside .and. deviation%curve < huge(1.0_wp)) away = 0.125_wp*allowed**2*deviation%curve
    end subroutine limit_substep
 
    !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
    !> `away`: bounds their `excursion`.
-   pure subroutine judge_step(p, step, away, is_plain)
-      type(drive_deviation_t), intent(in) :: p
+   pure subroutine judge_step(deviation, step, away, is_plain)
+      type(drive_deviation_t), intent(in) :: deviation
       real(wp), intent(in) :: step
       real(wp), intent(out) :: away
       logical, intent(out) :: is_plain
 
       away = 0.0_wp
-      is_plain = abs(step) <= p%longest .and. p%curve < huge(1.0_wp)
+      is_plain = abs(step) <= deviation%longest .and. deviation%curve < huge(1.0_wp)
       if (.not. is_plain) return
-      away = 0.125_wp*step**2*p%curve
+      away = 0.125_wp*step**2*deviation%curve
       is_plain = away <= max_deviation
    end subroutine judge_step
 
    !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
    !> a chord being off its curve by h^2/8 times the second derivative at most.
-   pure subroutine examine(p, path, t1, t2, change, away)
-      type(drive_deviation_t), intent(in) :: p
+   pure subroutine examine(deviation, path, t1, t2, change, away)
+      type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
       real(wp), intent(out) :: change, away
@@ -123,7 +123,7 @@ contains
       off_all = 0.0_wp
       moving = 0
       h = abs(t2 - t1)
-      do i = 1, size(p%unit)
+      do i = 1, size(deviation%unit)
          b = drive_bounds(path, i, t1, t2)
          if (any(b%high >= huge(1.0_wp) .or. b%low <= -huge(1.0_wp))) then
             change = huge(1.0_wp)
@@ -134,23 +134,23 @@ contains
          f2 = drive_at(path, i, t2)
          rate = max(-b%low(1), b%high(1))
          if (rate > 0.0_wp) moving = moving + 1
-         change = max(change, p%unit(i)*min(rate*h, max(b%high(0) - f1(1), f1(1) - b%low(0))))
+         change = max(change, deviation%unit(i)*min(rate*h, max(b%high(0) - f1(1), f1(1) - b%low(0))))
          bow = 0.125_wp*h**2*max(-b%low(2), b%high(2))
          off = min(bow, max(b%high(0) - min(f1(1), f2(1)), max(f1(1), f2(1)) - b%low(0)))
          beyond = max(b%high(0) - max(f1(1), f2(1)), min(f1(1), f2(1)) - b%low(0), 0.0_wp)
          if (b%low(1) >= 0.0_wp .or. b%high(1) <= 0.0_wp) beyond = 0.0_wp
-         off_one = max(off_one, p%unit(i)*min(bow, beyond))
-         off_all = max(off_all, p%unit(i)*off)
+         off_one = max(off_one, deviation%unit(i)*min(bow, beyond))
+         off_all = max(off_all, deviation%unit(i)*off)
       end do
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
 
    !> `t1` and `t2` lie within the time of all instants, and are times.
-   pure logical function is_within(p, path, t1, t2)
-      type(drive_deviation_t), intent(in) :: p
+   pure logical function is_within(deviation, path, t1, t2)
+      type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: t1, t2
 
-      is_within = min(t1, t2) >= p%first .and. max(t1, t2) <= p%last .and. .not. allocated(path%leg)
+      is_within = min(t1, t2) >= deviation%first .and. max(t1, t2) <= deviation%last .and. .not. allocated(path%leg)
    end function is_within
 end module drive_deviation

@@ -125,29 +125,29 @@ module following
 
 contains
 
-   !> Makes `f` ready for the first instant of `m`. `structure`: that of `m`, whose blocks and geometry it takes over;
-   !> without it one is made.
-   subroutine begin_following(f, m, structure)
-      type(following_t), intent(out) :: f
+   !> Makes `following` ready for the first instant of `m`. `structure`: that of `m`, whose blocks and geometry it takes
+   !> over; without it one is made.
+   subroutine begin_following(following, m, structure)
+      type(following_t), intent(out) :: following
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
 
       if (present(structure)) then
-         call move_alloc(structure%blocks, f%blocks)
-         call move_alloc(structure%geometry, f%geometry)
+         call move_alloc(structure%blocks, following%blocks)
+         call move_alloc(structure%geometry, following%geometry)
       else
          call make_structure(m, own)
-         call move_alloc(own%blocks, f%blocks)
-         call move_alloc(own%geometry, f%geometry)
+         call move_alloc(own%blocks, following%blocks)
+         call move_alloc(own%geometry, following%geometry)
       end if
-      call select_solved_blocks(m, f%blocks, f%geometry)
-      if (f%blocks%solvable) then
-         f%work = new_workspace(f%blocks)
-         allocate (f%guess)
-         call assign_path(m, f%blocks, f%geometry, f%path)
+      call select_solved_blocks(m, following%blocks, following%geometry)
+      if (following%blocks%solvable) then
+         following%work = new_workspace(following%blocks)
+         allocate (following%guess)
+         call assign_path(m, following%blocks, following%geometry, following%path)
       end if
-      call begin_motion(f, m)
+      call begin_motion(following, m)
    end subroutine begin_following
 
    !> Moves the structure, and all that has been allocated for it, from `old` to `new`.
@@ -160,150 +160,152 @@ contains
       call move_alloc(old%work, new%work)
    end subroutine move_memory
 
-   !> Gives `f`, which has the structure and the geometry of `m`, the state in which nothing is solved yet.
-   subroutine begin_motion(f, m)
-      type(following_t), intent(inout) :: f
+   !> Gives `following`, which has the structure and the geometry of `m`, the state in which nothing is solved yet.
+   subroutine begin_motion(following, m)
+      type(following_t), intent(inout) :: following
       type(mechanism_t), intent(in) :: m
       logical :: depends
 
-      f%geometry%cylinders = cylinders_of(m, .false.)
+      following%geometry%cylinders = cylinders_of(m, .false.)
       depends = .true.
-      if (f%blocks%solvable) then
-         call assign_guess(m, f%blocks, f%geometry, f%guess)
-         f%state = new_state(f%blocks, size(m%drives))
-         f%history = new_history(f%blocks, m%predictor)
+      if (following%blocks%solvable) then
+         call assign_guess(m, following%blocks, following%geometry, following%guess)
+         following%state = new_state(following%blocks, size(m%drives))
+         following%history = new_history(following%blocks, m%predictor)
          ! Some unknown is searched for from its value before.
-         depends = size(f%history%predicted) > 0
+         depends = size(following%history%predicted) > 0
       end if
-      f%branch_requests = new_branch_requests(m)
-      f%drives = new_drive_excursion(m, depends)
+      following%branch_requests = new_branch_requests(m)
+      following%drives = new_drive_excursion(m, depends)
    end subroutine begin_motion
 
    !> Solves for the motion at `t`, from the one that is followed or, if none is, nearest to the initial guess.
-   subroutine solve_at(f, t)
-      type(following_t), intent(inout) :: f
+   subroutine solve_at(following, t)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t              !< parameter of the path: the time, mostly
 
-      associate (b => f%blocks, x => f%geometry, s => f%state, c => f%convergence)
+      associate (b => following%blocks, x => following%geometry, s => following%state, c => following%convergence)
          if (.not. b%solvable) then
             c = convergence_t(ended=ended_singular)
             return
          end if
-         call set_drive_values(f%path, t, s)
-         if (.not. f%follows) then
-            call solve_first(b, x, f%guess, f%work, s, c)
+         call set_drive_values(following%path, t, s)
+         if (.not. following%follows) then
+            call solve_first(b, x, following%guess, following%work, s, c)
             return
          end if
-         call predict(f%history, t, s%u, s%change)
+         call predict(following%history, t, s%u, s%change)
          if (s%change > largest_change) then
             c = nothing_gathered
             c%keeps_signs = .false.
             s%crossed = .false.
             return
          end if
-         call solve_blocks(b, x, b%moving, f%work, s, c)
+         call solve_blocks(b, x, b%moving, following%work, s, c)
          if (.not. is_solved(c)) return
-         call compare(b, x, b%moving, f%history, s, c)
-         if (s%excursion > 0.0_wp) c%is_certain = is_short_and_right(b, x, f%history, s, c%change)
+         call compare(b, x, b%moving, following%history, s, c)
+         if (s%excursion > 0.0_wp) c%is_certain = is_short_and_right(b, x, following%history, s, c%change)
       end associate
    end subroutine solve_at
 
    !> Finds the closure error at `t` itself, from the motion that is followed or, if that is too far, from the initial
    !> guess. If neither search ends there, the record stays but for its closure error, which is 0.
-   subroutine measure_closure_error(f, t)
-      type(following_t), intent(inout) :: f
+   subroutine measure_closure_error(following, t)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
       type(convergence_t) :: before
 
-      before = f%convergence
-      call solve_at(f, t)
-      if (f%convergence%ended == ended_inconsistent) return
-      call solve_first(f%blocks, f%geometry, f%guess, f%work, f%state, f%convergence)
-      if (f%convergence%ended == ended_inconsistent) return
-      f%convergence = before
-      f%convergence%open%value = 0.0_wp
+      before = following%convergence
+      call solve_at(following, t)
+      if (following%convergence%ended == ended_inconsistent) return
+      call solve_first(following%blocks, following%geometry, following%guess, following%work, following%state, &
+         following%convergence)
+      if (following%convergence%ended == ended_inconsistent) return
+      following%convergence = before
+      following%convergence%open%value = 0.0_wp
    end subroutine measure_closure_error
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
-   subroutine continue_to(f, t, step)
-      type(following_t), intent(inout) :: f
+   subroutine continue_to(following, t, step)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
       type(step_record_t), intent(out) :: step
       real(wp) :: substep, here, longest, allowed, shortest
       integer :: failures, longer
       logical :: accepted, grows, is_last
 
-      substep = t - f%t
+      substep = t - following%t
       longest = abs(substep)
       shortest = min_substep*longest
       failures = 0
       longer = 0
       do while (step%tries < max_substeps)
          step%tries = step%tries + 1
-         is_last = .not. f%follows
-         if (f%follows) then
-            substep = sign(min(abs(substep), abs(t - f%t)), substep)
-            call limit_substep(f%drives, f%path, f%t, substep, allowed, f%state%excursion)
+         is_last = .not. following%follows
+         if (following%follows) then
+            substep = sign(min(abs(substep), abs(t - following%t)), substep)
+            call limit_substep(following%drives, following%path, following%t, substep, allowed, &
+               following%state%excursion)
             if (abs(allowed) < abs(substep)) longest = max(abs(allowed), shortest)
             substep = allowed
-            is_last = abs(substep) >= abs(t - f%t)
+            is_last = abs(substep) >= abs(t - following%t)
          end if
-         here = merge(t, f%t + substep, is_last)
-         call attempt(f, here, step, accepted)
+         here = merge(t, following%t + substep, is_last)
+         call attempt(following, here, step, accepted)
          if (is_last .and. accepted) then
             step%ending = step_there
             return
          end if
-         if (step%tries == 1) call record_checkpoint(f, f%place)
-         grows = accepted .and. (longer < max_longer .or. .not. f%convergence%singular)
-         accepted = accepted .and. .not. f%convergence%singular
-         if (accepted) call go_on_from(f, here)
-         if (.not. f%follows) return
-         if (.not. is_solved(f%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
+         if (step%tries == 1) call record_checkpoint(following, following%place)
+         grows = accepted .and. (longer < max_longer .or. .not. following%convergence%singular)
+         accepted = accepted .and. .not. following%convergence%singular
+         if (accepted) call go_on_from(following, here)
+         if (.not. following%follows) return
+         if (.not. is_solved(following%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
          longer = merge(merge(0, longer + 1, accepted), max_longer, grows)
          substep = merge(1.5_wp, 0.5_wp, grows)*substep
-         if (abs(substep) <= min_substep*min(longest, abs(t - f%t))) step%ending = step_blocked
+         if (abs(substep) <= min_substep*min(longest, abs(t - following%t))) step%ending = step_blocked
          if (step%ending == step_blocked .or. failures > max_failures) return
       end do
       step%ending = step_creeps
    end subroutine continue_to
 
    !> Solves for the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
-   subroutine attempt(f, t, step, accepted)
-      type(following_t), intent(inout) :: f
+   subroutine attempt(following, t, step, accepted)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
 
-      call solve_at(f, t)
-      f%iterations = f%iterations + f%convergence%iterations
-      accepted = is_solved(f%convergence)
-      if (.not. f%follows) return
-      accepted = accepted .and. f%convergence%change <= largest_correction
+      call solve_at(following, t)
+      following%iterations = following%iterations + following%convergence%iterations
+      accepted = is_solved(following%convergence)
+      if (.not. following%follows) return
+      accepted = accepted .and. following%convergence%change <= largest_correction
       ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
       ! becomes small: no substep would come across.
-      if (accepted .and. f%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
-         call add_excursion(f, t)
-      accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
+      if (accepted .and. following%state%excursion > 0.0_wp .and. .not. following%convergence%is_certain) &
+         call add_excursion(following, t)
+      accepted = accepted .and. following%convergence%kantorovich_ratio <= max_kantorovich_ratio
       ! Before a change point is passed: at the length 0 links may be in line.
-      if (accepted .and. size(f%geometry%cylinders) > 0) call keep_lengths(f, t, accepted)
-      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
-         call pass_change_points(f, step)
-      accepted = accepted .and. f%convergence%keeps_signs
+      if (accepted .and. size(following%geometry%cylinders) > 0) call keep_lengths(following, t, accepted)
+      if (accepted .and. .not. (following%convergence%keeps_signs .or. following%convergence%singular)) &
+         call pass_change_points(following, step)
+      accepted = accepted .and. following%convergence%keeps_signs
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
-      step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, f%convergence%kantorovich_ratio)
+      step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, following%convergence%kantorovich_ratio)
    end subroutine attempt
 
    !> Finds the lengths (0:2, cylinders) at the motion that is followed, with their derivatives.
-   function lengths_followed(f) result(lengths)
-      type(following_t), intent(in) :: f
-      real(wp) :: lengths(0:2, size(f%geometry%cylinders))
+   function lengths_followed(following) result(lengths)
+      type(following_t), intent(in) :: following
+      real(wp) :: lengths(0:2, size(following%geometry%cylinders))
       type(state_t) :: s
 
-      s = f%state
-      call recall(f%blocks, f%geometry, f%path, f%history, f%guess%values, s)
-      lengths = lengths_of(f%geometry, s)
+      s = following%state
+      call recall(following%blocks, following%geometry, following%path, following%history, following%guess%values, s)
+      lengths = lengths_of(following%geometry, s)
    end function lengths_followed
 
    !> Finds the lengths (0:2, cylinders) in the state `s`.
@@ -328,21 +330,21 @@ contains
 
    !> Finds whether the substep to `t` keeps all cylinders within the bounds of their lengths, also between its ends:
    !> otherwise it is not `accepted`. A drive that leaves its chord could take a length out of them and back.
-   subroutine keep_lengths(f, t, accepted)
-      type(following_t), intent(in) :: f
+   subroutine keep_lengths(following, t, accepted)
+      type(following_t), intent(in) :: following
       real(wp), intent(in) :: t              !< time
       logical, intent(inout) :: accepted
-      real(wp), dimension(0:2, size(f%geometry%cylinders)) :: first, last
+      real(wp), dimension(0:2, size(following%geometry%cylinders)) :: first, last
       real(wp) :: away
       integer :: k
 
-      first = lengths_followed(f)
-      last = lengths_of(f%geometry, f%state)
-      if (f%convergence%singular) last(1:, :) = 0.0_wp
-      away = off_chord*f%state%excursion*f%geometry%equations%length
-      do k = 1, size(f%geometry%cylinders)
-         associate (bounds => f%geometry%cylinders(k)%bounds)
-            accepted = stays_within(bounds, first(:1, k), last(:1, k), t - f%t)
+      first = lengths_followed(following)
+      last = lengths_of(following%geometry, following%state)
+      if (following%convergence%singular) last(1:, :) = 0.0_wp
+      away = off_chord*following%state%excursion*following%geometry%equations%length
+      do k = 1, size(following%geometry%cylinders)
+         associate (bounds => following%geometry%cylinders(k)%bounds)
+            accepted = stays_within(bounds, first(:1, k), last(:1, k), t - following%t)
             if (accepted .and. away > 0.0_wp) accepted = min(first(0, k), last(0, k)) - away > bounds(1) &
                .and. max(first(0, k), last(0, k)) + away < bounds(2)
             if (.not. accepted) return
@@ -353,22 +355,22 @@ contains
    !> Adds to the Kantorovich ratio of the motion found last at `t` what the drives add by leaving their chords, or by
    !> not going as they did: a position predicted from their rates is then near another branch, perhaps. A bound at
    !> hardly any cost is enough mostly.
-   subroutine add_excursion(f, t)
-      type(following_t), intent(inout) :: f
+   subroutine add_excursion(following, t)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
       real(wp) :: ratio, change, away, off, h, first(3), last(3)
       integer :: i
 
-      associate (c => f%convergence, path => f%path)
-         ratio = c%kantorovich_ratio + c%growth*f%state%excursion
+      associate (c => following%convergence, path => following%path)
+         ratio = c%kantorovich_ratio + c%growth*following%state%excursion
          if (ratio > max_kantorovich_ratio) then
-            call examine(f%drives, path, f%t, t, change, away)
-            h = t - f%t
-            do i = 1, size(f%drives%unit)
-               first = drive_at(path, i, f%t)
+            call examine(following%drives, path, following%t, t, change, away)
+            h = t - following%t
+            do i = 1, size(following%drives%unit)
+               first = drive_at(path, i, following%t)
                last = drive_at(path, i, t)
                off = last(1) - first(1) - h*(first(2) + 0.5_wp*h*first(3))
-               if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, f%drives%unit(i)*abs(off))
+               if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, following%drives%unit(i)*abs(off))
             end do
             ratio = c%kantorovich_ratio + c%growth*away
          end if
@@ -378,23 +380,24 @@ contains
 
    !> A determinant has changed its sign in the substep. At change points beyond which the motion goes on that is none.
    !> Apart, since a plain substep has no room to make for the list.
-   subroutine pass_change_points(f, step)
-      type(following_t), intent(inout) :: f
+   subroutine pass_change_points(following, step)
+      type(following_t), intent(inout) :: following
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable :: list(:)
       type(branch_requests_t) :: before
 
-      before = f%branch_requests
-      call pass(f%blocks, f%geometry, f%path, f%history, f%work, f%state, f%branch_requests, f%convergence, list)
-      if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio) then
+      before = following%branch_requests
+      call pass(following%blocks, following%geometry, following%path, following%history, following%work, &
+         following%state, following%branch_requests, following%convergence, list)
+      if (following%convergence%keeps_signs .and. following%convergence%kantorovich_ratio <= max_kantorovich_ratio) then
          if (.not. allocated(step%passed)) allocate (step%passed(0))
          step%passed = [step%passed, list]
       else
-         if (size(list) > 0 .and. .not. f%convergence%keeps_signs) &
+         if (size(list) > 0 .and. .not. following%convergence%keeps_signs) &
             step%dead_end = pack(list, list%kind == diagnostic_dead_end)
-         f%convergence%keeps_signs = .false.
+         following%convergence%keeps_signs = .false.
          ! Close to a dead point it may only look like a change point: no card is used up there.
-         f%branch_requests = before
+         following%branch_requests = before
       end if
    end subroutine pass_change_points
 
@@ -407,59 +410,59 @@ contains
    end function passed_of
 
    !> The motion found last, at `t`, is now the one that is followed.
-   subroutine go_on_from(f, t)
-      type(following_t), intent(inout) :: f
+   subroutine go_on_from(following, t)
+      type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t
 
-      call accept(f%blocks, f%geometry, f%state, f%history)
-      f%t = t
-      f%follows = .true.
+      call accept(following%blocks, following%geometry, following%state, following%history)
+      following%t = t
+      following%follows = .true.
    end subroutine go_on_from
 
    !> The motion at the place where the `step` began is again the one that is followed: what comes after an instant
    !> without a motion is as if that had not been asked for. From close to a dead point no step back would be small
    !> enough.
-   subroutine go_back(f, step)
-      type(following_t), intent(inout) :: f
+   subroutine go_back(following, step)
+      type(following_t), intent(inout) :: following
       type(step_record_t), intent(in) :: step
 
       if (step%tries < 2) return
-      call follow_from(f, f%place)
-      f%branch_requests = f%place%branch_requests
+      call follow_from(following, following%place)
+      following%branch_requests = following%place%branch_requests
    end subroutine go_back
 
-   !> Follows the motion at the place `p` again; the motion found last stays.
-   subroutine follow_from(f, p)
-      type(following_t), intent(inout) :: f
-      type(place_t), intent(in) :: p
+   !> Follows the motion at the `place` again; the motion found last stays.
+   subroutine follow_from(following, place)
+      type(following_t), intent(inout) :: following
+      type(place_t), intent(in) :: place
 
-      f%t = p%t
-      f%history = p%history
+      following%t = place%t
+      following%history = place%history
    end subroutine follow_from
 
-   !> Notes in `p` where the motion is followed.
-   subroutine record_checkpoint(f, p)
-      type(following_t), intent(in) :: f
-      type(place_t), intent(inout) :: p
+   !> Notes in `place` where the motion is followed.
+   subroutine record_checkpoint(following, place)
+      type(following_t), intent(in) :: following
+      type(place_t), intent(inout) :: place
 
-      p%t = f%t
-      p%history = f%history
-      p%state = f%state
-      p%branch_requests = f%branch_requests
-      p%convergence = f%convergence
+      place%t = following%t
+      place%history = following%history
+      place%state = following%state
+      place%branch_requests = following%branch_requests
+      place%convergence = following%convergence
    end subroutine record_checkpoint
 
-   !> Follows the motion again from the place `p`, to which a later step can go back.
-   subroutine return_to(f, p)
-      type(following_t), intent(inout) :: f
-      type(place_t), intent(in) :: p
+   !> Follows the motion again from the `place`, to which a later step can go back.
+   subroutine return_to(following, place)
+      type(following_t), intent(inout) :: following
+      type(place_t), intent(in) :: place
 
-      f%t = p%t
-      f%history = p%history
-      f%state = p%state
-      f%branch_requests = p%branch_requests
-      f%convergence = p%convergence
-      call record_checkpoint(f, f%place)
+      following%t = place%t
+      following%history = place%history
+      following%state = place%state
+      following%branch_requests = place%branch_requests
+      following%convergence = place%convergence
+      call record_checkpoint(following, following%place)
    end subroutine return_to
 
    !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.

@@ -72,16 +72,16 @@ contains
    end function for_blocks
 
    !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks `b` have found one,
-   !> `s`, after the motions `h`. `convergence`: how the last try ended, or the first if none found the position of the
-   !> blocks; iterations are those of all tries. convergence%singular: the position has no velocities but of links that
-   !> drives alone move.
-   subroutine solve_all_links(dense, b, x, path, estimated, h, s, found, convergence)
+   !> `s`, after the motions `history`. `convergence`: how the last try ended, or the first if none found the position
+   !> of the blocks; iterations are those of all tries. convergence%singular: the position has no velocities but of
+   !> links that drives alone move.
+   subroutine solve_all_links(dense, b, x, path, estimated, history, s, found, convergence)
       type(dense_t), intent(inout) :: dense
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) see `recall`
-      type(history_t), intent(in) :: h
+      type(history_t), intent(in) :: history
       type(state_t), intent(in) :: s
       type(motion_t), intent(inout) :: found
       type(convergence_t), intent(out) :: convergence
@@ -102,11 +102,11 @@ contains
       ! It begins at the position that the blocks follow, corrected through its velocities and accelerations; at first
       ! at the deck's estimate.
       latest = s
-      call recall(b, x, path, h, estimated, latest)
+      call recall(b, x, path, history, estimated, latest)
       before = new_motion(size(there, 2))
       call move_links(x%chain, size(x%chain%links), latest, before, finite)
       w = 0.0_wp
-      if (h%filled > 0) w = order_weights(dense%order, found%t - h%t(0), 0.0_wp)
+      if (history%filled > 0) w = order_weights(dense%order, found%t - history%t(0), 0.0_wp)
       start = before%position + w(1)*before%velocity + w(2)*before%acceleration
       start(:2, :) = start(:2, :)/dense%system%length
 

@@ -20,41 +20,43 @@ module lane_elimination
 
 contains
 
-   !> Makes the second of two equations, with the Jacobian `a` (lanes, 4 by columns), idle: `u`, `d` and `v` (lanes, 2)
-   !> see `correct`. It stays so in all iterations.
-   pure subroutine make_room(u, a, d, v)
-      real(wp), intent(inout) :: u(width, max_order), a(width, max_order**2), d(width, max_order), v(width, max_order)
+   !> Makes the second of two equations, with the Jacobian `a` (lanes, 4 by columns), idle: `values`, `corrections` and
+   !> `right_sides` (lanes, 2) see `correct`. It stays so in all iterations.
+   pure subroutine make_room(values, a, corrections, right_sides)
+      real(wp), intent(inout) :: values(width, max_order), a(width, max_order**2), corrections(width, max_order), &
+         right_sides(width, max_order)
 
-      u(:, 2) = 0.0_wp
+      values(:, 2) = 0.0_wp
       a(:, 2:3) = 0.0_wp
       a(:, 4) = idle_pivot
-      d(:, 2) = 0.0_wp
-      v(:, 2) = 0.0_wp
+      corrections(:, 2) = 0.0_wp
+      right_sides(:, 2) = 0.0_wp
    end subroutine make_room
 
-   !> The corrections `d` (lanes, 2), to be subtracted from the values `u` (lanes, 2), of which the largest is at least
-   !> `coarse`: none where the residuals, `d` before, are of rounding, which have nothing to correct. `a` (lanes, 4 by
-   !> columns): the Jacobian, and then its factors. `exchanged`: 1 where the first row was exchanged with the second,
-   !> otherwise 0. `going`: above 0 where another iteration is needed. `v` (lanes, 2): other right-hand sides, then
-   !> their solutions.
-   pure subroutine correct(coarse, u, a, exchanged, d, v, going)
-      real(wp), intent(in) :: coarse(width), u(width, max_order)
-      real(wp), intent(inout) :: a(width, max_order**2), exchanged(width), d(width, max_order), v(width, max_order)
+   !> The `corrections` (lanes, 2), to be subtracted from the `values` (lanes, 2), of which the largest is at least
+   !> `coarse`: none where the residuals, `corrections` before, are of rounding, which have nothing to correct. `a`
+   !> (lanes, 4 by columns): the Jacobian, and then its factors. `exchanged`: 1 where the first row was exchanged with
+   !> the second, otherwise 0. `going`: above 0 where another iteration is needed. `right_sides` (lanes, 2): other
+   !> right-hand sides, then their solutions.
+   pure subroutine correct(coarse, values, a, exchanged, corrections, right_sides, going)
+      real(wp), intent(in) :: coarse(width), values(width, max_order)
+      real(wp), intent(inout) :: a(width, max_order**2), exchanged(width), corrections(width, max_order), &
+         right_sides(width, max_order)
       real(wp), intent(out) :: going(width)
       real(wp) :: p1, p2, q1, q2, x, y, first, second, residual, rounding
       integer :: l
 
       do l = 1, width
-         residual = max(abs(d(l, 1)), abs(d(l, 2)))
-         rounding = closed_level*max(coarse(l), abs(u(l, 1)), abs(u(l, 2)))
+         residual = max(abs(corrections(l, 1)), abs(corrections(l, 2)))
+         rounding = closed_level*max(coarse(l), abs(values(l, 1)), abs(values(l, 2)))
          p1 = merge(a(l, 2), a(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
          p2 = merge(a(l, 4), a(l, 3), abs(a(l, 2)) > abs(a(l, 1)))
          q1 = merge(a(l, 1), a(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
          q2 = merge(a(l, 3), a(l, 4), abs(a(l, 2)) > abs(a(l, 1)))
-         x = merge(d(l, 2), d(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
-         y = merge(d(l, 1), d(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
-         first = merge(v(l, 2), v(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
-         second = merge(v(l, 1), v(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
+         x = merge(corrections(l, 2), corrections(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
+         y = merge(corrections(l, 1), corrections(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
+         first = merge(right_sides(l, 2), right_sides(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
+         second = merge(right_sides(l, 1), right_sides(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
          exchanged(l) = merge(1.0_wp, 0.0_wp, abs(a(l, 2)) > abs(a(l, 1)))
          p1 = p1 + merge(0.0_wp, no_pivot, abs(p1) > 0.0_wp)
          q1 = q1*(1.0_wp/p1)
@@ -67,29 +69,29 @@ contains
          x = merge(0.0_wp, x, residual <= rounding)
          y = (merge(0.0_wp, y, residual <= rounding) - x*q1)/q2
          x = (x - y*p2)/p1
-         d(l, 1) = x
-         d(l, 2) = y
+         corrections(l, 1) = x
+         corrections(l, 2) = y
          second = (second - first*q1)/q2
-         v(l, 2) = second
-         v(l, 1) = (first - second*p2)/p1
-         going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l, 1) - x))) &
-            + merge(0.0_wp, 1.0_wp, abs(y) <= step_tolerance*max(coarse(l), abs(u(l, 2) - y)))
+         right_sides(l, 2) = second
+         right_sides(l, 1) = (first - second*p2)/p1
+         going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(values(l, 1) - x))) &
+            + merge(0.0_wp, 1.0_wp, abs(y) <= step_tolerance*max(coarse(l), abs(values(l, 2) - y)))
       end do
    end subroutine correct
 
-   !> Solves the equations with the factors `a` for the right-hand sides `b` (lanes, 2), in their place.
-   pure subroutine substitute(a, exchanged, b)
+   !> Solves the equations with the factors `a` for the right-hand sides `right_sides` (lanes, 2), in their place.
+   pure subroutine substitute(a, exchanged, right_sides)
       real(wp), intent(in) :: a(width, max_order**2), exchanged(width)
-      real(wp), intent(inout) :: b(width, max_order)
+      real(wp), intent(inout) :: right_sides(width, max_order)
       real(wp) :: first, second
       integer :: l
 
       do l = 1, width
-         first = merge(b(l, 2), b(l, 1), exchanged(l) > 0.5_wp)
-         second = merge(b(l, 1), b(l, 2), exchanged(l) > 0.5_wp)
+         first = merge(right_sides(l, 2), right_sides(l, 1), exchanged(l) > 0.5_wp)
+         second = merge(right_sides(l, 1), right_sides(l, 2), exchanged(l) > 0.5_wp)
          second = (second - first*a(l, 2))/a(l, 4)
-         b(l, 2) = second
-         b(l, 1) = (first - second*a(l, 3))/a(l, 1)
+         right_sides(l, 2) = second
+         right_sides(l, 1) = (first - second*a(l, 3))/a(l, 1)
       end do
    end subroutine substitute
 

@@ -20,63 +20,67 @@ module lane_equations
 contains
 
    !> Cosine and sine of unknown `i`, if it is an angle.
-   pure subroutine set_lane_direction(l, i)
-      type(lanes_t), intent(inout) :: l
+   pure subroutine set_lane_direction(lanes, i)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i
 
-      if (i <= l%blocks%orientations) call sines(l%u(i)%value, l%u(i)%c, l%u(i)%s)
+      if (i <= lanes%blocks%orientations) call sines(lanes%u(i)%value, lanes%u(i)%c, lanes%u(i)%s)
    end subroutine set_lane_direction
 
    !> Solves block `i`, a drive's own unknown.
-   pure subroutine find_lane_direct(l, i)
-      type(lanes_t), intent(inout) :: l
+   pure subroutine find_lane_direct(lanes, i)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i
 
-      associate (b => l%blocks, first_row => l%blocks%list(i)%first_row)
+      associate (b => lanes%blocks, first_row => lanes%blocks%list(i)%first_row)
          associate (u => b%unknown(b%list(i)%first))
-            call find_direct(b%rows(first_row), l%rows(first_row), l%drive, l%u(b%rows(first_row)%other), l%u(u))
-            call set_lane_direction(l, u)
+            call find_direct(b%rows(first_row), lanes%rows(first_row), lanes%drive, lanes%u(b%rows(first_row)%other), &
+               lanes%u(u))
+            call set_lane_direction(lanes, u)
          end associate
       end associate
    end subroutine find_lane_direct
 
    !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
-   pure subroutine find_lane_known(l, i)
-      type(lanes_t), intent(inout) :: l
+   pure subroutine find_lane_known(lanes, i)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i
 
-      associate (b => l%blocks, block => l%blocks%list(i))
-         call find_known(block%first_loop, block%last_loop, b%loops, l%numbers, b%body_vectors, l%d, l%u, l%loop)
+      associate (b => lanes%blocks, block => lanes%blocks%list(i))
+         call find_known(block%first_loop, block%last_loop, b%loops, lanes%numbers, b%body_vectors, lanes%d, lanes%u, &
+            lanes%loop)
       end associate
    end subroutine find_lane_known
 
-   !> Jacobian `a` (lanes, n*n by columns) and residual `r` (lanes, n) of block `i`, and the right-hand side `v`
-   !> (lanes, n) for the velocities.
-   pure subroutine assemble_lanes(l, i, n, a, r, v)
-      type(lanes_t), intent(inout) :: l
+   !> Jacobian `a` (lanes, n*n by columns) and residual `residuals` (lanes, n) of block `i`, and the right-hand side
+   !> `right_side` (lanes, n) for the velocities.
+   pure subroutine assemble_lanes(lanes, i, n, a, residuals, right_side)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i, n
-      real(wp), intent(inout) :: a(width, n*n), r(width, n), v(width, n)
+      real(wp), intent(inout) :: a(width, n*n), residuals(width, n), right_side(width, n)
 
-      associate (b => l%blocks)
-         call assemble(b%list(i), l%block(i)%has_right_sides, b%loops, l%numbers, b%body_vectors, l%d, b%slides, l%e, &
-            b%rows, l%rows, l%drive, l%u, l%own, l%guide, l%loop, a, r, v)
+      associate (b => lanes%blocks)
+         call assemble(b%list(i), lanes%block(i)%has_right_sides, b%loops, lanes%numbers, b%body_vectors, lanes%d, &
+            b%slides, lanes%e, b%rows, lanes%rows, lanes%drive, lanes%u, lanes%own, lanes%guide, lanes%loop, a, &
+            residuals, right_side)
       end associate
    end subroutine assemble_lanes
 
-   !> Right-hand side `v` (lanes, n) for the accelerations of block `i`, once the velocities are known, with the vectors
-   !> of the last `assemble_lanes`.
-   pure subroutine lane_accelerations(l, i, n, v)
-      type(lanes_t), intent(in) :: l
+   !> Right-hand side `right_side` (lanes, n) for the accelerations of block `i`, once the velocities are known, with
+   !> the vectors of the last `assemble_lanes`.
+   pure subroutine lane_accelerations(lanes, i, n, right_side)
+      type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: i, n
-      real(wp), intent(inout) :: v(width, n)
+      real(wp), intent(inout) :: right_side(width, n)
       integer :: m
 
-      associate (b => l%blocks)
+      associate (b => lanes%blocks)
          do m = b%list(i)%first_loop, b%list(i)%last_loop
-            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, l%u, l%own, l%guide, l%loop(m), v)
+            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, lanes%u, lanes%own, lanes%guide, &
+               lanes%loop(m), right_side)
          end do
-         if (l%block(i)%has_right_sides) &
-            call add_drives(b%list(i)%first_row, b%list(i)%last_row, b%rows, 2, l%drive, v)
+         if (lanes%block(i)%has_right_sides) &
+            call add_drives(b%list(i)%first_row, b%list(i)%last_row, b%rows, 2, lanes%drive, right_side)
       end associate
    end subroutine lane_accelerations
 

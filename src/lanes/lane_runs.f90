@@ -46,30 +46,30 @@ module lane_runs
 
 contains
 
-   !> Makes `r`, whose analysis r%s has the variant r%m, ready for its first instant.
-   subroutine begin_run(r)
-      type(lane_run_t), intent(inout) :: r
+   !> Makes `run`, whose analysis r%s has the variant r%m, ready for its first instant.
+   subroutine begin_run(run)
+      type(lane_run_t), intent(inout) :: run
 
-      call new_answers(r%s, .false., r%asked)
-      r%at = -1
-      r%last = instant_count(r%m) - 1
-      r%patience = first_patience
-      r%is_over = .false.
-      r%in_simd_lane = .false.
-      r%counts = counts_t()
+      call new_answers(run%s, .false., run%asked)
+      run%at = -1
+      run%last = instant_count(run%m) - 1
+      run%patience = first_patience
+      run%is_over = .false.
+      run%in_simd_lane = .false.
+      run%counts = counts_t()
    end subroutine begin_run
 
    !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
-   subroutine run_lanes(runs, l)
+   subroutine run_lanes(runs, lanes)
       type(lane_run_t), intent(inout) :: runs(:)
-      type(lanes_t), intent(inout) :: l
+      type(lanes_t), intent(inout) :: lanes
       type(step_check_t) :: j
       real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
       logical :: in_simd_lane, searches
 
       do i = 1, size(runs)
-         call hand_to_lane(runs(i), l, i)
+         call hand_to_lane(runs(i), lanes, i)
       end do
       ! Lanes that no variant has do what one of them does: their numbers must be numbers.
       if (any(runs%in_simd_lane)) then
@@ -77,14 +77,14 @@ contains
          do i = 1, width
             in_simd_lane = .false.
             if (i <= size(runs)) in_simd_lane = runs(i)%in_simd_lane
-            if (.not. in_simd_lane) call load_run(runs(k), l, i, in_simd_lane)
+            if (.not. in_simd_lane) call load_run(runs(k), lanes, i, in_simd_lane)
          end do
       end if
       do while (any(runs%in_simd_lane) .and. signal_received() == 0)
          ! Step k ends at t0 + span (at + k)/all_steps, as `instant` has it. Lanes without a variant stay where they
          ! are.
          steps = huge(steps)
-         t0 = l%t(:, l%slot(0))
+         t0 = lanes%t(:, lanes%slot(0))
          span = 0.0_wp
          at = 0.0_wp
          all_steps = 1.0_wp
@@ -102,169 +102,169 @@ contains
          end do
          do k = 1, steps
             t = t0 + span*(at + k)/all_steps
-            call solve_lanes(l, t, j)
+            call solve_lanes(lanes, t, j)
             if (k == steps .or. dot_product(j%refused, goes_on) > 0.5_wp .or. signal_received() > 0) exit
-            call accept_lanes(l, t)
+            call accept_lanes(lanes, t)
          end do
          do i = 1, size(runs)
             if (.not. runs(i)%in_simd_lane) cycle
             call count_instants(runs(i), k - 1)
-            call look_at_step(runs(i), l, i, j, t(i))
+            call look_at_step(runs(i), lanes, i, j, t(i))
          end do
-         call accept_lanes(l, t)
+         call accept_lanes(lanes, t)
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
                if (r%in_simd_lane .and. r%asked%wants_extremes) then
                   searches = is_searched(x, r%s, 1)
-                  if (searches) call give_back(r, l, i)
+                  if (searches) call give_back(r, lanes, i)
                   call search_instant(x, r%s, 1, r%at, searches)
                end if
             end associate
-            call hand_to_lane(runs(i), l, i)
+            call hand_to_lane(runs(i), lanes, i)
          end do
       end do
    end subroutine run_lanes
 
-   !> Takes the step of `r` to the time `t` that lane `i` has made, unless the engine must make it. That is so if it is
-   !> refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the last
-   !> instant, of which they take more.
-   subroutine look_at_step(r, l, i, j, t)
-      type(lane_run_t), intent(inout) :: r
-      type(lanes_t), intent(inout) :: l
+   !> Takes the step of `run` to the time `t` that lane `i` has made, unless the engine must make it. That is so if it
+   !> is refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the
+   !> last instant, of which they take more.
+   subroutine look_at_step(run, lanes, i, check, t)
+      type(lane_run_t), intent(inout) :: run
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i               !< its number
-      type(step_check_t), intent(in) :: j
+      type(step_check_t), intent(in) :: check
       real(wp), intent(inout) :: t           !< time
       logical :: is_refused, counts
 
-      is_refused = j%refused(i) > 0.5_wp
-      if (is_refused) r%patience = 2*r%patience
+      is_refused = check%refused(i) > 0.5_wp
+      if (is_refused) run%patience = 2*run%patience
       counts = .not. is_refused
-      if (r%asked%wants_extremes) then
-         counts = counts .and. j%correction(i) <= fine_prediction .and. r%at + 1 < r%m%steps
-         if (counts) call watch_lane(r, l, i, t, counts)
-      else if (r%at + 1 == r%m%steps) then
-         counts = counts .and. r%at + 1 == r%last
+      if (run%asked%wants_extremes) then
+         counts = counts .and. check%correction(i) <= fine_prediction .and. run%at + 1 < run%m%steps
+         if (counts) call watch_lane(run, lanes, i, t, counts)
+      else if (run%at + 1 == run%m%steps) then
+         counts = counts .and. run%at + 1 == run%last
       end if
       if (counts) then
-         call count_instants(r, 1)
+         call count_instants(run, 1)
          return
       end if
 
-      call give_back(r, l, i)
-      r%in_simd_lane = .false.
-      call by_engine(r, r%at + merge(r%patience, 1, is_refused))
-      call keep_lane(l, i)
-      t = l%t(i, l%slot(0))
+      call give_back(run, lanes, i)
+      run%in_simd_lane = .false.
+      call by_engine(run, run%at + merge(run%patience, 1, is_refused))
+      call keep_lane(lanes, i)
+      t = lanes%t(i, lanes%slot(0))
    end subroutine look_at_step
 
-   !> The next `n` instants of `r` are solved and regular.
-   pure subroutine count_instants(r, n)
-      type(lane_run_t), intent(inout) :: r
+   !> The next `n` instants of `run` are solved and regular.
+   pure subroutine count_instants(run, n)
+      type(lane_run_t), intent(inout) :: run
       integer, intent(in) :: n               !< at least 0
 
-      r%at = r%at + n
-      r%counts%solved = r%counts%solved + n
-      r%is_over = r%at == r%last
-      r%in_simd_lane = .not. r%is_over
+      run%at = run%at + n
+      run%counts%solved = run%counts%solved + n
+      run%is_over = run%at == run%last
+      run%in_simd_lane = .not. run%is_over
    end subroutine count_instants
 
-   !> Lane `i` takes over `r`, unless it has it or `r` is over, as soon as it can; until then the engine solves it.
-   subroutine hand_to_lane(r, l, i)
-      type(lane_run_t), intent(inout) :: r
-      type(lanes_t), intent(inout) :: l
+   !> Lane `i` takes over `run`, unless it has it or `run` is over, as soon as it can; until then the engine solves it.
+   subroutine hand_to_lane(run, lanes, i)
+      type(lane_run_t), intent(inout) :: run
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i               !< its number
 
-      do while (.not. (r%is_over .or. r%in_simd_lane) .and. signal_received() == 0)
-         call load_run(r, l, i, r%in_simd_lane)
-         if (r%in_simd_lane) return
-         if (r%at >= 2) r%patience = 2*r%patience
-         call by_engine(r, r%at + r%patience)
+      do while (.not. (run%is_over .or. run%in_simd_lane) .and. signal_received() == 0)
+         call load_run(run, lanes, i, run%in_simd_lane)
+         if (run%in_simd_lane) return
+         if (run%at >= 2) run%patience = 2*run%patience
+         call by_engine(run, run%at + run%patience)
       end do
    end subroutine hand_to_lane
 
-   !> Loads lane `i` with the motions of `r`, if they are such as lanes need: `is_done`. They are those of one
+   !> Loads lane `i` with the motions of `run`, if they are such as lanes need: `is_done`. They are those of one
    !> mechanism by METHOD NEWTON, whose last instant has all of its motion.
-   subroutine load_run(r, l, i, is_done)
-      type(lane_run_t), intent(inout) :: r
-      type(lanes_t), intent(inout) :: l
+   subroutine load_run(run, lanes, i, is_done)
+      type(lane_run_t), intent(inout) :: run
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i               !< its number
       logical, intent(out) :: is_done        !< the lane has them
       real(wp) :: step, away
 
       is_done = .false.
-      if (r%at < 2 .or. r%at >= r%m%steps .or. size(r%s%list) > 1 .or. r%m%method /= method_newton) return
-      if (r%s%now%motions(1)%known < 2 .or. r%s%now%motions(1)%mark /= flag_none) return
-      step = instant(r%m, r%at + 1) - instant(r%m, r%at)
-      associate (a => r%s%list(1))
+      if (run%at < 2 .or. run%at >= run%m%steps .or. size(run%s%list) > 1 .or. run%m%method /= method_newton) return
+      if (run%s%now%motions(1)%known < 2 .or. run%s%now%motions(1)%mark /= flag_none) return
+      step = instant(run%m, run%at + 1) - instant(run%m, run%at)
+      associate (a => run%s%list(1))
          call come_back(a)
-         if (.not. a%follows .or. any(a%limits%known) .or. r%s%now%motions(1)%rests) return
+         if (.not. a%follows .or. any(a%limits%known) .or. run%s%now%motions(1)%rests) return
          call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
          if (.not. is_covered(a%following_t)) return
          if (.not. is_even(a%history, step)) return
-         if (.not. allocated(l%moving)) call make_lanes(l, a%following_t)
-         call load_lane(l, i, a%following_t, is_done)
-         l%excursion(i) = away
+         if (.not. allocated(lanes%moving)) call make_lanes(lanes, a%following_t)
+         call load_lane(lanes, i, a%following_t, is_done)
+         lanes%excursion(i) = away
       end associate
    end subroutine load_run
 
-   !> Solves the next instants of `r` by the engine, up to number `last` or the last that there is.
-   subroutine by_engine(r, last)
-      type(lane_run_t), intent(inout) :: r
+   !> Solves the next instants of `run` by the engine, up to number `last` or the last that there is.
+   subroutine by_engine(run, last)
+      type(lane_run_t), intent(inout) :: run
       integer, intent(in) :: last            !< the number of an instant
       type(finished_row_t) :: no_rows(0)
       integer :: k
 
-      do k = r%at + 1, min(last, r%last)
-         call advance_set(r%s, instant(r%m, k))
-         call record_flag(r%counts, r%s)
-         call update_answers(r%asked, r%s, no_rows, k, .true.)
-         r%at = k
+      do k = run%at + 1, min(last, run%last)
+         call advance_set(run%s, instant(run%m, k))
+         call record_flag(run%counts, run%s)
+         call update_answers(run%asked, run%s, no_rows, k, .true.)
+         run%at = k
          if (signal_received() > 0) return
       end do
-      r%is_over = r%at == r%last
+      run%is_over = run%at == run%last
    end subroutine by_engine
 
-   !> Gives the EXTREMES of `r` the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in range,
-   !> and none of their digits is in doubt.
-   subroutine watch_lane(r, l, i, t, is_done)
-      type(lane_run_t), intent(inout) :: r
-      type(lanes_t), intent(in) :: l
+   !> Gives the EXTREMES of `run` the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in
+   !> range, and none of their digits is in doubt.
+   subroutine watch_lane(run, lanes, i, t, is_done)
+      type(lane_run_t), intent(inout) :: run
+      type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: i               !< its number
       real(wp), intent(in) :: t              !< time
       logical, intent(out) :: is_done        !< the motion is taken
       integer :: u, k
 
-      call come_back(r%s%list(1))
-      associate (s => r%s%list(1)%state)
+      call come_back(run%s%list(1))
+      associate (s => run%s%list(1)%state)
          do u = 1, ubound(s%u, 1)
             associate (x => s%u(u))
-               x%value = l%u(u)%value(i)
-               x%rate = l%u(u)%rate(i)
-               x%acceleration = l%u(u)%acceleration(i)
-               x%c = l%u(u)%c(i)
-               x%s = l%u(u)%s(i)
+               x%value = lanes%u(u)%value(i)
+               x%rate = lanes%u(u)%rate(i)
+               x%acceleration = lanes%u(u)%acceleration(i)
+               x%c = lanes%u(u)%c(i)
+               x%s = lanes%u(u)%s(i)
             end associate
          end do
-         do k = 1, size(l%moving)
-            s%jacobian(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
+         do k = 1, size(lanes%moving)
+            s%jacobian(lanes%moving(k))%pivot = lanes%block(lanes%moving(k))%pivot(i, lanes%slot(depth - 1))
          end do
       end associate
-      call accept_state(r%s, t, is_done)
-      if (is_done) call find_next(r%asked%extremes, r%s, 1, t, .false.)
+      call accept_state(run%s, t, is_done)
+      if (is_done) call find_next(run%asked%extremes, run%s, 1, t, .false.)
    end subroutine watch_lane
 
-   !> Gives the engine of `r` the motions of lane `i`, for the next instants or for times between.
-   subroutine give_back(r, l, i)
-      type(lane_run_t), intent(inout) :: r
-      type(lanes_t), intent(in) :: l
+   !> Gives the engine of `run` the motions of lane `i`, for the next instants or for times between.
+   subroutine give_back(run, lanes, i)
+      type(lane_run_t), intent(inout) :: run
+      type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: i               !< its number
 
-      associate (a => r%s%list(1))
+      associate (a => run%s%list(1))
          call come_back(a)
-         call unload_lane(l, i, a%following_t)
-         r%s%is_in_lane = .false.
+         call unload_lane(lanes, i, a%following_t)
+         run%s%is_in_lane = .false.
          a%t = a%history%t(0)
       end associate
    end subroutine give_back

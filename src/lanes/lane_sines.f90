@@ -31,25 +31,25 @@ module lane_sines
 
 contains
 
-   !> Cosine `c` and sine `s` of the angles `x`, in rad, all at most `max_angle`. Other kinds of reals than double take
-   !> the run-time library's.
-   pure subroutine sines(x, c, s)
-      real(wp), intent(in) :: x(width)
-      real(wp), intent(out) :: c(width), s(width)
+   !> Cosine `cosine_of` and sine `sine_of` of the `angles`, in rad, all at most `max_angle`. Other kinds of reals than
+   !> double take the run-time library's.
+   pure subroutine sines(angles, cosine_of, sine_of)
+      real(wp), intent(in) :: angles(width)
+      real(wp), intent(out) :: cosine_of(width), sine_of(width)
       real(wp) :: n, t, u, r, rest, z, half, sine, cosine
       integer(bits) :: quadrant, of_sine, of_cosine, exchanged
       integer :: l
 
       if (digits(1.0_wp) /= 53) then
-         c = cos(x)
-         s = sin(x)
+         cosine_of = cos(angles)
+         sine_of = sin(angles)
          return
       end if
       do l = 1, width
-         n = x(l)*two_over_pi + whole
+         n = angles(l)*two_over_pi + whole
          quadrant = transfer(n, quadrant)
          n = n - whole
-         t = x(l) - n*part_1
+         t = angles(l) - n*part_1
          u = n*part_2
          r = t - u
          ! What rounding has left out of r.
@@ -66,8 +66,9 @@ contains
          of_sine = transfer(sine, of_sine)
          of_cosine = transfer(cosine, of_cosine)
          exchanged = iand(ieor(of_sine, of_cosine), -iand(quadrant, 1_bits))
-         s(l) = transfer(ieor(ieor(of_sine, exchanged), ishft(iand(quadrant, 2_bits), sign_at - 1)), z)
-         c(l) = transfer(ieor(ieor(of_cosine, exchanged), ishft(iand(quadrant + 1_bits, 2_bits), sign_at - 1)), z)
+         sine_of(l) = transfer(ieor(ieor(of_sine, exchanged), ishft(iand(quadrant, 2_bits), sign_at - 1)), z)
+         cosine_of(l) = transfer(ieor(ieor(of_cosine, exchanged), ishft(iand(quadrant + 1_bits, 2_bits), &
+            sign_at - 1)), z)
       end do
    end subroutine sines
 end module lane_sines

@@ -56,131 +56,132 @@ module lane_state
 
 contains
 
-   !> The lanes can take over from `f`: its blocks are of at most `max_order` unknowns, as many as equations, and it
-   !> follows three motions at equal steps.
-   pure logical function is_covered(f)
-      type(following_t), intent(in) :: f
+   !> The lanes can take over from `following`: its blocks are of at most `max_order` unknowns, as many as equations,
+   !> and it follows three motions at equal steps.
+   pure logical function is_covered(following)
+      type(following_t), intent(in) :: following
       integer :: k
 
-      is_covered = digits(1.0_wp) == 53 .and. f%blocks%redundant == 0 .and. size(f%history%predicted) > 0
+      is_covered = digits(1.0_wp) == 53 .and. following%blocks%redundant == &
+         0 .and. size(following%history%predicted) > 0
       if (.not. is_covered) return
-      is_covered = f%history%filled == 3 .and. f%history%order == own_predictor &
-         .and. .not. f%geometry%tolerance > 0.0_wp
-      do k = 1, size(f%blocks%moving)
-         associate (shape => f%blocks%list(f%blocks%moving(k))%shape)
+      is_covered = following%history%filled == 3 .and. following%history%order == own_predictor &
+         .and. .not. following%geometry%tolerance > 0.0_wp
+      do k = 1, size(following%blocks%moving)
+         associate (shape => following%blocks%list(following%blocks%moving(k))%shape)
             is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
          end associate
       end do
    end function is_covered
 
-   !> Makes lanes for mechanisms with the structure of `f`.
-   subroutine make_lanes(l, f)
-      type(lanes_t), intent(out) :: l
-      type(following_t), intent(in) :: f
+   !> Makes lanes for mechanisms with the structure of `following`.
+   subroutine make_lanes(lanes, following)
+      type(lanes_t), intent(out) :: lanes
+      type(following_t), intent(in) :: following
 
-      l%blocks = f%blocks
-      l%moving = f%blocks%moving
-      l%predicted = f%history%predicted
-      associate (b => l%blocks, drives => size(f%path%laws))
-         allocate (l%polynomial(width, 3, drives), l%unit(width, drives))
-         allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
-         allocate (l%block(size(b%list)))
-         allocate (l%past(width, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
-         allocate (l%u(0:b%unknowns), source=unknown_t(0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp))
+      lanes%blocks = following%blocks
+      lanes%moving = following%blocks%moving
+      lanes%predicted = following%history%predicted
+      associate (b => lanes%blocks, drives => size(following%path%laws))
+         allocate (lanes%polynomial(width, 3, drives), lanes%unit(width, drives))
+         allocate (lanes%drive(width, 0:2, 0:drives), source=0.0_wp)
+         allocate (lanes%block(size(b%list)))
+         allocate (lanes%past(width, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
+         allocate (lanes%u(0:b%unknowns), source=unknown_t(0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp))
          associate (none => vector_t(0.0_wp, 0.0_wp))
-            allocate (l%rows(size(b%rows)), source=row_numbers_t(0.0_wp, 1.0_wp))
-            allocate (l%numbers(size(b%loops)), source=loop_numbers_t(none, none, 1.0_wp, 1.0_wp))
-            allocate (l%d(size(b%body_vectors)), l%own(size(b%body_vectors)), l%e(size(b%slides)), &
-               l%guide(size(b%slides)), source=none)
-            allocate (l%loop(size(b%loops)), source=loop_state_t(none, none, none))
+            allocate (lanes%rows(size(b%rows)), source=row_numbers_t(0.0_wp, 1.0_wp))
+            allocate (lanes%numbers(size(b%loops)), source=loop_numbers_t(none, none, 1.0_wp, 1.0_wp))
+            allocate (lanes%d(size(b%body_vectors)), lanes%own(size(b%body_vectors)), lanes%e(size(b%slides)), &
+               lanes%guide(size(b%slides)), source=none)
+            allocate (lanes%loop(size(b%loops)), source=loop_state_t(none, none, none))
          end associate
       end associate
    end subroutine make_lanes
 
-   !> Fills `lane` with the mechanism and the motions of `f`, a variant of that for which `l` was made; `is_alike` is
-   !> false if its numbers put other body vectors or slides into the equations. What follows from the time step is the
-   !> caller's.
-   subroutine load_lane(l, lane, f, is_alike)
-      type(lanes_t), intent(inout) :: l
+   !> Fills `lane` with the mechanism and the motions of `following`, a variant of that for which `lanes` was made;
+   !> `is_alike` is false if its numbers put other body vectors or slides into the equations. What follows from the time
+   !> step is the caller's.
+   subroutine load_lane(lanes, lane, following, is_alike)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: lane
-      type(following_t), intent(in) :: f
+      type(following_t), intent(in) :: following
       logical, intent(out) :: is_alike
       integer :: i, k
 
-      associate (a => l%blocks%equations, b => f%blocks%equations)
+      associate (a => lanes%blocks%equations, b => following%blocks%equations)
          ! What cannot be solved has none.
          is_alike = a%count == b%count
          if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
       end associate
       if (.not. is_alike) return
-      l%path(lane) = f%path
-      l%is_polynomial = .true.
-      do i = 1, size(f%path%laws)
-         associate (law => f%path%laws(i))
-            l%polynomial(lane, :, i) = law%polynomial
-            if (allocated(law%terms)) l%is_polynomial = l%is_polynomial .and. size(law%terms) == 0
+      lanes%path(lane) = following%path
+      lanes%is_polynomial = .true.
+      do i = 1, size(following%path%laws)
+         associate (law => following%path%laws(i))
+            lanes%polynomial(lane, :, i) = law%polynomial
+            if (allocated(law%terms)) lanes%is_polynomial = lanes%is_polynomial .and. size(law%terms) == 0
          end associate
-         l%unit(lane, i) = f%path%unit(i)
+         lanes%unit(lane, i) = following%path%unit(i)
       end do
-      associate (x => f%geometry, u => f%state%u)
-         l%block%lipschitz(lane) = x%blocks%lipschitz
-         l%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
-         l%block%has_right_sides = l%block%has_right_sides .or. x%blocks%has_right_sides
-         l%rows%constant(lane) = x%rows%constant
-         l%d%x(lane) = x%d%x
-         l%d%y(lane) = x%d%y
-         l%e%x(lane) = x%e%x
-         l%e%y(lane) = x%e%y
-         l%numbers%ground%x(lane) = x%loops%ground%x
-         l%numbers%ground%y(lane) = x%loops%ground%y
-         l%numbers%direction%x(lane) = x%loops%direction%x
-         l%numbers%direction%y(lane) = x%loops%direction%y
-         l%u%value(lane) = u%value
-         l%u%rate(lane) = u%rate
-         l%u%acceleration(lane) = u%acceleration
-         l%u%c(lane) = u%c
-         l%u%s(lane) = u%s
+      associate (x => following%geometry, u => following%state%u)
+         lanes%block%lipschitz(lane) = x%blocks%lipschitz
+         lanes%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
+         lanes%block%has_right_sides = lanes%block%has_right_sides .or. x%blocks%has_right_sides
+         lanes%rows%constant(lane) = x%rows%constant
+         lanes%d%x(lane) = x%d%x
+         lanes%d%y(lane) = x%d%y
+         lanes%e%x(lane) = x%e%x
+         lanes%e%y(lane) = x%e%y
+         lanes%numbers%ground%x(lane) = x%loops%ground%x
+         lanes%numbers%ground%y(lane) = x%loops%ground%y
+         lanes%numbers%direction%x(lane) = x%loops%direction%x
+         lanes%numbers%direction%y(lane) = x%loops%direction%y
+         lanes%u%value(lane) = u%value
+         lanes%u%rate(lane) = u%rate
+         lanes%u%acceleration(lane) = u%acceleration
+         lanes%u%c(lane) = u%c
+         lanes%u%s(lane) = u%s
       end associate
 
       ! Of motions before the latest there are no values.
       do k = 0, 2
-         associate (slot => l%slot(k))
-            l%t(lane, slot) = f%history%t(k)
-            do i = 1, size(l%predicted)
-               associate (past => f%history%past(l%predicted(i)))
-                  l%past(lane, :, slot, l%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
+         associate (slot => lanes%slot(k))
+            lanes%t(lane, slot) = following%history%t(k)
+            do i = 1, size(lanes%predicted)
+               associate (past => following%history%past(lanes%predicted(i)))
+                  lanes%past(lane, :, slot, lanes%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
                end associate
             end do
          end associate
       end do
-      l%block%sign_of(lane) = f%history%jacobian%sign_of
-      l%block%pivot(lane, l%slot(0)) = f%history%jacobian%pivot
-      l%block%inverse(lane, l%slot(0)) = f%history%jacobian%inverse
+      lanes%block%sign_of(lane) = following%history%jacobian%sign_of
+      lanes%block%pivot(lane, lanes%slot(0)) = following%history%jacobian%pivot
+      lanes%block%inverse(lane, lanes%slot(0)) = following%history%jacobian%inverse
    end subroutine load_lane
 
-   !> Gives `f` the latest motion of `lane`: as the one that it follows.
-   subroutine unload_lane(l, lane, f)
-      type(lanes_t), intent(in) :: l
+   !> Gives `following` the latest motion of `lane`: as the one that it follows.
+   subroutine unload_lane(lanes, lane, following)
+      type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: lane
-      type(following_t), intent(inout) :: f
+      type(following_t), intent(inout) :: following
       integer :: k, i, u
 
       do k = 0, 2
-         associate (slot => l%slot(k))
-            f%history%t(k) = l%t(lane, slot)
-            do i = 1, size(l%predicted)
-               u = l%predicted(i)
-               if (k == 0) f%history%past(u)%value = l%past(lane, 1, slot, u)
-               f%history%past(u)%rate(k) = l%past(lane, 2, slot, u)
-               f%history%past(u)%acceleration(k) = l%past(lane, 3, slot, u)
+         associate (slot => lanes%slot(k))
+            following%history%t(k) = lanes%t(lane, slot)
+            do i = 1, size(lanes%predicted)
+               u = lanes%predicted(i)
+               if (k == 0) following%history%past(u)%value = lanes%past(lane, 1, slot, u)
+               following%history%past(u)%rate(k) = lanes%past(lane, 2, slot, u)
+               following%history%past(u)%acceleration(k) = lanes%past(lane, 3, slot, u)
             end do
          end associate
       end do
-      f%history%filled = 3
-      associate (slot => l%slot(0))
-         f%history%jacobian%sign_of = nint(l%block%sign_of(lane))
-         f%history%jacobian%pivot = l%block%pivot(lane, slot)
-         f%history%jacobian%inverse = l%block%inverse(lane, slot)
+      following%history%filled = 3
+      associate (slot => lanes%slot(0))
+         following%history%jacobian%sign_of = nint(lanes%block%sign_of(lane))
+         following%history%jacobian%pivot = lanes%block%pivot(lane, slot)
+         following%history%jacobian%inverse = lanes%block%inverse(lane, slot)
       end associate
    end subroutine unload_lane
 end module lane_state

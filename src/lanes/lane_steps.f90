@@ -30,173 +30,175 @@ module lane_steps
 contains
 
    !> Solves all lanes at the times `t`, each a step after its latest motion.
-   subroutine solve_lanes(l, t, j)
-      type(lanes_t), intent(inout) :: l
+   subroutine solve_lanes(lanes, t, check)
+      type(lanes_t), intent(inout) :: lanes
       real(wp), intent(in) :: t(width)
-      type(step_check_t), intent(out) :: j
+      type(step_check_t), intent(out) :: check
       integer :: k, i
 
-      call set_drives(l, t)
-      call predict_lanes(l, t, j)
-      do k = 1, size(l%moving)
-         i = l%moving(k)
-         if (l%blocks%list(i)%direct) then
-            call find_lane_direct(l, i)
+      call set_drives(lanes, t)
+      call predict_lanes(lanes, t, check)
+      do k = 1, size(lanes%moving)
+         i = lanes%moving(k)
+         if (lanes%blocks%list(i)%direct) then
+            call find_lane_direct(lanes, i)
          else
-            call solve_block(l, i, l%blocks%list(i)%shape%n, j)
+            call solve_block(lanes, i, lanes%blocks%list(i)%shape%n, check)
          end if
       end do
       ! Comparisons that are false where something is no number.
-      j%refused = j%refused + merge(0.0_wp, 1.0_wp, j%correction <= largest_correction) &
-         + merge(0.0_wp, 1.0_wp, j%ratio + j%growth*l%excursion <= max_kantorovich_ratio)
+      check%refused = check%refused + merge(0.0_wp, 1.0_wp, check%correction <= largest_correction) &
+         + merge(0.0_wp, 1.0_wp, check%ratio + check%growth*lanes%excursion <= max_kantorovich_ratio)
    end subroutine solve_lanes
 
    !> Value, rate and acceleration of the drives.
-   subroutine set_drives(l, t)
-      type(lanes_t), intent(inout) :: l
+   subroutine set_drives(lanes, t)
+      type(lanes_t), intent(inout) :: lanes
       real(wp), intent(in) :: t(width)
       integer :: i, lane
 
-      do i = 1, size(l%unit, 2)
-         if (l%is_polynomial) then
-            associate (c => l%polynomial(:, :, i), unit => l%unit(:, i))
-               l%drive(:, 0, i) = (c(:, 1) + t*(c(:, 2) + t*c(:, 3)/2.0_wp))*unit
-               l%drive(:, 1, i) = (c(:, 2) + t*c(:, 3))*unit
-               l%drive(:, 2, i) = c(:, 3)*unit
+      do i = 1, size(lanes%unit, 2)
+         if (lanes%is_polynomial) then
+            associate (c => lanes%polynomial(:, :, i), unit => lanes%unit(:, i))
+               lanes%drive(:, 0, i) = (c(:, 1) + t*(c(:, 2) + t*c(:, 3)/2.0_wp))*unit
+               lanes%drive(:, 1, i) = (c(:, 2) + t*c(:, 3))*unit
+               lanes%drive(:, 2, i) = c(:, 3)*unit
             end associate
          else
             do lane = 1, width
-               l%drive(lane, :, i) = drive_at(l%path(lane), i, t(lane))*l%unit(lane, i)
+               lanes%drive(lane, :, i) = drive_at(lanes%path(lane), i, t(lane))*lanes%unit(lane, i)
             end do
          end if
       end do
    end subroutine set_drives
 
    !> The values expected at `t` of all unknowns that are iterated: see `predictor`.
-   subroutine predict_lanes(l, t, j)
-      type(lanes_t), intent(inout) :: l
+   subroutine predict_lanes(lanes, t, check)
+      type(lanes_t), intent(inout) :: lanes
       real(wp), intent(in) :: t(width)
-      type(step_check_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: check
       real(wp) :: step(width)
       integer :: k, u
 
-      step = t - l%t(:, l%slot(0))
-      do k = 1, size(l%predicted)
-         u = l%predicted(k)
-         call predict_one(step, l%past(1, 1, l%slot(0), u), l%past(1, 1, l%slot(1), u), l%past(1, 1, l%slot(2), u), &
-            l%u(u)%value, j%refused)
-         call set_lane_direction(l, l%predicted(k))
+      step = t - lanes%t(:, lanes%slot(0))
+      do k = 1, size(lanes%predicted)
+         u = lanes%predicted(k)
+         call predict_one(step, lanes%past(1, 1, lanes%slot(0), u), lanes%past(1, 1, lanes%slot(1), u), lanes%past(1, &
+            1, lanes%slot(2), u), lanes%u(u)%value, check%refused)
+         call set_lane_direction(lanes, lanes%predicted(k))
       end do
    end subroutine predict_lanes
 
-   !> The value `u`, from the motions `p` (latest), `q` and `r`; too large a change is refused, and too large a value.
-   pure subroutine predict_one(step, p, q, r, u, refused)
-      real(wp), intent(in) :: step(width), p(width, 3), q(width, 3), r(width, 3)
-      real(wp), intent(inout) :: u(width), refused(width)
+   !> The value `values`, from the motions `latest` (latest), `second` and `third`; too large a change is refused, and
+   !> too large a value.
+   pure subroutine predict_one(step, latest, second, third, values, refused)
+      real(wp), intent(in) :: step(width), latest(width, 3), second(width, 3), third(width, 3)
+      real(wp), intent(inout) :: values(width), refused(width)
       real(wp) :: d
       integer :: l
 
       do l = 1, width
-         d = step(l)*(weight(0)*p(l, 2) + weight(1)*q(l, 2) + weight(2)*r(l, 2) &
-            + step(l)*(weight2(0)*p(l, 3) + weight2(1)*q(l, 3) + weight2(2)*r(l, 3)))
-         u(l) = p(l, 1) + d
+         d = step(l)*(weight(0)*latest(l, 2) + weight(1)*second(l, 2) + weight(2)*third(l, 2) &
+            + step(l)*(weight2(0)*latest(l, 3) + weight2(1)*second(l, 3) + weight2(2)*third(l, 3)))
+         values(l) = latest(l, 1) + d
          refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change) &
-            + merge(0.0_wp, 1.0_wp, abs(p(l, 1) + d) <= max_angle)
+            + merge(0.0_wp, 1.0_wp, abs(latest(l, 1) + d) <= max_angle)
       end do
    end subroutine predict_one
 
    !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
-   subroutine solve_block(l, i, n, j)
-      type(lanes_t), intent(inout) :: l
+   subroutine solve_block(lanes, i, n, check)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i, n
-      type(step_check_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: check
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
       real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width), &
          start(width, max_order), change(width)
       integer :: k
 
       do k = 1, n
-         start(:, k) = l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%value
+         start(:, k) = lanes%u(lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))%value
       end do
-      call find_lane_known(l, i)
-      call iterate(l, i, n, start, a, d, v, exchanged, j)
+      call find_lane_known(lanes, i)
+      call iterate(lanes, i, n, start, a, d, v, exchanged, check)
       change = 0.0_wp
       do k = 1, n
-         associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-            call turn(u <= l%blocks%orientations, d(1, k), v(1, k), start(1, k), l%u(u), change)
+         associate (u => lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))
+            call turn(u <= lanes%blocks%orientations, d(1, k), v(1, k), start(1, k), lanes%u(u), change)
          end associate
       end do
-      call judge(n, a, exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
-      call lane_accelerations(l, i, n, v)
+      call judge(n, a, exchanged, change, lanes%slot(0), lanes%slot(depth - 1), lanes%block(i), check)
+      call lane_accelerations(lanes, i, n, v)
       call substitute(a, exchanged, v)
       do k = 1, n
-         l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%acceleration = v(:, k)
+         lanes%u(lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))%acceleration = v(:, k)
       end do
    end subroutine solve_block
 
    !> Newton's method in all lanes, from the values `start`. Those that are done keep their values, so that what comes
-   !> after their last iteration is the same however long the others take: `a`: the factors, `d`: the last corrections,
-   !> not applied yet, `v`: the velocities.
-   subroutine iterate(l, i, n, start, a, d, v, exchanged, j)
-      type(lanes_t), intent(inout) :: l
+   !> after their last iteration is the same however long the others take: `a`: the factors, `corrections`: the last
+   !> corrections, not applied yet, `right_sides`: the velocities.
+   subroutine iterate(lanes, i, n, start, a, corrections, right_sides, exchanged, check)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
-      real(wp), intent(inout) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width)
-      type(step_check_t), intent(inout) :: j
+      real(wp), intent(inout) :: a(width, max_order**2), corrections(width, max_order), right_sides(width, &
+         max_order), exchanged(width)
+      type(step_check_t), intent(inout) :: check
       real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
 
       u(:, :n) = start
-      if (n == 1) call make_room(u, a, d, v)
+      if (n == 1) call make_room(u, a, corrections, right_sides)
       do iteration = 1, max_iterations
          do k = 1, merge(0, n, iteration == 1)
-            associate (unknown => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-               u(:, k) = u(:, k) - merge(d(:, k), 0.0_wp, going > 0.5_wp)
-               l%u(unknown)%value = u(:, k)
-               call set_lane_direction(l, unknown)
+            associate (unknown => lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))
+               u(:, k) = u(:, k) - merge(corrections(:, k), 0.0_wp, going > 0.5_wp)
+               lanes%u(unknown)%value = u(:, k)
+               call set_lane_direction(lanes, unknown)
             end associate
          end do
-         call assemble_lanes(l, i, n, a, d, v)
-         call correct(l%block(i)%coarse, u, a, exchanged, d, v, going)
+         call assemble_lanes(lanes, i, n, a, corrections, right_sides)
+         call correct(lanes%block(i)%coarse, u, a, exchanged, corrections, right_sides, going)
          if (sum(going) < 0.5_wp) return
-         going = merge(going, 0.0_wp, j%refused < 0.5_wp)
+         going = merge(going, 0.0_wp, check%refused < 0.5_wp)
          if (sum(going) < 0.5_wp) return
       end do
-      j%refused = j%refused + going
+      check%refused = check%refused + going
    end subroutine iterate
 
-   !> Applies the last correction `d` of an unknown, an angle or not, and its rate `v`; `change`: the largest from its
+   !> Applies the last `correction` of an unknown, an angle or not, and its `rate`; `change`: the largest from its
    !> `start`.
-   pure subroutine turn(is_angle, d, v, start, u, change)
+   pure subroutine turn(is_angle, correction, rate, start, unknown, change)
       logical, intent(in) :: is_angle
-      real(wp), intent(in) :: d(width), v(width), start(width)
-      type(unknown_t), intent(inout) :: u
+      real(wp), intent(in) :: correction(width), rate(width), start(width)
+      type(unknown_t), intent(inout) :: unknown
       real(wp), intent(inout) :: change(width)
       real(wp) :: x
       integer :: l
 
       do l = 1, width
-         x = u%value(l) - d(l)
-         u%value(l) = x
-         u%rate(l) = v(l)
+         x = unknown%value(l) - correction(l)
+         unknown%value(l) = x
+         unknown%rate(l) = rate(l)
          change(l) = max(change(l), abs(x - start(l)))
       end do
       if (.not. is_angle) return
       do l = 1, width
-         x = u%c(l)
-         u%c(l) = x + d(l)*u%s(l)
-         u%s(l) = u%s(l) - d(l)*x
+         x = unknown%c(l)
+         unknown%c(l) = x + correction(l)*unknown%s(l)
+         unknown%s(l) = unknown%s(l) - correction(l)*x
       end do
    end subroutine turn
 
    !> Refuses lanes that have too small a pivot, compared with the largest, or a determinant of another sign than
    !> before, as `judge` of `block_solver` and the continuation refuse an instant. `change`: of the values of `block`,
    !> from the motion in the slot `before` to that in the slot `next`.
-   pure subroutine judge(n, a, exchanged, change, before, next, block, j)
+   pure subroutine judge(n, a, exchanged, change, before, next, block, check)
       integer, intent(in) :: n, before, next
       real(wp), intent(in) :: a(width, max_order**2), exchanged(width), change(width)
       type(lane_block_t), intent(inout) :: block
-      type(step_check_t), intent(inout) :: j
+      type(step_check_t), intent(inout) :: check
       real(wp) :: largest(width), sign_of(width)
       integer :: l
 
@@ -204,46 +206,47 @@ contains
       ! One equation has no other pivot to compare with.
       if (n == 1) largest = block%lipschitz
       do l = 1, width
-         j%refused(l) = j%refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*block%sign_of(l) > 0.0_wp) &
+         check%refused(l) = check%refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*block%sign_of(l) > 0.0_wp) &
             + merge(0.0_wp, 1.0_wp, block%pivot(l, next) >= suspicious_pivot*max(largest(l), 1.0_wp))
-         j%correction(l) = max(j%correction(l), change(l))
-         j%ratio(l) = max(j%ratio(l), change(l)*block%lipschitz(l)*block%inverse(l, next))
-         j%growth(l) = max(j%growth(l), block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, before))**2)
+         check%correction(l) = max(check%correction(l), change(l))
+         check%ratio(l) = max(check%ratio(l), change(l)*block%lipschitz(l)*block%inverse(l, next))
+         check%growth(l) = max(check%growth(l), block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, &
+            before))**2)
       end do
    end subroutine judge
 
    !> The motions found last, at `t`, are now the latest of their lanes.
-   subroutine accept_lanes(l, t)
-      type(lanes_t), intent(inout) :: l
+   subroutine accept_lanes(lanes, t)
+      type(lanes_t), intent(inout) :: lanes
       real(wp), intent(in) :: t(width)
       integer :: k, u
 
-      l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
-      l%t(:, l%slot(0)) = t
-      do k = 1, size(l%predicted)
-         u = l%predicted(k)
-         l%past(:, 1, l%slot(0), u) = l%u(u)%value
-         l%past(:, 2, l%slot(0), u) = l%u(u)%rate
-         l%past(:, 3, l%slot(0), u) = l%u(u)%acceleration
+      lanes%slot = [lanes%slot(depth - 1), lanes%slot(:depth - 2)]
+      lanes%t(:, lanes%slot(0)) = t
+      do k = 1, size(lanes%predicted)
+         u = lanes%predicted(k)
+         lanes%past(:, 1, lanes%slot(0), u) = lanes%u(u)%value
+         lanes%past(:, 2, lanes%slot(0), u) = lanes%u(u)%rate
+         lanes%past(:, 3, lanes%slot(0), u) = lanes%u(u)%acceleration
       end do
    end subroutine accept_lanes
 
    !> Puts `lane` back to its latest motion, as if that had been found last.
-   subroutine keep_lane(l, lane)
-      type(lanes_t), intent(inout) :: l
+   subroutine keep_lane(lanes, lane)
+      type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: lane
       integer :: k, u
 
-      do k = 1, size(l%predicted)
-         u = l%predicted(k)
-         l%u(u)%value(lane) = l%past(lane, 1, l%slot(0), u)
-         l%u(u)%rate(lane) = l%past(lane, 2, l%slot(0), u)
-         l%u(u)%acceleration(lane) = l%past(lane, 3, l%slot(0), u)
+      do k = 1, size(lanes%predicted)
+         u = lanes%predicted(k)
+         lanes%u(u)%value(lane) = lanes%past(lane, 1, lanes%slot(0), u)
+         lanes%u(u)%rate(lane) = lanes%past(lane, 2, lanes%slot(0), u)
+         lanes%u(u)%acceleration(lane) = lanes%past(lane, 3, lanes%slot(0), u)
       end do
-      associate (next => l%slot(depth - 1))
-         do k = 1, size(l%block)
-            l%block(k)%pivot(lane, next) = l%block(k)%pivot(lane, l%slot(0))
-            l%block(k)%inverse(lane, next) = l%block(k)%inverse(lane, l%slot(0))
+      associate (next => lanes%slot(depth - 1))
+         do k = 1, size(lanes%block)
+            lanes%block(k)%pivot(lane, next) = lanes%block(k)%pivot(lane, lanes%slot(0))
+            lanes%block(k)%inverse(lane, next) = lanes%block(k)%inverse(lane, lanes%slot(0))
          end do
       end associate
    end subroutine keep_lane

@@ -119,23 +119,23 @@ contains
       end associate
    end subroutine make_ready
 
-   !> Gives the geometry of `p`, of the structure `b`, the numbers of p%m. `by_roundings`: they are off by roundings
-   !> alone, and what cancels in the equations is left out: redundant equations stay so, and so do guides that are
-   !> parallel.
-   subroutine assign_changes(b, p, by_roundings)
+   !> Gives the geometry of `perturbed`, of the structure `b`, the numbers of p%m. `by_roundings`: they are off by
+   !> roundings alone, and what cancels in the equations is left out: redundant equations stay so, and so do guides that
+   !> are parallel.
+   subroutine assign_changes(b, perturbed, by_roundings)
       type(blocks_t), intent(in) :: b
-      type(perturbed_t), intent(inout) :: p
+      type(perturbed_t), intent(inout) :: perturbed
       logical, intent(in) :: by_roundings
 
-      p%m%tolerance = 0.0_wp
-      call assign_geometry(p%m, b, p%geometry, p%path, p%fits)
-      p%fits = p%fits .or. by_roundings
+      perturbed%m%tolerance = 0.0_wp
+      call assign_geometry(perturbed%m, b, perturbed%geometry, perturbed%path, perturbed%fits)
+      perturbed%fits = perturbed%fits .or. by_roundings
    end subroutine assign_changes
 
-   !> The `rows` (requests) of `p`, of the structure `b`, at the time `t`, solved from `place`.
-   subroutine rows_with(b, p, t, place, rows)
+   !> The `rows` (requests) of `perturbed`, of the structure `b`, at the time `t`, solved from `place`.
+   subroutine rows_with(b, perturbed, t, place, rows)
       type(blocks_t), intent(in) :: b
-      type(perturbed_t), intent(in) :: p
+      type(perturbed_t), intent(in) :: perturbed
       real(wp), intent(in) :: t
       type(base_position_t), intent(inout) :: place
       type(row_t), intent(inout) :: rows(:)
@@ -144,23 +144,23 @@ contains
       integer :: i
 
       place%q%t = t
-      if (p%fits) then
-         call solve_needed(b, p%geometry, p%path, place)
+      if (perturbed%fits) then
+         call solve_needed(b, perturbed%geometry, perturbed%path, place)
       else
-         call make_structure(p%m, other)
-         call select_solved_blocks(p%m, other%blocks, other%geometry)
-         call assign_path(p%m, other%blocks, other%geometry, path)
+         call make_structure(perturbed%m, other)
+         call select_solved_blocks(perturbed%m, other%blocks, other%geometry)
+         call assign_path(perturbed%m, other%blocks, other%geometry, path)
          if (other%blocks%solvable) call make_room(other%blocks, size(path%laws), place)
          call solve_needed(other%blocks, other%geometry, path, place)
          call make_room(b, size(path%laws), place)
          if (.not. other%blocks%solvable .or. other%blocks%redundant /= b%redundant) then
             place%jams = .true.
-            place%q%link_known = spread(-1, 1, size(p%m%links))
+            place%q%link_known = spread(-1, 1, size(perturbed%m%links))
          end if
       end if
       if (allocated(place%turned)) place%q%turned = place%turned
       do i = 1, size(rows)
-         call find_row(p%m, place%q, p%m%requests(i), rows(i))
+         call find_row(perturbed%m, place%q, perturbed%m%requests(i), rows(i))
       end do
    end subroutine rows_with
 

@@ -60,18 +60,18 @@ contains
 
    !> For the errors of `m`, a variant of the mechanism before if there was one; the rest is made when it is first asked
    !> for.
-   subroutine make_estimator(s, m)
-      type(estimator_t), intent(inout) :: s
+   subroutine make_estimator(estimator, m)
+      type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
 
-      s%sizes = sizes_of(m)
-      if (allocated(s%perturbed)) s%perturbed%is_ready = .false.
+      estimator%sizes = sizes_of(m)
+      if (allocated(estimator%perturbed)) estimator%perturbed%is_ready = .false.
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, the `state` of the blocks `b`. `always`: also where no digit of a table is
    !> in doubt. `told`: its errors are told themselves (--errors).
-   subroutine estimate_errors(s, m, b, x, state, q, always, told, found)
-      type(estimator_t), intent(inout) :: s
+   subroutine estimate_errors(estimator, m, b, x, state, q, always, told, found)
+      type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -83,24 +83,24 @@ contains
 
       found%taken = .false.
       found%asked = always
-      call find_amplification(s%sizes, m, b, x, state, q, found%growth, found%in_doubt)
-      found%in_doubt = found%in_doubt .or. s%closure > 0.0_wp
+      call find_amplification(estimator%sizes, m, b, x, state, q, found%growth, found%in_doubt)
+      found%in_doubt = found%in_doubt .or. estimator%closure > 0.0_wp
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
          found%own(3, 0:2, size(m%requests)), found%by_closure(3, 0:2, size(m%requests)), &
          found%solved(size(m%requests)))
-      found%sizes = s%sizes
+      found%sizes = estimator%sizes
       found%taken = .true.
-      call find_place(b, x, state, q, s%place)
-      s%place%stays = s%place%is_singular
+      call find_place(b, x, state, q, estimator%place)
+      estimator%place%stays = estimator%place%is_singular
       call find_changed(0, many, 0.0_wp, found%solved)
-      s%place%stays = .false.
-      call find_largest_changes(many, s%place%is_singular, is_small)
+      estimator%place%stays = .false.
+      call find_largest_changes(many, estimator%place%is_singular, is_small)
       if (.not. is_small) call find_largest_changes(few, .true., is_small)
       found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
-      if (told .and. .not. s%place%is_singular) then
+      if (told .and. .not. estimator%place%is_singular) then
          call find_own_changes()
          ! As far as they exceed the largest change by numbers alone, the calculation has made them.
          associate (own => found%own, by_numbers => found%changes)
@@ -110,7 +110,7 @@ contains
       end if
       call add_sums()
       found%by_closure = 0.0_wp
-      if (s%closure > 0.0_wp) call find_changes_by_closure()
+      if (estimator%closure > 0.0_wp) call find_changes_by_closure()
 
    contains
 
@@ -123,8 +123,8 @@ contains
          type(row_t), intent(inout) :: rows(:)
          integer :: i
 
-         call make_ready(s%perturbed, k, m, x, i)
-         associate (p => s%perturbed(i))
+         call make_ready(estimator%perturbed, k, m, x, i)
+         associate (p => estimator%perturbed(i))
             if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
                associate (axes => x%equations%axes)
                   call perturb_numbers(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
@@ -134,7 +134,7 @@ contains
                p%roundings = roundings
                p%length = length
             end if
-            call rows_with(b, p, q%t + p%time_off*q%t, s%place, rows)
+            call rows_with(b, p, q%t + p%time_off*q%t, estimator%place, rows)
          end associate
       end subroutine find_changed
 
@@ -163,11 +163,11 @@ contains
          integer :: k, i
 
          ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
-         part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
+         part = 1.0_wp/merge(sqrt(roundings), roundings, estimator%place%is_singular)
          found%changes = 0.0_wp
          do k = 1, directions
             call find_changed(k, roundings, 0.0_wp, rows)
-            is_small = anyway .or. (s%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
+            is_small = anyway .or. (estimator%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
             call use_opposite(k, roundings, 0.0_wp, rows)
             do i = 1, size(rows)
@@ -199,11 +199,11 @@ contains
          real(wp) :: roundings, times
          integer :: k, i
 
-         roundings = s%closure/(closure_parts*epsilon(1.0_wp))
-         times = closure_caution*merge(sqrt(closure_parts), closure_parts, s%place%is_singular)
+         roundings = estimator%closure/(closure_parts*epsilon(1.0_wp))
+         times = closure_caution*merge(sqrt(closure_parts), closure_parts, estimator%place%is_singular)
          do k = 1, directions
-            call find_changed(k, roundings, s%sizes%length, rows)
-            call use_opposite(k, roundings, s%sizes%length, rows)
+            call find_changed(k, roundings, estimator%sizes%length, rows)
+            call use_opposite(k, roundings, estimator%sizes%length, rows)
             do i = 1, size(rows)
                found%by_closure(:, :, i) = max(found%by_closure(:, :, i), change(rows(i), found%solved(i), times))
             end do
@@ -225,7 +225,7 @@ contains
          do k = 1, directions
             other = q
             ! By one they could be hidden by the roundings of the rows.
-            call perturb_sums(b%tree, s%sizes%length, k, few, other)
+            call perturb_sums(b%tree, estimator%sizes%length, k, few, other)
             if (allocated(q%by)) call perturb_ratios(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
@@ -258,7 +258,7 @@ contains
             unit%known = 2
             unit%link_known = merge(2, -1, q%by(d)%is_known)
             unit%origin = q%origin
-            call perturb_sums(b%tree, s%sizes%length, k, few, unit)
+            call perturb_sums(b%tree, estimator%sizes%length, k, few, unit)
             other%by(d)%velocity = unit%velocity
             other%by(d)%acceleration = unit%acceleration
          end do
@@ -281,10 +281,10 @@ contains
 
    !> Estimates what rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`,
    !> in its units. `nothing_known`, where it is so.
-   pure function estimate_of(row, m, s, i) result(error)
+   pure function estimate_of(row, m, estimate, i) result(error)
       type(row_t), intent(in) :: row
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
+      type(error_estimate_t), intent(in) :: estimate
       integer, intent(in) :: i
       real(wp), dimension(3, 0:2) :: error
 
@@ -298,32 +298,35 @@ contains
             error(:, 0) = merge(safety_factor*epsilon(1.0_wp)*error(:, 0), 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
             return
          end if
-         if (s%asked) error = nothing_known
-         if (.not. s%taken) return
-         error = merge(nothing_known, safety_factor*s%changes(:, :, i), max(s%changes(:, :, i), s%by_closure(:, :, i)) &
+         if (estimate%asked) error = nothing_known
+         if (.not. estimate%taken) return
+         error = merge(nothing_known, safety_factor*estimate%changes(:, :, i), max(estimate%changes(:, :, i), &
+            estimate%by_closure(:, :, i)) &
             >= nothing_known)
-         where (error < nothing_known) error = hypot(error, s%by_closure(:, :, i)*closure_errors_a_digit/errors_a_digit)
+         where (error < nothing_known) error = hypot(error, estimate%by_closure(:, :, &
+            i)*closure_errors_a_digit/errors_a_digit)
          if (.not. is_centre(request%kind)) &
-            error(:, min(row%known, last_common(s%solved(i), row)) + 1:) = nothing_known
+            error(:, min(row%known, last_common(estimate%solved(i), row)) + 1:) = nothing_known
       end associate
    end function estimate_of
 
    !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
    !> that of the motion solved to the limit of rounding.
-   pure function row_error(m, s, q, i) result(error)
+   pure function row_error(m, estimate, q, i) result(error)
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
+      type(error_estimate_t), intent(in) :: estimate
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
       real(wp), dimension(3, 0:2) :: error
       type(row_t) :: row
 
       call find_row(m, q, m%requests(i), row)
-      error = estimate_of(row, m, s, i)
-      if (.not. s%taken) return
+      error = estimate_of(row, m, estimate, i)
+      if (.not. estimate%taken) return
       if (is_fixed(m, m%requests(i)) .and. row%kind /= request_measure) return
-      where (error < nothing_known) error = s%own(:, :, i) + s%by_closure(:, :, i) + difference(row, s%solved(i))
-      if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
+      where (error < nothing_known) error = estimate%own(:, :, i) + estimate%by_closure(:, :, i) + difference(row, &
+         estimate%solved(i))
+      if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
    end function row_error
 
    !> Finds how much of a row a sample tells of, as in `row_t`: where points of the sample coincide and those of the row

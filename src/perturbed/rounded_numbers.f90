@@ -43,11 +43,11 @@ contains
    !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
    !> by so many `roundings`; 0: by none. `time_off`: by this part of it the instant is off. As they stand are the time
    !> of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial guess of moving
-   !> links. `t`, `axes`: of `m`. With a `length` above 0 lengths are off as if each were so large, and drives and the
-   !> time are as they stand.
-   subroutine perturb_numbers(m, t, axes, k, roundings, length, off, time_off)
+   !> links. `tree`, `axes`: of `m`. With a `length` above 0 lengths are off as if each were so large, and drives and
+   !> the time are as they stand.
+   subroutine perturb_numbers(m, tree, axes, k, roundings, length, off, time_off)
       type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: t
+      type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
       integer, intent(in) :: k
       real(wp), intent(in) :: roundings
@@ -92,7 +92,7 @@ contains
                int(quarter, int64)))
             off%pairs(i)%alpha = m%pairs(i)%alpha
             if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*largest &
-               *deviate(parameter_t(parameter_pair, t%orientation(link), quarters, 1), k)
+               *deviate(parameter_t(parameter_pair, tree%orientation(link), quarters, 1), k)
          end associate
       end do
       if (length > 0.0_wp) off%drives = m%drives
@@ -150,12 +150,12 @@ contains
       end subroutine perturb_term
    end subroutine perturb_numbers
 
-   !> Puts the motion `q` of links with the tree `t` off in direction `k`, by so many `roundings` of sums of numbers as
+   !> Puts the motion `q` of links with the `tree` off in direction `k`, by so many `roundings` of sums of numbers as
    !> large as the largest of its links; `length`: the characteristic one. What is summed up to a velocity is no smaller
    !> than an angular velocity times a length, what is summed up to an acceleration has the square of one. A coordinate
    !> that is zero and rests stays so, but for angles, which may cancel. Links that turn as one turn as one.
-   subroutine perturb_sums(t, length, k, roundings, q)
-      type(spanning_tree_t), intent(in) :: t
+   subroutine perturb_sums(tree, length, k, roundings, q)
+      type(spanning_tree_t), intent(in) :: tree
       real(wp), intent(in) :: length, roundings
       integer, intent(in) :: k
       type(motion_t), intent(inout) :: q
@@ -181,7 +181,7 @@ contains
             if (.not. (any(abs(x) > 0.0_wp) .or. c == 3)) cycle
             do j = 0, 2
                x(j) = x(j) + size_of(merge(2, 1, c == 3), j) &
-                  *deviate(parameter_t(parameter_time, merge(t%orientation(i), i, c == 3 .and. j > 0), c, j + 1), k)
+                  *deviate(parameter_t(parameter_time, merge(tree%orientation(i), i, c == 3 .and. j > 0), c, j + 1), k)
             end do
             q%position(c, i) = x(0)
             q%velocity(c, i) = x(1)
@@ -203,13 +203,13 @@ contains
       z = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
    end function deviate
 
-   !> A number from 1 to the modulus less one that hangs on `x` and on `n`: the fifth power takes no value twice.
-   pure integer(int64) function mixed(x, n) result(y)
-      integer(int64), intent(in) :: x
+   !> A number from 1 to the modulus less one that hangs on `bits` and on `n`: the fifth power takes no value twice.
+   pure integer(int64) function mixed(bits, n) result(y)
+      integer(int64), intent(in) :: bits
       integer, intent(in) :: n
       integer(int64) :: square
 
-      y = mod(multiplier*x + n + 1, modulus)
+      y = mod(multiplier*bits + n + 1, modulus)
       square = mod(y*y, modulus)
       y = mod(mod(square*square, modulus)*y, modulus)
       y = max(y, 1_int64)

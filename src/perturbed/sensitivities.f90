@@ -56,9 +56,9 @@ module sensitivities
 contains
 
    !> The sensitivities of all requests of `m` at its motion `q`, whose `state` the blocks `b` have. `estimate`: how far
-   !> `s` has found the motion to be known.
-   subroutine find_sensitivities(s, m, b, x, state, q, estimate, found)
-      type(estimator_t), intent(inout) :: s
+   !> `estimator` has found the motion to be known.
+   subroutine find_sensitivities(estimator, m, b, x, state, q, estimate, found)
+      type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -79,12 +79,12 @@ contains
       found%of = 0.0_wp
       found%error = 0.0_wp
       found%jams = .false.
-      call find_place(b, x, state, q, s%place)
-      call make_ready(s%perturbed, 0, m, x, i)
-      s%place%room = huge(1.0_wp)
+      call find_place(b, x, state, q, estimator%place)
+      call make_ready(estimator%perturbed, 0, m, x, i)
+      estimator%place%room = huge(1.0_wp)
       call find_rows(middle)
       ! Within a closing tolerance a change that opens redundant equations more than they are open jams all the same.
-      s%place%room = inconsistent_level + more_open*s%place%opened
+      estimator%place%room = inconsistent_level + more_open*estimator%place%opened
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &
@@ -92,7 +92,7 @@ contains
       end do
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
-            call look_at_joint(m, one, q%t, usual_step*natural_unit(one, s%sizes), side, order)
+            call look_at_joint(m, one, q%t, usual_step*natural_unit(one, estimator%sizes), side, order)
             call find_step(one, side, step)
             down = middle
             do k = 1, halvings
@@ -115,7 +115,7 @@ contains
          end associate
       end do
       ! Its numbers are those of no direction.
-      s%perturbed(0)%is_ready = .false.
+      estimator%perturbed(0)%is_ready = .false.
 
    contains
 
@@ -139,13 +139,13 @@ contains
          type(tolerance_t), intent(in), optional :: one
          real(wp), intent(in), optional :: by
 
-         associate (p => s%perturbed(0))
+         associate (p => estimator%perturbed(0))
             p%m = m
             if (present(one)) call change_parameter(p%m, one%parameter_t, parameter_value(m, one%parameter_t) + by)
             call assign_changes(b, p, by_roundings=.false.)
-            call rows_with(b, p, q%t, s%place, rows)
+            call rows_with(b, p, q%t, estimator%place, rows)
          end associate
-         if (present(one)) found%jams(d) = found%jams(d) .or. s%place%jams
+         if (present(one)) found%jams(d) = found%jams(d) .or. estimator%place%jams
       end subroutine find_rows
 
       !> The `step` by which the number of tolerance `one` is changed, above 0 if `side` is 0; `up`: the rows there.
@@ -156,13 +156,13 @@ contains
          real(wp) :: usual, too_far
          integer :: k
 
-         usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, s%sizes)
+         usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, estimator%sizes)
          step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
             call find_rows(up, one, step)
             ! On a dead point there is nothing but what drives alone move, and no distance to it.
-            if (s%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
-            too_far = max(s%place%change/largest_change, s%place%ratio/largest_ratio, too_near/2.0_wp)
+            if (estimator%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
+            too_far = max(estimator%place%change/largest_change, estimator%place%ratio/largest_ratio, too_near/2.0_wp)
             if (any(up%known < middle%known)) too_far = max(too_far, no_root)
             if (too_far <= 1.0_wp .and. (too_far >= too_near .or. .not. abs(step) < usual)) exit
             step = sign(min(usual, abs(step)*max(0.5_wp/too_far, 1.0e-3_wp)), step)
@@ -214,30 +214,30 @@ contains
       end associate
    end subroutine look_at_joint
 
-   !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the `tolerances` (numbers)
-   !> allow.
-   pure function worst_case(tolerances, s) result(x)
+   !> The largest change (3, 0:2) of a row with the sensitivities `changes` (3, 0:2, numbers) that the `tolerances`
+   !> (numbers) allow.
+   pure function worst_case(tolerances, changes) result(x)
       type(tolerance_t), intent(in) :: tolerances(:)
-      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp), intent(in) :: changes(:, 0:, :)
       real(wp) :: x(3, 0:2)
       integer :: d
 
       x = 0.0_wp
       do d = 1, size(tolerances)
-         x = x + abs(s(:, :, d))*tolerances(d)%size_of
+         x = x + abs(changes(:, :, d))*tolerances(d)%size_of
       end do
    end function worst_case
 
    !> The root (3, 0:2) of the sum of the squares of its changes by one tolerance at a time.
-   pure function root_of_squares(tolerances, s) result(x)
+   pure function root_of_squares(tolerances, changes) result(x)
       type(tolerance_t), intent(in) :: tolerances(:)
-      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp), intent(in) :: changes(:, 0:, :)
       real(wp) :: x(3, 0:2)
       integer :: c, k
 
       do k = 0, 2
          do c = 1, 3
-            x(c, k) = norm2(s(c, k, :)*tolerances%size_of)
+            x(c, k) = norm2(changes(c, k, :)*tolerances%size_of)
          end do
       end do
    end function root_of_squares

@@ -120,17 +120,18 @@ contains
 
    !> Finds the largest of the lengths and of the angles in positions, velocities and accelerations; on plain arrays,
    !> which cost no descriptors.
-   pure subroutine find_largest(n, x, v, a, largest)
+   pure subroutine find_largest(n, positions, velocities, accelerations, largest)
       integer, intent(in) :: n               !< links
-      real(wp), intent(in), dimension(3, n) :: x, v, a   !< positions, velocities, accelerations
+      real(wp), intent(in), dimension(3, n) :: positions, velocities, accelerations   !< of the links
       real(wp), intent(out) :: largest(2, 0:2)   !< length and angle, and their derivatives
       integer :: i
 
       largest = 0.0_wp
       do i = 1, n
-         largest(:, 0) = max(largest(:, 0), [max(abs(x(1, i)), abs(x(2, i))), abs(x(3, i))])
-         largest(:, 1) = max(largest(:, 1), [max(abs(v(1, i)), abs(v(2, i))), abs(v(3, i))])
-         largest(:, 2) = max(largest(:, 2), [max(abs(a(1, i)), abs(a(2, i))), abs(a(3, i))])
+         largest(:, 0) = max(largest(:, 0), [max(abs(positions(1, i)), abs(positions(2, i))), abs(positions(3, i))])
+         largest(:, 1) = max(largest(:, 1), [max(abs(velocities(1, i)), abs(velocities(2, i))), abs(velocities(3, i))])
+         largest(:, 2) = max(largest(:, 2), [max(abs(accelerations(1, i)), abs(accelerations(2, i))), &
+            abs(accelerations(3, i))])
       end do
    end subroutine find_largest
 

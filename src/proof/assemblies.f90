@@ -61,16 +61,16 @@ module assemblies
 
 contains
 
-   !> All assemblies `a` of `m`, one independent mechanism with a structure that can be solved, at the time `t`.
-   subroutine find_assemblies(m, t, a)
+   !> All `assemblies` of `m`, one independent mechanism with a structure that can be solved, at the time `t`.
+   subroutine find_assemblies(m, t, assemblies)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
-      type(assemblies_t), intent(out) :: a
+      type(assemblies_t), intent(out) :: assemblies
       type(following_t) :: f
       type(assembly_block_t) :: one
       integer :: i, k, places(2, size(m%links))
 
-      allocate (a%list(0), a%blocks(0))
+      allocate (assemblies%list(0), assemblies%blocks(0))
       call begin_following(f, m)
       if (.not. f%blocks%solvable) return
       call set_drive_values(f%path, t, f%state)
@@ -84,27 +84,28 @@ contains
          end associate
          one%links = pack([(k, k=1, size(m%links))], places(1, :) == i)
          if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], places(2, :) == i)
-         a%blocks = [a%blocks, one]
+         assemblies%blocks = [assemblies%blocks, one]
       end do
-      call search(m, f, a)
-      a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
+      call search(m, f, assemblies)
+      assemblies%is_known = .not. (assemblies%are_more &
+         .or. any(assemblies%blocks%is_wide .or. assemblies%blocks%failed > 0))
    end subroutine find_assemblies
 
    !> Finds all assemblies as `find_assemblies`, and which of them a run begins in: that which the estimate of `m`
    !> chooses, unless another one is nearer and all are known. Then the nearest is the estimate of `m` from now on;
    !> also where the estimate chooses a position that is not separate. Where it chooses another one that was not
    !> found, some may be missing.
-   subroutine find_nearest(m, t, a)
+   subroutine find_nearest(m, t, assemblies)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: t
-      type(assemblies_t), intent(out) :: a
+      type(assemblies_t), intent(out) :: assemblies
       type(following_t) :: f
       type(motion_t) :: q
       real(wp) :: apart, nearest
       logical :: unused, is_found
       integer :: i
 
-      call find_assemblies(m, t, a)
+      call find_assemblies(m, t, assemblies)
       call begin_following(f, m)
       call solve_at(f, t)
       is_found = is_solved(f%convergence)
@@ -113,37 +114,37 @@ contains
          call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, unused)
          ! Of all that it may be that which is nearest to it, whole turns not counted.
          nearest = same_place
-         do i = 1, size(a%list)
-            apart = maxval(separation(a%list(i)%position, q%position, f%geometry%span))
+         do i = 1, size(assemblies%list)
+            apart = maxval(separation(assemblies%list(i)%position, q%position, f%geometry%span))
             if (apart > nearest) cycle
             nearest = apart
-            a%chosen = i
+            assemblies%chosen = i
          end do
       end if
       if (is_nearer_one()) then
-         a%chosen = 1
+         assemblies%chosen = 1
          do i = 1, size(m%links)
             if (m%links(i)%ground) cycle
-            associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
+            associate (estimate => m%links(i)%position, found => assemblies%list(1)%position(:, i))
                estimate = [found(:2) + plane_origin(m), estimate(3) + wrap_angle(found(3) - estimate(3))]
             end associate
          end do
       end if
-      a%is_missed = is_found .and. a%chosen == 0
-      a%is_known = a%is_known .and. .not. a%is_missed
+      assemblies%is_missed = is_found .and. assemblies%chosen == 0
+      assemblies%is_known = assemblies%is_known .and. .not. assemblies%is_missed
 
    contains
 
       !> All are known, and the first of the list is nearer than where the estimate leads.
       logical function is_nearer_one() result(is)
-         is = size(a%list) > 0 .and. a%is_known
-         if (is) is = a%list(1)%is_proved
+         is = size(assemblies%list) > 0 .and. assemblies%is_known
+         if (is) is = assemblies%list(1)%is_proved
          if (.not. is) return
-         if (a%chosen == 0) then
-            is = .not. is_found .or. any(a%blocks%moves)
+         if (assemblies%chosen == 0) then
+            is = .not. is_found .or. any(assemblies%blocks%moves)
          else
-            associate (distance => a%list(a%chosen)%distance)
-               is = is_nearer(a%list(1)%distance, distance)
+            associate (distance => assemblies%list(assemblies%chosen)%distance)
+               is = is_nearer(assemblies%list(1)%distance, distance)
             end associate
          end if
       end function is_nearer_one
@@ -151,19 +152,19 @@ contains
 
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
    !> changed it last; `seen`: of each block the same, when it was solved.
-   subroutine search(m, f, a)
+   subroutine search(m, following, assemblies)
       type(mechanism_t), intent(in) :: m
-      type(following_t), intent(inout) :: f
-      type(assemblies_t), intent(inout) :: a
-      type(block_positions_t) :: found(size(f%blocks%list))
+      type(following_t), intent(inout) :: following
+      type(assemblies_t), intent(inout) :: assemblies
+      type(block_positions_t) :: found(size(following%blocks%list))
       type(ball_numbers_t) :: p
       type(placed_t) :: q
-      integer :: chosen(size(found)), seen(size(found)), changed(0:f%blocks%unknowns), choice, failed, i, k
+      integer :: chosen(size(found)), seen(size(found)), changed(0:following%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
-      p = new_ball_numbers(m, f%blocks, f%geometry)
-      q = new_placed(f%blocks, size(m%drives))
-      f%blocks%needed = [(k, k=1, size(found))]
+      p = new_ball_numbers(m, following%blocks, following%geometry)
+      q = new_placed(following%blocks, size(m%drives))
+      following%blocks%needed = [(k, k=1, size(found))]
       chosen = 0
       seen = -1
       changed = 0
@@ -171,16 +172,17 @@ contains
       i = 1
       do while (i >= 1)
          if (i > size(found)) then
-            a%are_more = size(a%list) == max_assemblies
-            if (a%are_more) exit
-            call prove_position(p, f%blocks, f%path, f%state, 0, q, failed)
+            assemblies%are_more = size(assemblies%list) == max_assemblies
+            if (assemblies%are_more) exit
+            call prove_position(p, following%blocks, following%path, following%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call record_assembly(f, found, chosen, is_proved, a)
+            call record_assembly(following, found, chosen, is_proved, assemblies)
             i = i - 1
             cycle
          end if
-         if (chosen(i) == 0 .and. largest_known(f%blocks, i, changed) > seen(i)) then
-            call find_positions(f%blocks, f%geometry, i, f%work, f%state, max_group, f%guess%starts(i)%paths, found(i))
+         if (chosen(i) == 0 .and. largest_known(following%blocks, i, changed) > seen(i)) then
+            call find_positions(following%blocks, following%geometry, i, following%work, following%state, max_group, &
+               following%guess%starts(i)%paths, found(i))
             seen(i) = choice
          end if
          chosen(i) = chosen(i) + 1
@@ -189,47 +191,47 @@ contains
             i = i - 1
             cycle
          end if
-         call set_values(f%blocks, i, found(i)%x(:, chosen(i)), f%state)
+         call set_values(following%blocks, i, found(i)%x(:, chosen(i)), following%state)
          choice = choice + 1
-         changed(own_unknowns(f%blocks, i)) = choice
+         changed(own_unknowns(following%blocks, i)) = choice
          i = i + 1
       end do
-      do k = 1, size(a%blocks)
-         a%blocks(k)%block_positions_t = found(a%blocks(k)%block)
+      do k = 1, size(assemblies%blocks)
+         assemblies%blocks(k)%block_positions_t = found(assemblies%blocks(k)%block)
       end do
    end subroutine search
 
-   !> Puts the assembly that `f` has now among the others, the nearest first; of those that are alike in the order in
-   !> which they were found.
-   subroutine record_assembly(f, found, chosen, is_proved, a)
-      type(following_t), intent(in) :: f
+   !> Puts the assembly that `following` has now among the others, the nearest first; of those that are alike in the
+   !> order in which they were found.
+   subroutine record_assembly(following, found, chosen, is_proved, assemblies)
+      type(following_t), intent(in) :: following
       type(block_positions_t), intent(in) :: found(:)
       integer, intent(in) :: chosen(:)
       logical, intent(in) :: is_proved
-      type(assemblies_t), intent(inout) :: a
+      type(assemblies_t), intent(inout) :: assemblies
       type(assembly_t) :: one
       type(motion_t) :: q
       real(wp) :: length
       logical :: finite
       integer :: i, k
 
-      q = new_motion(size(f%guess%links, 2))
-      call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, finite)
+      q = new_motion(size(following%guess%links, 2))
+      call move_links(following%geometry%chain, size(following%geometry%chain%links), following%state, q, finite)
       one%is_proved = is_proved
-      do i = 1, size(f%geometry%cylinders)
-         associate (c => f%geometry%cylinders(i))
+      do i = 1, size(following%geometry%cylinders)
+         associate (c => following%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
             ! A length of 0 within rounding is kept, and nothing is proved of its sign.
-            if (abs(length) <= zero_length*f%geometry%span) one%is_proved = .false.
+            if (abs(length) <= zero_length*following%geometry%span) one%is_proved = .false.
             one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, length)
          end associate
-         if (length < -zero_length*f%geometry%span) a%negative = a%negative + 1
-         if (length < -zero_length*f%geometry%span) return
+         if (length < -zero_length*following%geometry%span) assemblies%negative = assemblies%negative + 1
+         if (length < -zero_length*following%geometry%span) return
       end do
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
-      one%distance = sqrt(sum(squared_distances(one%position, f%guess%links, f%geometry%span)))
-      k = count(a%list%distance <= one%distance*(1.0_wp + alike))
-      a%list = [a%list(:k), one, a%list(k + 1:)]
+      one%distance = sqrt(sum(squared_distances(one%position, following%guess%links, following%geometry%span)))
+      k = count(assemblies%list%distance <= one%distance*(1.0_wp + alike))
+      assemblies%list = [assemblies%list(:k), one, assemblies%list(k + 1:)]
    end subroutine record_assembly
 end module assemblies

@@ -49,80 +49,83 @@ contains
       allocate (s%drive(0:2, 0:drives), source=ball_t(0.0_wp, 0.0_wp))
    end function new_ball_state
 
-   !> Gives unknown `u` of `s`, the blocks' `b`, the `value`.
-   pure subroutine set_ball(b, u, value, s)
+   !> Gives `unknown` of `balls`, the blocks' `b`, the `value`.
+   pure subroutine set_ball(b, unknown, value, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
+      integer, intent(in) :: unknown
       type(ball_t), intent(in) :: value
-      type(ball_state_t), intent(inout) :: s
+      type(ball_state_t), intent(inout) :: balls
 
-      s%u(u)%value = value
-      if (u <= b%orientations) call set_direction(s%u(u))
+      balls%u(unknown)%value = value
+      if (unknown <= b%orientations) call set_direction(balls%u(unknown))
    end subroutine set_ball
 
    !> Gives it the `radius`, about the same midpoint.
-   pure subroutine set_radius(b, u, radius, s)
+   pure subroutine set_radius(b, unknown, radius, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
+      integer, intent(in) :: unknown
       real(wp), intent(in) :: radius
-      type(ball_state_t), intent(inout) :: s
+      type(ball_state_t), intent(inout) :: balls
 
-      s%u(u)%value%radius = radius
-      if (u <= b%orientations) call widen(s%u(u))
+      balls%u(unknown)%value%radius = radius
+      if (unknown <= b%orientations) call widen(balls%u(unknown))
    end subroutine set_radius
 
-   !> Cosine and sine of the angle `u`, those of the library taken to be right within two units in the last place.
-   pure subroutine set_direction(u)
-      type(unknown_t), intent(inout) :: u
+   !> Cosine and sine of the angle `unknown`, those of the library taken to be right within two units in the last place.
+   pure subroutine set_direction(unknown)
+      type(unknown_t), intent(inout) :: unknown
 
-      u%c%mid = cos(u%value%mid)
-      u%s%mid = sin(u%value%mid)
-      call widen(u)
+      unknown%c%mid = cos(unknown%value%mid)
+      unknown%s%mid = sin(unknown%value%mid)
+      call widen(unknown)
    end subroutine set_direction
 
    !> Their radii by that of the angle, |cos(m + r) - cos m| <= |sin m| r + |cos m| r^2/2.
-   pure subroutine widen(u)
-      type(unknown_t), intent(inout) :: u
+   pure subroutine widen(unknown)
+      type(unknown_t), intent(inout) :: unknown
       real(wp) :: half, c, s
 
-      associate (r => u%value%radius)
+      associate (r => unknown%value%radius)
          half = 0.5_wp*r**2
-         c = abs(u%c%mid)
-         s = abs(u%s%mid)
-         u%c%radius = (s*r + c*half + 2.0_wp*rounding*(c + r + half))*up
-         u%s%radius = (c*r + s*half + 2.0_wp*rounding*(s + r + half))*up
+         c = abs(unknown%c%mid)
+         s = abs(unknown%s%mid)
+         unknown%c%radius = (s*r + c*half + 2.0_wp*rounding*(c + r + half))*up
+         unknown%s%radius = (c*r + s*half + 2.0_wp*rounding*(s + r + half))*up
       end associate
    end subroutine widen
 
-   !> Jacobian `a`, stored as the shape of the block says, residual `r` (rows) of block `i` at the state, and the
-   !> right-hand side `v` (rows) for the velocities there, with what earlier blocks give.
-   pure subroutine assemble_balls(b, x, i, s, a, r, v)
+   !> Jacobian `jacobian`, stored as the shape of the block says, residual `residuals` (rows) of block `i` at the state,
+   !> and the right-hand side `right_side` (rows) for the velocities there, with what earlier blocks give.
+   pure subroutine assemble_balls(b, numbers, i, balls, jacobian, residuals, right_side)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: x
+      type(ball_numbers_t), intent(in) :: numbers
       integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: s
-      type(ball_t), intent(inout) :: a(*), r(*), v(*)
+      type(ball_state_t), intent(inout) :: balls
+      type(ball_t), intent(inout) :: jacobian(*), residuals(*), right_side(*)
 
       associate (block => b%list(i))
-         call find_known(block%first_loop, block%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
-         call assemble(block, .true., b%loops, x%loops, b%body_vectors, x%d, b%slides, x%e, b%rows, x%rows, s%drive, &
-            s%u, s%own, s%guide, s%loop, a, r, v)
+         call find_known(block%first_loop, block%last_loop, b%loops, numbers%loops, b%body_vectors, numbers%d, &
+            balls%u, balls%loop)
+         call assemble(block, .true., b%loops, numbers%loops, b%body_vectors, numbers%d, b%slides, numbers%e, b%rows, &
+            numbers%rows, balls%drive, balls%u, balls%own, balls%guide, balls%loop, jacobian, residuals, right_side)
       end associate
    end subroutine assemble_balls
 
-   !> The right-hand side `v` (rows) for the accelerations of block `i`, with the vectors of the last `assemble_balls`.
-   pure subroutine ball_accelerations(b, i, s, v)
+   !> The right-hand side `right_side` (rows) for the accelerations of block `i`, with the vectors of the last
+   !> `assemble_balls`.
+   pure subroutine ball_accelerations(b, i, balls, right_side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(ball_state_t), intent(in) :: s
-      type(ball_t), intent(inout) :: v(*)
+      type(ball_state_t), intent(in) :: balls
+      type(ball_t), intent(inout) :: right_side(*)
       integer :: m
 
       associate (block => b%list(i))
          do m = block%first_loop, block%last_loop
-            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
+            call acceleration_rows(b%loops(m), b%body_vectors, b%slides, balls%u, balls%own, balls%guide, &
+               balls%loop(m), right_side)
          end do
-         call add_drives(block%first_row, block%last_row, b%rows, 2, s%drive, v)
+         call add_drives(block%first_row, block%last_row, b%rows, 2, balls%drive, right_side)
       end associate
    end subroutine ball_accelerations
 

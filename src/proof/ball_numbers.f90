@@ -64,12 +64,12 @@ contains
          + merge(2.0_wp*angle, 0.0_wp, b%rows%angular))*room
    end function new_ball_numbers
 
-   !> The vector `d`, of which each component is known up to `radius`.
-   elemental type(vector_t) function around(d, radius)
-      type(real_vector_t), intent(in) :: d
+   !> The `vector`, of which each component is known up to `radius`.
+   elemental type(vector_t) function around(vector, radius)
+      type(real_vector_t), intent(in) :: vector
       real(wp), intent(in) :: radius
 
-      around = vector_t(ball_t(d%x, radius*room), ball_t(d%y, radius*room))
+      around = vector_t(ball_t(vector%x, radius*room), ball_t(vector%y, radius*room))
    end function around
 
    !> Bounds the errors of all angles of links against their orientations, sums of the deck's, and of the directions of

@@ -31,53 +31,53 @@ module balls
 
 contains
 
-   !> The largest absolute value in `a`.
-   elemental real(wp) function top(a)
-      type(ball_t), intent(in) :: a
+   !> The largest absolute value in `ball`.
+   elemental real(wp) function top(ball)
+      type(ball_t), intent(in) :: ball
 
-      top = (abs(a%mid) + a%radius)*up
+      top = (abs(ball%mid) + ball%radius)*up
    end function top
 
-   !> The largest distance of a number in `a` from `x`.
-   elemental real(wp) function distance(a, x)
-      type(ball_t), intent(in) :: a
-      real(wp), intent(in) :: x
+   !> The largest distance of a number in `ball` from `number`.
+   elemental real(wp) function distance(ball, number)
+      type(ball_t), intent(in) :: ball
+      real(wp), intent(in) :: number
 
-      distance = (abs(a%mid - x) + a%radius)*up
+      distance = (abs(ball%mid - number) + ball%radius)*up
    end function distance
 
    !> a + b.
-   elemental type(ball_t) function add(a, b) result(c)
-      type(ball_t), intent(in) :: a, b
+   elemental type(ball_t) function add(first, second) result(c)
+      type(ball_t), intent(in) :: first, second
 
-      c%mid = a%mid + b%mid
-      c%radius = (a%radius + b%radius + rounding*abs(c%mid))*up
+      c%mid = first%mid + second%mid
+      c%radius = (first%radius + second%radius + rounding*abs(c%mid))*up
    end function add
 
    !> a - b.
-   elemental type(ball_t) function subtract(a, b) result(c)
-      type(ball_t), intent(in) :: a, b
+   elemental type(ball_t) function subtract(first, second) result(c)
+      type(ball_t), intent(in) :: first, second
 
-      c%mid = a%mid - b%mid
-      c%radius = (a%radius + b%radius + rounding*abs(c%mid))*up
+      c%mid = first%mid - second%mid
+      c%radius = (first%radius + second%radius + rounding*abs(c%mid))*up
    end function subtract
 
    !> -a.
-   elemental type(ball_t) function negate(a) result(c)
-      type(ball_t), intent(in) :: a
+   elemental type(ball_t) function negate(ball) result(c)
+      type(ball_t), intent(in) :: ball
 
-      c = ball_t(-a%mid, a%radius)
+      c = ball_t(-ball%mid, ball%radius)
    end function negate
 
    !> a b: with zero zero; any other has room for underflow.
-   elemental type(ball_t) function multiply(a, b) result(c)
-      type(ball_t), intent(in) :: a, b
+   elemental type(ball_t) function multiply(first, second) result(c)
+      type(ball_t), intent(in) :: first, second
       real(wp) :: of_a, of_b
 
-      of_a = abs(a%mid) + a%radius
-      of_b = abs(b%mid)
-      c%mid = a%mid*b%mid
-      c%radius = (of_a*b%radius + a%radius*of_b + rounding*abs(c%mid) &
-         + merge(tiny(1.0_wp), 0.0_wp, of_a > 0.0_wp .and. of_b + b%radius > 0.0_wp))*up
+      of_a = abs(first%mid) + first%radius
+      of_b = abs(second%mid)
+      c%mid = first%mid*second%mid
+      c%radius = (of_a*second%radius + first%radius*of_b + rounding*abs(c%mid) &
+         + merge(tiny(1.0_wp), 0.0_wp, of_a > 0.0_wp .and. of_b + second%radius > 0.0_wp))*up
    end function multiply
 end module balls

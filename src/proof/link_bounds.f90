@@ -17,12 +17,12 @@ module link_bounds
 contains
 
    !> The exact place from the origin of `q` and angle of each link and their derivatives lie in `links` (3, 0:2,
-   !> links); the exact unknowns lie in `s`. 0 of the ground and of links that nothing asks for. `largest` (2, 0:2): the
-   !> largest distances of lengths and of angles from those of the motion `q` of `m`, whose geometry is `x`.
-   pure subroutine bound_links(m, x, s, q, links, largest)
+   !> links); the exact unknowns lie in `balls`. 0 of the ground and of links that nothing asks for. `largest` (2, 0:2):
+   !> the largest distances of lengths and of angles from those of the motion `q` of `m`, whose geometry is `x`.
+   pure subroutine bound_links(m, x, balls, q, links, largest)
       type(mechanism_t), intent(in) :: m
       type(geometry_t), intent(in) :: x
-      type(ball_state_t), intent(in) :: s
+      type(ball_state_t), intent(in) :: balls
       type(motion_t), intent(in) :: q
       type(ball_t), intent(out) :: links(3, 0:2, size(m%links))
       real(wp), intent(out) :: largest(2, 0:2)
@@ -39,11 +39,13 @@ contains
       do i = 1, x%chain%wanted
          associate (chain => x%chain%links, length => x%chain%length)
             associate (h => chain(i), own => chain(i)%link, place => chain(i)%place, &
-               p => s%u(chain(i)%parent_orientation), f => s%u(chain(i)%orientation))
+               p => balls%u(chain(i)%parent_orientation), f => balls%u(chain(i)%orientation))
                here = vector_t()
                if (h%root > 0) then
-                  call add_sliding(vector_t(ball_t(length*h%root_unit(1), 0.0_wp), zero), s%u(0), s%u(h%root), here)
-                  call add_sliding(vector_t(zero, ball_t(length*h%root_unit(2), 0.0_wp)), s%u(0), s%u(h%root + 1), here)
+                  call add_sliding(vector_t(ball_t(length*h%root_unit(1), 0.0_wp), zero), balls%u(0), balls%u(h%root), &
+                     here)
+                  call add_sliding(vector_t(zero, ball_t(length*h%root_unit(2), 0.0_wp)), balls%u(0), &
+                     balls%u(h%root + 1), here)
                else
                   if (h%parent > 0) here%x = links(1, :, h%parent)
                   if (h%parent > 0) here%y = links(2, :, h%parent)
@@ -52,7 +54,7 @@ contains
                      f, here)
                   slide = place%slide_body_vector*length
                   if (h%slide > 0) call add_sliding(around(real_vector_t(slide(1), slide(2)), &
-                     of_direction*norm2(slide)), p, s%u(h%slide), here)
+                     of_direction*norm2(slide)), p, balls%u(h%slide), here)
                end if
                links(1, :, own) = here%x
                links(2, :, own) = here%y
@@ -67,26 +69,26 @@ contains
       end do
    end subroutine bound_links
 
-   !> Adds to `place` (0:2) the vector `d`, which `f` rotates, times `u`, with its derivatives.
-   pure subroutine add_sliding(d, f, u, place)
-      type(vector_t), intent(in) :: d
-      type(unknown_t), intent(in) :: f, u
+   !> Adds to `place` (0:2) the vector `direction`, which `angle` rotates, times `slide`, with its derivatives.
+   pure subroutine add_sliding(direction, angle, slide, place)
+      type(vector_t), intent(in) :: direction
+      type(unknown_t), intent(in) :: angle, slide
       type(vector_t), intent(inout) :: place(0:2)
       type(vector_t) :: e(0:2)
 
       e = vector_t()
-      call add_rotating(d, f, e)
-      place%x = place%x + product_of([u%value, u%rate, u%acceleration], e%x)
-      place%y = place%y + product_of([u%value, u%rate, u%acceleration], e%y)
+      call add_rotating(direction, angle, e)
+      place%x = place%x + product_of([slide%value, slide%rate, slide%acceleration], e%x)
+      place%y = place%y + product_of([slide%value, slide%rate, slide%acceleration], e%y)
    end subroutine add_sliding
 
-   !> (0:2) The product of `a` and `b`, with its derivatives.
-   pure function product_of(a, b) result(c)
-      type(ball_t), intent(in) :: a(0:2), b(0:2)
+   !> (0:2) The product of `first` and `second`, with its derivatives.
+   pure function product_of(first, second) result(c)
+      type(ball_t), intent(in) :: first(0:2), second(0:2)
       type(ball_t) :: c(0:2)
 
-      c(0) = a(0)*b(0)
-      c(1) = a(1)*b(0) + a(0)*b(1)
-      c(2) = a(2)*b(0) + ball_t(2.0_wp, 0.0_wp)*(a(1)*b(1)) + a(0)*b(2)
+      c(0) = first(0)*second(0)
+      c(1) = first(1)*second(0) + first(0)*second(1)
+      c(2) = first(2)*second(0) + ball_t(2.0_wp, 0.0_wp)*(first(1)*second(1)) + first(0)*second(2)
    end function product_of
 end module link_bounds

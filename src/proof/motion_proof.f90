@@ -61,8 +61,8 @@ contains
 
    !> Proves the motion `q` of `m`, the state `s` of the blocks `b`, and the step to it. `bounded`: with bounds of all
    !> that is computed; otherwise of positions alone, as the step needs them.
-   subroutine prove_motion(p, m, b, x, path, s, q, bounded, found)
-      type(motion_prover_t), intent(inout) :: p
+   subroutine prove_motion(prover, m, b, x, path, s, q, bounded, found)
+      type(motion_prover_t), intent(inout) :: prover
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -79,27 +79,27 @@ contains
       found%has_step = .false.
       found%step = step_proof_t()
       if (.not. allocated(found%links)) then
-         p%numbers = new_ball_numbers(m, b, x)
-         p%at(1) = new_placed(b, size(m%drives))
-         p%at(2) = p%at(1)
+         prover%numbers = new_ball_numbers(m, b, x)
+         prover%at(1) = new_placed(b, size(m%drives))
+         prover%at(2) = prover%at(1)
          allocate (found%links(3, 0:2, size(m%links)))
       end if
       if (allocated(found%failed)) deallocate (found%failed)
       if (q%known < 2) return
 
-      associate (here => p%at(p%now), before => p%at(3 - p%now))
-         call prove_position(p%numbers, b, path, s, merge(2, 0, bounded), here, failed)
+      associate (here => prover%at(prover%now), before => prover%at(3 - prover%now))
+         call prove_position(prover%numbers, b, path, s, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
             if (bounded) call bound_links(m, x, here%ball_state_t, q, found%links, found%largest)
             found%gap = here%gap
-            found%has_step = p%has_begun
-            if (found%has_step) call prove_step(p%numbers, b, x, path, s, before, here, found%step)
+            found%has_step = prover%has_begun
+            if (found%has_step) call prove_step(prover%numbers, b, x, path, s, before, here, found%step)
             failed = found%step%block
          end if
       end associate
-      if (found%is_proved) p%now = 3 - p%now
-      p%has_begun = p%has_begun .or. found%is_proved
+      if (found%is_proved) prover%now = 3 - prover%now
+      prover%has_begun = prover%has_begun .or. found%is_proved
       if (holds(found)) return
 
       block_of = [0, b%block_of]
@@ -114,10 +114,10 @@ contains
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of those of the blocks `b` that are needed, with the numbers `p`, between the proved positions
+   !> Proves the motion of those of the blocks `b` that are needed, with the `numbers`, between the proved positions
    !> `from` and `to`, the state `s`.
-   subroutine prove_step(p, b, x, path, s, from, to, proof)
-      type(ball_numbers_t), intent(in) :: p
+   subroutine prove_step(numbers, b, x, path, s, from, to, proof)
+      type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
@@ -143,7 +143,7 @@ contains
          integer :: failed
 
          proof%tries = proof%tries + 1
-         call prove_tube(p, b, path, from, to, tube)
+         call prove_tube(numbers, b, path, from, to, tube)
          if (tube%block == 0) then
             proof%parts = proof%parts + 1
             proof%radius = max(proof%radius, maxval(tube%radius))
@@ -164,7 +164,7 @@ contains
          if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          allocate (middle)
          middle = new_placed(b, size(path%laws))
-         call prove_position(p, b, path, other, 0, middle, failed)
+         call prove_position(numbers, b, path, other, 0, middle, failed)
          proof%is_proved = failed == 0
          if (proof%is_proved) call prove_part(from, middle, shortest)
          if (proof%is_proved) call prove_part(middle, to, shortest)

@@ -75,49 +75,50 @@ contains
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
    end function new_placed
 
-   !> Proves the position `s` of those of the blocks `b` that are needed, at its time and values, for the numbers `p`;
-   !> with `order` 2 instead of 0 velocities and accelerations as well. Result: `q`, and `failed`, the
+   !> Proves the position `s` of those of the blocks `b` that are needed, at its time and values, for the `numbers`;
+   !> with `order` 2 instead of 0 velocities and accelerations as well. Result: `placed`, and `failed`, the
    !> number of the first block that is not proved, where the proof ends; or 0.
-   subroutine prove_position(p, b, path, s, order, q, failed)
-      type(ball_numbers_t), intent(in) :: p
+   subroutine prove_position(numbers, b, path, s, order, placed, failed)
+      type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
       type(state_t), intent(in) :: s
       integer, intent(in) :: order
-      type(placed_t), intent(inout) :: q
+      type(placed_t), intent(inout) :: placed
       integer, intent(out) :: failed
       type(bounds_t) :: law
       logical :: is_proved
       integer :: i, k
 
-      q%t = s%t
-      q%gap = 0.0_wp
+      placed%t = s%t
+      placed%gap = 0.0_wp
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
-      q%u(:) = unknown_t()
+      placed%u(:) = unknown_t()
       do i = 1, size(path%laws)
          law = bounds_of(path%laws(i), s%t - of_time*abs(s%t), s%t + of_time*abs(s%t), one_instant=.true.)
          associate (value => s%drive_value(:, i), unit => path%unit(i))
-            q%drive(:, i)%mid = value
-            q%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + 4.0_wp*rounding*abs(value))*room
+            placed%drive(:, i)%mid = value
+            placed%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &
+               4.0_wp*rounding*abs(value))*room
          end associate
       end do
 
       do k = 1, size(b%needed)
          failed = b%needed(k)
-         call prove_block(p, b, failed, s, order, q, is_proved)
+         call prove_block(numbers, b, failed, s, order, placed, is_proved)
          if (.not. is_proved) return
       end do
       failed = 0
    end subroutine prove_position
 
-   !> Proves block `i` at the values of `s`, with earlier blocks as in `q`: the values of its unknowns and, with `order`
-   !> 2 instead of 0, their derivatives. Result: what `q` has of this block.
-   subroutine prove_block(p, b, i, s, order, q, is_proved)
-      type(ball_numbers_t), intent(in) :: p
+   !> Proves block `i` at the values of `s`, with earlier blocks as in `placed`: the values of its unknowns and, with
+   !> `order` 2 instead of 0, their derivatives. Result: what `placed` has of this block.
+   subroutine prove_block(numbers, b, i, s, order, placed, is_proved)
+      type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
-      type(placed_t), intent(inout) :: q
+      type(placed_t), intent(inout) :: placed
       logical, intent(out) :: is_proved
       type(block_work_t) :: w
       type(unknown_t) :: exact
@@ -126,59 +127,60 @@ contains
 
       associate (block => b%list(i), own => own_unknowns(b, i))
          do k = 1, size(own)
-            call set_ball(b, own(k), ball_t(s%u(own(k))%value, 0.0_wp), q%ball_state_t)
-            q%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)
-            q%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
+            call set_ball(b, own(k), ball_t(s%u(own(k))%value, 0.0_wp), placed%ball_state_t)
+            placed%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)
+            placed%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
          end do
          is_proved = block%direct
          if (block%direct) then
-            associate (row => b%rows(block%first_row), direct => q%u(own(1)))
-               call find_direct(row, p%rows(block%first_row), q%drive, q%u(row%other), exact)
-               call set_radius(b, own(1), distance(exact%value, direct%value%mid), q%ball_state_t)
+            associate (row => b%rows(block%first_row), direct => placed%u(own(1)))
+               call find_direct(row, numbers%rows(block%first_row), placed%drive, placed%u(row%other), exact)
+               call set_radius(b, own(1), distance(exact%value, direct%value%mid), placed%ball_state_t)
                direct%rate%radius = distance(exact%rate, direct%rate%mid)
                direct%acceleration%radius = distance(exact%acceleration, direct%acceleration%mid)
-               q%open(0, block%first_row) = direct%value%radius
-               q%open(1, block%first_row) = direct%rate%radius
+               placed%open(0, block%first_row) = direct%value%radius
+               placed%open(1, block%first_row) = direct%rate%radius
             end associate
             return
          end if
 
-         call contract(b, p, i, q%ball_state_t, w, is_proved)
+         call contract(b, numbers, i, placed%ball_state_t, w, is_proved)
          if (.not. is_proved) return
          w%open(:) = top(w%r)
-         call subtract_product(1, q%u, own, w)
-         q%open(0, block%first_row:block%last_row) = w%open
-         q%open(1, block%first_row:block%last_row) = top(w%v)
-         call find_ball(b, p, i, q%ball_state_t, w, radius)
+         call subtract_product(1, placed%u, own, w)
+         placed%open(0, block%first_row:block%last_row) = w%open
+         placed%open(1, block%first_row:block%last_row) = top(w%v)
+         call find_ball(b, numbers, i, placed%ball_state_t, w, radius)
          is_proved = radius >= 0.0_wp
          if (.not. is_proved) return
-         if (size(w%r) > size(own)) q%gap = max(q%gap, maxval(top(w%r)))
+         if (size(w%r) > size(own)) placed%gap = max(placed%gap, maxval(top(w%r)))
          do k = 1, size(own)
             call set_radius(b, own(k), min(radius, (w%x(k) + 0.5_wp*(w%at_centre(k) + w%off(k))*radius)*room), &
-               q%ball_state_t)
+               placed%ball_state_t)
          end do
 
          do k = 1, order
-            if (k == 2) call ball_accelerations(b, i, q%ball_state_t, w%v)
-            call subtract_product(k, q%u, own, w)
+            if (k == 2) call ball_accelerations(b, i, placed%ball_state_t, w%v)
+            call subtract_product(k, placed%u, own, w)
             call apply(size(w%r), size(own), w%inverse, top(w%v), w%x)
             largest = maxval(w%x)/(1.0_wp - maxval(w%off))*room
             w%x(:) = (w%x + w%off*largest)*room
-            if (k == 1) q%u(own)%rate%radius = w%x
-            if (k == 2) q%u(own)%acceleration%radius = w%x
+            if (k == 1) placed%u(own)%rate%radius = w%x
+            if (k == 2) placed%u(own)%acceleration%radius = w%x
             is_proved = is_proved .and. all(w%x <= huge(1.0_wp))
          end do
       end associate
    end subroutine prove_block
 
-   !> Equations and Jacobian of block `i`, with the numbers `x`, at the state `s`, whose own unknowns are at the centre
-   !> of a ball, and about its inverse: all in `w`. `exists`: there is an inverse, and the block is not too wide.
-   subroutine contract(b, x, i, s, w, exists)
+   !> Equations and Jacobian of block `i`, with the `numbers`, at the state `balls`, whose own unknowns are at the
+   !> centre of a ball, and about its inverse: all in `work`. `exists`: there is an inverse, and the block is not too
+   !> wide.
+   subroutine contract(b, numbers, i, balls, work, exists)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: x
+      type(ball_numbers_t), intent(in) :: numbers
       integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: s
-      type(block_work_t), intent(out) :: w
+      type(ball_state_t), intent(inout) :: balls
+      type(block_work_t), intent(out) :: work
       logical, intent(out) :: exists
       real(wp), allocatable :: midpoints(:, :)    ! of the Jacobian
       integer :: k
@@ -187,86 +189,87 @@ contains
          exists = shape%n <= max_unknowns
          if (.not. exists) return
          associate (rows => shape%rows, n => shape%n, entries => entries_of(shape))
-            allocate (w%row(entries), w%column(entries), w%j(entries), w%r(rows), w%v(rows), w%open(rows), &
-               w%inverse(n, rows), w%of_midpoints(n), w%at_centre(n), w%off(n), w%x(n))
+            allocate (work%row(entries), work%column(entries), work%j(entries), work%r(rows), work%v(rows), &
+               work%open(rows), &
+               work%inverse(n, rows), work%of_midpoints(n), work%at_centre(n), work%off(n), work%x(n))
             allocate (midpoints(rows, n), source=0.0_wp)
             if (shape%pattern == 0) then
-               w%row(:) = [(1 + modulo(k - 1, rows), k=1, entries)]
-               w%column(:) = [(1 + (k - 1)/rows, k=1, entries)]
+               work%row(:) = [(1 + modulo(k - 1, rows), k=1, entries)]
+               work%column(:) = [(1 + (k - 1)/rows, k=1, entries)]
             else
                associate (pattern => b%patterns(shape%pattern))
-                  w%row(:) = pattern%row + 1
+                  work%row(:) = pattern%row + 1
                   do k = 1, n
-                     w%column(pattern%first(k) + 1:pattern%first(k + 1)) = k
+                     work%column(pattern%first(k) + 1:pattern%first(k + 1)) = k
                   end do
                end associate
             end if
          end associate
       end associate
 
-      call assemble_balls(b, x, i, s, w%j, w%r, w%v)
-      do k = 1, size(w%j)
-         midpoints(w%row(k), w%column(k)) = w%j(k)%mid
+      call assemble_balls(b, numbers, i, balls, work%j, work%r, work%v)
+      do k = 1, size(work%j)
+         midpoints(work%row(k), work%column(k)) = work%j(k)%mid
       end do
-      call bound_inverse(size(w%r), size(w%x), midpoints, w%inverse, w%of_midpoints, exists)
-      if (exists) call find_off(w, w%at_centre)
+      call bound_inverse(size(work%r), size(work%x), midpoints, work%inverse, work%of_midpoints, exists)
+      if (exists) call find_off(work, work%at_centre)
    end subroutine contract
 
    !> `off` (n): the row sums of |1 - A J| of the Jacobian J at hand.
-   pure subroutine find_off(w, off)
-      type(block_work_t), intent(in) :: w
+   pure subroutine find_off(work, off)
+      type(block_work_t), intent(in) :: work
       real(wp), intent(out) :: off(:)
-      real(wp) :: wide(size(w%r))
+      real(wp) :: wide(size(work%r))
       integer :: k
 
       wide = 0.0_wp
-      do k = 1, size(w%j)
-         wide(w%row(k)) = wide(w%row(k)) + w%j(k)%radius
+      do k = 1, size(work%j)
+         wide(work%row(k)) = wide(work%row(k)) + work%j(k)%radius
       end do
-      call apply(size(wide), size(off), w%inverse, wide, off)
-      off = (w%of_midpoints + off)*(1.0_wp + (16 + size(w%x))*rounding)
+      call apply(size(wide), size(off), work%inverse, wide, off)
+      off = (work%of_midpoints + off)*(1.0_wp + (16 + size(work%x))*rounding)
    end subroutine find_off
 
-   !> Finds the `radius` of a ball in which block `i`, with the numbers `x`, has exactly one solution: about the own
-   !> unknowns of the state `s`, where it was contracted and its equations are no larger than w%open. -1: none is
-   !> proved. These unknowns, and the equations in `w`, are then those in a ball that is no smaller. `others`: earlier
-   !> blocks are off by so much at most; w%v is then how much they change the equations.
-   subroutine find_ball(b, x, i, s, w, radius, others)
+   !> Finds the `radius` of a ball in which block `i`, with the `numbers`, has exactly one solution: about the own
+   !> unknowns of the state `balls`, where it was contracted and its equations are no larger than w%open. -1: none is
+   !> proved. These unknowns, and the equations in `work`, are then those in a ball that is no smaller. `others`:
+   !> earlier blocks are off by so much at most; w%v is then how much they change the equations.
+   subroutine find_ball(b, numbers, i, balls, work, radius, others)
       type(blocks_t), intent(in) :: b
-      type(ball_numbers_t), intent(in) :: x
+      type(ball_numbers_t), intent(in) :: numbers
       integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: s
-      type(block_work_t), intent(inout) :: w
+      type(ball_state_t), intent(inout) :: balls
+      type(block_work_t), intent(inout) :: work
       real(wp), intent(out) :: radius
       real(wp), intent(in), optional :: others
-      real(wp) :: eta, z1, z2, rate, centre(size(w%x))
+      real(wp) :: eta, z1, z2, rate, centre(size(work%x))
       integer :: tries, k
 
       radius = -1.0_wp
-      call apply(size(w%r), size(w%x), w%inverse, w%open, w%x)
+      call apply(size(work%r), size(work%x), work%inverse, work%open, work%x)
       ! What is not a number lies in no ball.
-      if (.not. (all(w%x <= 1.0_wp) .and. all(w%at_centre <= max_rate))) return
-      eta = max(0.0_wp, maxval(w%x))
+      if (.not. (all(work%x <= 1.0_wp) .and. all(work%at_centre <= max_rate))) return
+      eta = max(0.0_wp, maxval(work%x))
       if (present(others)) eta = eta + others
-      z1 = max(0.0_wp, maxval(w%at_centre))
+      z1 = max(0.0_wp, maxval(work%at_centre))
       z2 = 0.0_wp
-      do k = 1, size(w%x)
-         centre(k) = s%u(b%unknown(b%list(i)%first + k - 1))%value%radius
+      do k = 1, size(work%x)
+         centre(k) = balls%u(b%unknown(b%list(i)%first + k - 1))%value%radius
       end do
       do tries = 1, max_tries
          radius = radius_of(z1, z2, eta)
          if (radius < 0.0_wp) return
-         do k = 1, size(w%x)
-            call set_radius(b, b%unknown(b%list(i)%first + k - 1), (centre(k) + radius)*room, s)
+         do k = 1, size(work%x)
+            call set_radius(b, b%unknown(b%list(i)%first + k - 1), (centre(k) + radius)*room, balls)
          end do
-         call assemble_balls(b, x, i, s, w%j, w%r, w%v)
-         call find_off(w, w%off)
-         if (.not. all(w%off <= max_rate)) exit
-         rate = max(0.0_wp, maxval(w%off))
+         call assemble_balls(b, numbers, i, balls, work%j, work%r, work%v)
+         call find_off(work, work%off)
+         if (.not. all(work%off <= max_rate)) exit
+         rate = max(0.0_wp, maxval(work%off))
          if (present(others)) then
-            call apply(size(w%r), size(w%x), w%inverse, (w%open + top(w%v))*room, w%x)
-            if (.not. all(w%x <= 1.0_wp)) exit
-            eta = max(0.0_wp, maxval(w%x))
+            call apply(size(work%r), size(work%x), work%inverse, (work%open + top(work%v))*room, work%x)
+            if (.not. all(work%x <= 1.0_wp)) exit
+            eta = max(0.0_wp, maxval(work%x))
          end if
          ! Radii grow as polynomials without a negative coefficient: halfway the rate is no more than the mean.
          if ((eta + 0.5_wp*(z1 + rate)*radius)*room <= radius) then
@@ -278,18 +281,19 @@ contains
       radius = -1.0_wp
    end subroutine find_ball
 
-   !> Subtracts from w%v the Jacobian times derivative number `order` (1 or 2) of the block's `own` unknowns among `u`.
-   pure subroutine subtract_product(order, u, own, w)
+   !> Subtracts from w%v the Jacobian times derivative number `order` (1 or 2) of the block's `own` unknowns among
+   !> `unknowns`.
+   pure subroutine subtract_product(order, unknowns, own, work)
       integer, intent(in) :: order, own(:)
-      type(unknown_t), intent(in) :: u(0:)
-      type(block_work_t), intent(inout) :: w
+      type(unknown_t), intent(in) :: unknowns(0:)
+      type(block_work_t), intent(inout) :: work
       type(ball_t) :: x
       integer :: k
 
-      do k = 1, size(w%j)
-         if (order == 1) x = u(own(w%column(k)))%rate
-         if (order == 2) x = u(own(w%column(k)))%acceleration
-         w%v(w%row(k)) = w%v(w%row(k)) - w%j(k)*x
+      do k = 1, size(work%j)
+         if (order == 1) x = unknowns(own(work%column(k)))%rate
+         if (order == 2) x = unknowns(own(work%column(k)))%acceleration
+         work%v(work%row(k)) = work%v(work%row(k)) - work%j(k)*x
       end do
    end subroutine subtract_product
 
@@ -340,19 +344,19 @@ contains
       off = off*room**2
    end subroutine bound_inverse
 
-   !> `x` (n): |A| `v` (rows), rounded up.
-   pure subroutine apply(rows, n, a, v, x)
+   !> `product` (n): |A| `vector` (rows), rounded up.
+   pure subroutine apply(rows, n, a, vector, product)
       integer, intent(in) :: rows, n
-      real(wp), intent(in) :: a(n, rows), v(rows)
-      real(wp), intent(out) :: x(n)
+      real(wp), intent(in) :: a(n, rows), vector(rows)
+      real(wp), intent(out) :: product(n)
       integer :: k
 
-      x = 0.0_wp
+      product = 0.0_wp
       do k = 1, rows
-         x = x + a(:, k)*v(k)
+         product = product + a(:, k)*vector(k)
       end do
       ! For products that underflow; what is at rest is so exactly.
-      if (any(v > 0.0_wp)) x = x*(1.0_wp + (16 + rows)*rounding) + tiny(1.0_wp)
+      if (any(vector > 0.0_wp)) product = product*(1.0_wp + (16 + rows)*rounding) + tiny(1.0_wp)
    end subroutine apply
 
    !> The radius of a ball about the centre, where |A| |F| <= `eta`, that is mapped into itself with these `z1` and

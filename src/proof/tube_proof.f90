@@ -48,10 +48,10 @@ contains
       tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of those of the blocks `b` that are needed, with the numbers `p`, between the positions `from`
+   !> Proves the motion of those of the blocks `b` that are needed, with the `numbers`, between the positions `from`
    !> and `to`.
-   subroutine prove_tube(p, b, path, from, to, tube)
-      type(ball_numbers_t), intent(in) :: p
+   subroutine prove_tube(numbers, b, path, from, to, tube)
+      type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
       type(placed_t), intent(in) :: from, to
@@ -152,36 +152,37 @@ contains
          integer :: k
 
          radius = -1.0_wp
-         call contract(b, p, i, tube%curve, w, exists)
+         call contract(b, numbers, i, tube%curve, w, exists)
          if (.not. exists) return
          call ball_accelerations(b, i, tube%curve, w%v)
          call subtract_product(2, tube%curve%u, own, w)
          do k = 1, size(w%open)
             w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
          end do
-         call find_ball(b, p, i, tube%balls, w, radius, maxval(tube%radius))
+         call find_ball(b, numbers, i, tube%balls, w, radius, maxval(tube%radius))
       end subroutine prove_block
    end subroutine prove_tube
 
    !> Balls (0:2) that hold the cubic with the values and rates `x0` and `x1` (0:1) at both ends of an interval of the
-   !> length `h`, and its first and second derivatives by time: those of the control points, which bound a polynomial.
-   pure function cubic(h, x0, x1) result(c)
-      real(wp), intent(in) :: h, x0(0:1), x1(0:1)
+   !> `length`, and its first and second derivatives by time: those of the control points, which bound a polynomial.
+   pure function cubic(length, x0, x1) result(c)
+      real(wp), intent(in) :: length, x0(0:1), x1(0:1)
       type(ball_t) :: c(0:2)
       real(wp) :: first(3), second(2), inexact
 
-      first = [h*x0(1), 3.0_wp*(x1(0) - x0(0)) - h*x0(1) - h*x1(1), h*x1(1)]
+      first = [length*x0(1), 3.0_wp*(x1(0) - x0(0)) - length*x0(1) - length*x1(1), length*x1(1)]
       second = 2.0_wp*[first(2) - first(1), first(3) - first(2)]
       inexact = 32.0_wp*rounding*(abs(x0(0)) + abs(x1(0)) + abs(first(1)) + abs(first(3)))
       c(0) = hull([x0(0), x0(0) + first(1)/3.0_wp, x1(0) - first(3)/3.0_wp, x1(0)], inexact, 1.0_wp)
-      c(1) = hull(first, inexact, h)
-      c(2) = hull(second, 2.0_wp*inexact, h**2)
+      c(1) = hull(first, inexact, length)
+      c(2) = hull(second, 2.0_wp*inexact, length**2)
    end function cubic
 
-   !> A ball that holds all `x` (any number), each known up to `inexact`, divided by `h`.
-   pure type(ball_t) function hull(x, inexact, h)
-      real(wp), intent(in) :: x(:), inexact, h
+   !> A ball that holds all `numbers` (any number), each known up to `inexact`, divided by `divisor`.
+   pure type(ball_t) function hull(numbers, inexact, divisor)
+      real(wp), intent(in) :: numbers(:), inexact, divisor
 
-      hull = ball_t(0.5_wp*(minval(x) + maxval(x))/h, (0.5_wp*(maxval(x) - minval(x)) + inexact)/abs(h)*room)
+      hull = ball_t(0.5_wp*(minval(numbers) + maxval(numbers))/divisor, (0.5_wp*(maxval(numbers) - minval(numbers)) + &
+         inexact)/abs(divisor)*room)
    end function hull
 end module tube_proof

@@ -60,99 +60,99 @@ contains
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `findings`: those of its
    !> structure, which give up what the engines need; without them it is found anew. Where all assemblies are asked
    !> for, it begins in the nearest.
-   subroutine make_set_analysis(m, s, findings)
+   subroutine make_set_analysis(m, set, findings)
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(out) :: s
+      type(set_analysis_t), intent(out) :: set
       type(structure_report_t), intent(inout), optional :: findings
 
-      call new_set_motion(m, s%now, findings)
-      call begin_analysis(s, findings)
+      call new_set_motion(m, set%now, findings)
+      call begin_analysis(set, findings)
    end subroutine make_set_analysis
 
    !> Begins the analysis of the set s%now, which is divided.
-   subroutine begin_analysis(s, findings)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine begin_analysis(set, findings)
+      type(set_analysis_t), intent(inout) :: set
       type(structure_report_t), intent(inout), optional :: findings
       integer :: c
 
-      associate (n => s%now%count)
-         allocate (s%list(n))
-         allocate (s%told_drives(n), source=.false.)
-         allocate (estimator_t :: s%estimators(n))
-         allocate (motion_prover_t :: s%provers(n))
+      associate (n => set%now%count)
+         allocate (set%list(n))
+         allocate (set%told_drives(n), source=.false.)
+         allocate (estimator_t :: set%estimators(n))
+         allocate (motion_prover_t :: set%provers(n))
       end associate
-      if (s%now%assemblies) allocate (s%assemblies(s%now%count))
-      do c = 1, s%now%count
-         if (s%now%assemblies) call find_nearest(s%now%parts(c), instant(s%now, 0), s%assemblies(c))
+      if (set%now%assemblies) allocate (set%assemblies(set%now%count))
+      do c = 1, set%now%count
+         if (set%now%assemblies) call find_nearest(set%now%parts(c), instant(set%now, 0), set%assemblies(c))
          if (present(findings)) then
-            call make_analysis(s%list(c), s%now%parts(c), findings%structures(c))
+            call make_analysis(set%list(c), set%now%parts(c), findings%structures(c))
          else
-            call make_analysis(s%list(c), s%now%parts(c))
+            call make_analysis(set%list(c), set%now%parts(c))
          end if
-         call make_estimator(s%estimators(c), s%now%parts(c))
+         call make_estimator(set%estimators(c), set%now%parts(c))
       end do
-      call begin_paths(s)
+      call begin_paths(set)
    end subroutine begin_analysis
 
-   !> Finds the largest closure error of all instants of `s`, which has none yet, by a run of their own: no number of
+   !> Finds the largest closure error of all instants of `set`, which has none yet, by a run of their own: no number of
    !> the run is known better. Without a closing tolerance, and where equations agree without one, it is 0.
-   subroutine foresee_closure(s)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine foresee_closure(set)
+      type(set_analysis_t), intent(inout) :: set
       type(analysis_t) :: trial
       type(motion_t) :: q
       integer :: c, k
 
-      do c = 1, s%now%count
-         if (.not. (s%now%closing > 0.0_wp .and. s%list(c)%blocks%redundant > 0)) cycle
-         trial = s%list(c)
-         q = new_motion(size(s%now%parts(c)%links))
-         do k = 0, instant_count(s%now) - 1
-            call advance(trial, instant(s%now, k), q)
+      do c = 1, set%now%count
+         if (.not. (set%now%closing > 0.0_wp .and. set%list(c)%blocks%redundant > 0)) cycle
+         trial = set%list(c)
+         q = new_motion(size(set%now%parts(c)%links))
+         do k = 0, instant_count(set%now) - 1
+            call advance(trial, instant(set%now, k), q)
          end do
          ! That of an instant without a position is larger than the tolerance.
          if (redundancy_error(trial) > inconsistent_level) &
-            s%estimators(c)%closure = min(redundancy_error(trial), s%now%closing)
+            set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
       end do
    end subroutine foresee_closure
 
    !> Begins the paths of the set: no instant is taken yet.
-   subroutine begin_paths(s)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine begin_paths(set)
+      type(set_analysis_t), intent(inout) :: set
       integer :: c
 
-      s%has_turns = .false.
-      s%taken = 0
-      s%told_turn = .false.
-      if (allocated(s%paths)) deallocate (s%paths)
-      allocate (s%paths(s%now%count))
-      do c = 1, s%now%count
-         associate (own => s%now%parts(c))
+      set%has_turns = .false.
+      set%taken = 0
+      set%told_turn = .false.
+      if (allocated(set%paths)) deallocate (set%paths)
+      allocate (set%paths(set%now%count))
+      do c = 1, set%now%count
+         associate (own => set%now%parts(c))
             if (.not. allocated(own%measures)) cycle
-            s%has_turns = s%has_turns .or. any(own%measures%continues)
+            set%has_turns = set%has_turns .or. any(own%measures%continues)
             if (any(own%measures%continues) .and. &
                 any(own%requests%extremes .and. own%requests%kind == request_measure)) &
-               allocate (s%paths(c)%turned(size(own%measures), 0:max(0, s%now%steps)))
+               allocate (set%paths(c)%turned(size(own%measures), 0:max(0, set%now%steps)))
          end associate
       end do
    end subroutine begin_paths
 
-   !> Makes `s`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
+   !> Makes `set`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
    !> `make_set_analysis` makes it, with the structure and the memory that it has. `is_done`: these fit, and all of
-   !> `findings` is the same; otherwise `s` is of no use.
-   subroutine renew_set_analysis(m, s, is_done)
+   !> `findings` is the same; otherwise `set` is of no use.
+   subroutine renew_set_analysis(m, set, is_done)
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      logical, intent(out) :: is_done        !< the structure is the same; otherwise `s` is of no use
+      type(set_analysis_t), intent(inout) :: set
+      logical, intent(out) :: is_done        !< the structure is the same; otherwise `set` is of no use
 
-      is_done = allocated(s%list) .and. m%method == method_newton
-      if (is_done) is_done = size(s%list) == 1
+      is_done = allocated(set%list) .and. m%method == method_newton
+      if (is_done) is_done = size(set%list) == 1
       if (.not. is_done) return
-      associate (own => s%now%parts(1))
+      associate (own => set%now%parts(1))
          ! These keep numbers of the mechanism.
          is_done = .not. (any(is_centre(own%requests%kind)) .or. allocated(own%tolerances) .or. own%assemblies)
          if (.not. is_done) return
          own%settings_t = m%settings_t
-         s%now%settings_t = m%settings_t
+         set%now%settings_t = m%settings_t
          own%links(:) = m%links
          own%points(:) = m%points
          own%pairs(:) = m%pairs
@@ -161,103 +161,103 @@ contains
             own%measures = m%measures
             own%measures%length = characteristic_length(own)
          end if
-         call renew_analysis(s%list(1), own, is_done)
+         call renew_analysis(set%list(1), own, is_done)
          if (.not. is_done) return
-         s%now%motions(1) = new_motion(size(own%links))
-         call make_estimator(s%estimators(1), own)
+         set%now%motions(1) = new_motion(size(own%links))
+         call make_estimator(set%estimators(1), own)
       end associate
-      s%told_drives = .false.
-      s%is_in_lane = .false.
-      s%now%has_begun = .false.
-      call begin_paths(s)
+      set%told_drives = .false.
+      set%is_in_lane = .false.
+      set%now%has_begun = .false.
+      call begin_paths(set)
    end subroutine renew_set_analysis
 
    !> Solves instant `t` of the set.
-   subroutine advance_set(s, t)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine advance_set(set, t)
+      type(set_analysis_t), intent(inout) :: set
       real(wp), intent(in) :: t              !< time
       integer :: c
 
-      s%is_in_lane = .false.
-      do c = 1, size(s%list)
-         call advance(s%list(c), t, s%now%motions(c))
-         if (s%now%motions(c)%mark == flag_inconsistent) call tell_surplus_drives(s, c)
+      set%is_in_lane = .false.
+      do c = 1, size(set%list)
+         call advance(set%list(c), t, set%now%motions(c))
+         if (set%now%motions(c)%mark == flag_inconsistent) call tell_surplus_drives(set, c)
       end do
-      call keep_instant(s)
+      call keep_instant(set)
    end subroutine advance_set
 
    !> Takes the instant `t` of a set of one mechanism, with the motion that a lane has put into the engine's state.
-   subroutine accept_state(s, t, is_taken)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine accept_state(set, t, is_taken)
+      type(set_analysis_t), intent(inout) :: set
       real(wp), intent(in) :: t              !< time
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
       logical :: is_finite, in_doubt
 
-      associate (a => s%list(1), q => s%now%motions(1))
+      associate (a => set%list(1), q => set%now%motions(1))
          q%t = t
          if (allocated(q%diagnostics)) deallocate (q%diagnostics)
          call move_links(a%geometry%chain, a%geometry%chain%wanted, a%state, q, is_finite)
-         call find_amplification(s%estimators(1)%sizes, s%now%parts(1), a%blocks, a%geometry, a%state, q, s%growth, &
-            in_doubt)
+         call find_amplification(set%estimators(1)%sizes, set%now%parts(1), a%blocks, a%geometry, a%state, q, &
+            set%growth, in_doubt)
       end associate
       is_taken = is_finite .and. .not. in_doubt
-      s%is_in_lane = .true.
-      if (is_taken) call keep_instant(s)
+      set%is_in_lane = .true.
+      if (is_taken) call keep_instant(set)
    end subroutine accept_state
 
    !> Keeps what later instants need of the instant at which all motions of the set are, whether its engines or a lane
    !> have found them. A row has no second place for what it keeps from instant to instant. An instant that a lane hands
    !> back comes again from the engine. Times between two instants do not come, nor do a lane's if no row is asked for.
-   subroutine keep_instant(s)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine keep_instant(set)
+      type(set_analysis_t), intent(inout) :: set
       integer :: c
 
-      if (s%has_turns) then
-         do c = 1, size(s%list)
-            call keep_measures(s, c)
+      if (set%has_turns) then
+         do c = 1, size(set%list)
+            call keep_measures(set, c)
          end do
-         s%taken = s%taken + 1
+         set%taken = set%taken + 1
       end if
-      if (.not. s%now%has_begun) s%now%first = s%now%motions(:size(s%now%first))
-      s%now%has_begun = .true.
-      if (size(s%list) > 1) call count_worst_motion(s)
+      if (.not. set%now%has_begun) set%now%first = set%now%motions(:size(set%now%first))
+      set%now%has_begun = .true.
+      if (size(set%list) > 1) call count_worst_motion(set)
    end subroutine keep_instant
 
    !> Keeps the angles of measures that go on from instant to instant. Tells once, at the first instant, that a LINE
    !> turns far.
-   subroutine keep_measures(s, c)
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c               !< the number of the independent mechanism
+   subroutine keep_measures(set, part)
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part               !< the number of the independent mechanism
       type(turned_t), allocatable :: before(:)
       integer :: i
 
-      associate (own => s%now%parts(c), q => s%now%motions(c))
+      associate (own => set%now%parts(part), q => set%now%motions(part))
          if (allocated(q%turned)) before = q%turned
          call keep_turns(own, q)
          if (.not. allocated(q%turned)) return
-         if (allocated(s%paths(c)%turned) .and. s%taken <= s%now%steps) &
-            s%paths(c)%turned(:, s%taken) = merge(q%turned%angle, huge(1.0_wp), q%turned%is_known)
-         if (.not. allocated(before) .or. s%told_turn) return
+         if (allocated(set%paths(part)%turned) .and. set%taken <= set%now%steps) &
+            set%paths(part)%turned(:, set%taken) = merge(q%turned%angle, huge(1.0_wp), q%turned%is_known)
+         if (.not. allocated(before) .or. set%told_turn) return
          do i = 1, size(before)
             if (own%measures(i)%kind /= measure_line) cycle
             if (.not. (before(i)%is_latest .and. q%turned(i)%is_latest)) cycle
             if (abs(q%turned(i)%angle - before(i)%angle) <= largest_turn) cycle
             if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
-            q%diagnostics = [q%diagnostics, diagnostic_t(diagnostic_turned, c, measure=i, t=q%t, is_angle=.true., &
+            q%diagnostics = [q%diagnostics, diagnostic_t(diagnostic_turned, part, measure=i, t=q%t, is_angle=.true., &
                value=abs(q%turned(i)%angle - before(i)%angle))]
-            s%told_turn = .true.
+            set%told_turn = .true.
             return
          end do
       end associate
    end subroutine keep_measures
 
    !> Counts the certificate of an instant of several mechanisms: it is that of its worst motion.
-   subroutine count_worst_motion(s)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine count_worst_motion(set)
+      type(set_analysis_t), intent(inout) :: set
 
-      associate (counts => s%worst, kinds => s%list%branch%kind)
-         counts%passed = sum(s%list%certificate_counts%passed)
-         if (any(s%now%motions%known < 0)) return
+      associate (counts => set%worst, kinds => set%list%branch%kind)
+         counts%passed = sum(set%list%certificate_counts%passed)
+         if (any(set%now%motions%known < 0)) return
          if (any(kinds == branch_none)) then
             counts%uncertain = counts%uncertain + 1
          else if (all(kinds /= branch_first)) then
@@ -266,18 +266,18 @@ contains
       end associate
    end subroutine count_worst_motion
 
-   !> Adds to the motion of independent mechanism number `c`, the first whose redundant equations are inconsistent, the
-   !> drives of which one may be too many; nothing if there are none.
-   subroutine tell_surplus_drives(s, c)
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c               !< its number
-      logical :: are(size(s%now%parts(c)%drives))
+   !> Adds to the motion of independent mechanism number `part`, the first whose redundant equations are inconsistent,
+   !> the drives of which one may be too many; nothing if there are none.
+   subroutine tell_surplus_drives(set, part)
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part               !< its number
+      logical :: are(size(set%now%parts(part)%drives))
 
-      if (s%told_drives(c)) return
-      s%told_drives(c) = .true.
-      are = surplus_drives(s%list(c)%blocks, s%list(c)%geometry, size(are), s%list(c)%state)
+      if (set%told_drives(part)) return
+      set%told_drives(part) = .true.
+      are = surplus_drives(set%list(part)%blocks, set%list(part)%geometry, size(are), set%list(part)%state)
       if (.not. any(are)) return
-      associate (q => s%now%motions(c))
+      associate (q => set%now%motions(part))
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
          q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, are)]
       end associate
@@ -285,8 +285,8 @@ contains
 
    !> Finds the rows of requests of the set at its last instant, or at a time between the instants. Nothing else
    !> changes. Without `always` nothing is estimated: errors and growth are 0.
-   subroutine rows_at(s, list, t, rows, always, error, growth)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine rows_at(set, list, t, rows, always, error, growth)
+      type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
       type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
@@ -297,11 +297,11 @@ contains
 
       if (present(error)) error = 0.0_wp
       if (present(growth)) growth = 0.0_wp
-      if (s%is_in_lane .and. .not. abs(t - s%now%motions(1)%t) > 0.0_wp) then
+      if (set%is_in_lane .and. .not. abs(t - set%now%motions(1)%t) > 0.0_wp) then
          do i = 1, size(list)
-            call find_row_in_set(s%now, list(i), rows(i))
+            call find_row_in_set(set%now, list(i), rows(i))
          end do
-         if (present(growth)) growth = s%growth
+         if (present(growth)) growth = set%growth
       else
          call find_by_engine()
       end if
@@ -313,118 +313,118 @@ contains
          type(motion_t) :: q
          logical :: is_found
 
-         associate (c => s%now%rows(list(1))%part)
-            if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
-               q = new_motion(size(s%now%parts(c)%links))
-               if (allocated(s%now%motions(c)%turned)) q%turned = turned_near(c)
-               call look_at(s%list(c), t, q, is_found)
+         associate (c => set%now%rows(list(1))%part)
+            if (abs(t - set%now%motions(c)%t) > 0.0_wp) then
+               q = new_motion(size(set%now%parts(c)%links))
+               if (allocated(set%now%motions(c)%turned)) q%turned = turned_near(c)
+               call look_at(set%list(c), t, q, is_found)
                rows%known = -1
                if (.not. is_found) return
-               if (allocated(q%turned)) call keep_turns(s%now%parts(c), q)
+               if (allocated(q%turned)) call keep_turns(set%now%parts(c), q)
                call take(c, q)
             else
-               call come_back(s%list(c))
-               call take(c, s%now%motions(c))
+               call come_back(set%list(c))
+               call take(c, set%now%motions(c))
             end if
          end associate
       end subroutine find_by_engine
 
       !> Gives the angles of measures at the instant of TIME before `t`.
-      function turned_near(c) result(turned)
-         integer, intent(in) :: c            !< the number of the independent mechanism
+      function turned_near(part) result(turned)
+         integer, intent(in) :: part            !< the number of the independent mechanism
          type(turned_t), allocatable :: turned(:)   !< (measures)
          integer :: k
 
-         turned = s%now%motions(c)%turned
-         if (.not. allocated(s%paths(c)%turned)) return
-         k = floor((t - s%now%t0)/(s%now%t1 - s%now%t0)*s%now%steps)
-         k = max(0, min(k, s%taken - 1, s%now%steps))
-         turned%angle = s%paths(c)%turned(:, k)
+         turned = set%now%motions(part)%turned
+         if (.not. allocated(set%paths(part)%turned)) return
+         k = floor((t - set%now%t0)/(set%now%t1 - set%now%t0)*set%now%steps)
+         k = max(0, min(k, set%taken - 1, set%now%steps))
+         turned%angle = set%paths(part)%turned(:, k)
          turned%is_known = turned%angle < huge(1.0_wp)
       end function turned_near
 
-      !> Takes the rows of the motion `q` of independent mechanism number `c`, and its errors.
-      subroutine take(c, q)
-         integer, intent(in) :: c            !< its number
+      !> Takes the rows of the motion `q` of independent mechanism number `part`, and its errors.
+      subroutine take(part, q)
+         integer, intent(in) :: part            !< its number
          type(motion_t), intent(in) :: q
          type(error_estimate_t) :: estimate
          integer :: i
 
-         associate (own => s%now%parts(c), a => s%list(c))
+         associate (own => set%now%parts(part), a => set%list(part))
             do i = 1, size(list)
-               call find_row(own, q, own%requests(s%now%rows(list(i))%number), rows(i))
+               call find_row(own, q, own%requests(set%now%rows(list(i))%number), rows(i))
             end do
             if (.not. present(always)) return
-            call estimate_errors(s%estimators(c), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
+            call estimate_errors(set%estimators(part), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
             if (present(growth)) growth = merge(max_amplification, estimate%growth, estimate%in_doubt)
             if (.not. estimate%taken) return
             do i = 1, size(list)
-               error(:, :, i) = estimate_of(rows(i), own, estimate, s%now%rows(list(i))%number)
+               error(:, :, i) = estimate_of(rows(i), own, estimate, set%now%rows(list(i))%number)
             end do
          end associate
       end subroutine take
    end subroutine rows_at
 
-   !> Finds how far the last motion of independent mechanism `c` is from its first: see `motions_apart`.
-   pure function apart_from_first(s, c) result(apart)
-      type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: c               !< its number
+   !> Finds how far the last motion of independent mechanism `part` is from its first: see `motions_apart`.
+   pure function apart_from_first(set, part) result(apart)
+      type(set_analysis_t), intent(in) :: set
+      integer, intent(in) :: part               !< its number
       real(wp) :: apart(3)
 
-      apart = motions_apart(s%now%parts(c), s%now%first(c), s%now%motions(c))
+      apart = motions_apart(set%now%parts(part), set%now%first(part), set%now%motions(part))
    end function apart_from_first
 
    !> How far the motion found last is known, and its sensitivities to the numbers with tolerances, where there are any.
    !> `always`: also where no digit of a table is in doubt.
-   subroutine sample_set(s, always)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine sample_set(set, always)
+      type(set_analysis_t), intent(inout) :: set
       logical, intent(in) :: always          !< also if no digit of a table is in doubt
       integer :: c
 
-      do c = 1, size(s%list)
-         associate (a => s%list(c), own => s%now%parts(c), q => s%now%motions(c))
-            call estimate_errors(s%estimators(c), own, a%blocks, a%geometry, a%state, q, always, always, &
-               s%now%errors(c))
+      do c = 1, size(set%list)
+         associate (a => set%list(c), own => set%now%parts(c), q => set%now%motions(c))
+            call estimate_errors(set%estimators(c), own, a%blocks, a%geometry, a%state, q, always, always, &
+               set%now%errors(c))
             if (allocated(own%tolerances)) &
-               call find_sensitivities(s%estimators(c), own, a%blocks, a%geometry, a%state, q, s%now%errors(c), &
-               s%now%sensitivities(c))
+               call find_sensitivities(set%estimators(c), own, a%blocks, a%geometry, a%state, q, set%now%errors(c), &
+                  set%now%sensitivities(c))
          end associate
       end do
    end subroutine sample_set
 
    !> Gives the counts of certificates of all instants of the set.
-   pure type(certificate_counts_t) function set_certificates(s)
-      type(set_analysis_t), intent(in) :: s
+   pure type(certificate_counts_t) function set_certificates(set)
+      type(set_analysis_t), intent(in) :: set
 
-      set_certificates = s%worst
-      if (size(s%list) == 1) set_certificates = s%list(1)%certificate_counts
+      set_certificates = set%worst
+      if (size(set%list) == 1) set_certificates = set%list(1)%certificate_counts
    end function set_certificates
 
    !> Proves the motion found last, and the step to it; before any other motion is looked at.
-   subroutine prove_set(s, bounded)
-      type(set_analysis_t), intent(inout) :: s
+   subroutine prove_set(set, bounded)
+      type(set_analysis_t), intent(inout) :: set
       logical, intent(in) :: bounded         !< bounds of all numbers are found as well
       integer :: c
 
-      do c = 1, size(s%list)
-         associate (a => s%list(c))
-            call prove_motion(s%provers(c), s%now%parts(c), a%blocks, a%geometry, a%path, a%state, s%now%motions(c), &
-               bounded, s%now%proofs(c))
+      do c = 1, size(set%list)
+         associate (a => set%list(c))
+            call prove_motion(set%provers(c), set%now%parts(c), a%blocks, a%geometry, a%path, a%state, &
+               set%now%motions(c), bounded, set%now%proofs(c))
          end associate
       end do
    end subroutine prove_set
 
    !> The largest bounds (0:2) of the errors of any link that are proved, in the characteristic length and rate of its
    !> mechanism.
-   pure function set_bounds(s) result(largest)
-      type(set_analysis_t), intent(in) :: s
+   pure function set_bounds(set) result(largest)
+      type(set_analysis_t), intent(in) :: set
       real(wp) :: largest(0:2)
       integer :: c
 
       largest = 0.0_wp
-      do c = 1, size(s%list)
-         if (.not. s%now%proofs(c)%is_proved) cycle
-         associate (found => s%now%proofs(c)%largest, sizes => s%estimators(c)%sizes)
+      do c = 1, size(set%list)
+         if (.not. set%now%proofs(c)%is_proved) cycle
+         associate (found => set%now%proofs(c)%largest, sizes => set%estimators(c)%sizes)
             largest = max(largest, max(found(1, :)/sizes%length, found(2, :))/sizes%rate**[0, 1, 2])
          end associate
       end do
@@ -432,21 +432,21 @@ contains
 
    !> Tells what there is to say after the last instant: of BRANCH cards after whose instants no change point was
    !> passed, in their order.
-   pure function set_closing_diagnostics(s) result(list)
-      type(set_analysis_t), intent(in) :: s
+   pure function set_closing_diagnostics(set) result(list)
+      type(set_analysis_t), intent(in) :: set
       type(diagnostic_t), allocatable :: list(:)
       logical, allocatable :: used(:)
       integer :: c, k, n
 
       n = 0
-      do c = 1, s%now%count
-         n = max(n, maxval([0, s%list(c)%branch_requests%cards%card]))
+      do c = 1, set%now%count
+         n = max(n, maxval([0, set%list(c)%branch_requests%cards%card]))
       end do
       allocate (list(n), used(n))
       used = .false.
-      do c = 1, s%now%count
-         associate (cards => s%list(c)%branch_requests%cards)
-            used(cards%card) = used(cards%card) .or. s%list(c)%branch_requests%used
+      do c = 1, set%now%count
+         associate (cards => set%list(c)%branch_requests%cards)
+            used(cards%card) = used(cards%card) .or. set%list(c)%branch_requests%used
             do k = 1, size(cards)
                list(cards(k)%card) = diagnostic_t(kind=diagnostic_unused, part=c, t=cards(k)%t)
                list(cards(k)%card)%links(1) = cards(k)%link

@@ -32,9 +32,9 @@ module set_motion
 contains
 
    !> Divides a set into its parts, at rest.
-   subroutine new_set_motion(m, s, findings)
+   subroutine new_set_motion(m, motions, findings)
       type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(out) :: s
+      type(set_motion_t), intent(out) :: motions
       type(structure_report_t), intent(inout), optional :: findings   !< they give up their set if it is divided
       type(structure_t) :: structure
       integer :: c
@@ -43,26 +43,28 @@ contains
       is_divided = .false.
       if (present(findings)) is_divided = allocated(findings%set)
       if (is_divided) then
-         s%set_t = findings%set
+         motions%set_t = findings%set
          deallocate (findings%set)
       else
-         call divide(m, s%set_t)
+         call divide(m, motions%set_t)
       end if
-      allocate (s%motions(s%count), s%errors(s%count), s%sensitivities(s%count), s%proofs(s%count))
-      allocate (s%first(merge(s%count, 0, any([(any(s%parts(c)%requests%extremes), c=1, s%count)]))))
-      do c = 1, s%count
-         s%motions(c) = new_motion(size(s%parts(c)%links))
-         if (all(s%parts(c)%requests%drive == 0)) cycle
+      allocate (motions%motions(motions%count), motions%errors(motions%count), motions%sensitivities(motions%count), &
+         motions%proofs(motions%count))
+      allocate (motions%first(merge(motions%count, 0, any([(any(motions%parts(c)%requests%extremes), c=1, &
+         motions%count)]))))
+      do c = 1, motions%count
+         motions%motions(c) = new_motion(size(motions%parts(c)%links))
+         if (all(motions%parts(c)%requests%drive == 0)) cycle
          if (present(findings)) then
-            call leave_out_unmoved(s%parts(c), findings%structures(c)%blocks, &
-               findings%structures(c)%geometry)
+            call leave_out_unmoved(motions%parts(c), findings%structures(c)%blocks, findings%structures(c)%geometry)
          else
-            call make_structure(s%parts(c), structure)
-            call leave_out_unmoved(s%parts(c), structure%blocks, structure%geometry)
+            call make_structure(motions%parts(c), structure)
+            call leave_out_unmoved(motions%parts(c), structure%blocks, structure%geometry)
          end if
       end do
-      if (allocated(s%columns)) s%columns = pack(s%columns, [(has_row(request_of(s, s%columns(c)%request)), &
-         c=1, size(s%columns))])
+      if (allocated(motions%columns)) motions%columns = pack(motions%columns, &
+         [(has_row(request_of(motions, motions%columns(c)%request)), &
+         c=1, size(motions%columns))])
    end subroutine new_set_motion
 
    !> Tells whether a request has a row anywhere: `leave_out_unmoved` takes all from that of a ratio.
@@ -142,32 +144,32 @@ contains
    end subroutine leave_out_unmoved
 
    !> Tells whether some part has not all of its motion.
-   pure logical function is_flagged(s)
-      type(set_motion_t), intent(in) :: s
+   pure logical function is_flagged(motions)
+      type(set_motion_t), intent(in) :: motions
 
-      is_flagged = any(s%motions%mark /= flag_none)
+      is_flagged = any(motions%motions%mark /= flag_none)
    end function is_flagged
 
    !> Tells whether the instant has marks or diagnostics in addition to its numbers.
-   pure logical function has_words(s)
-      type(set_motion_t), intent(in) :: s
+   pure logical function has_words(motions)
+      type(set_motion_t), intent(in) :: motions
       integer :: c
 
-      has_words = is_flagged(s)
-      do c = 1, s%count
-         has_words = has_words .or. allocated(s%motions(c)%diagnostics)
+      has_words = is_flagged(motions)
+      do c = 1, motions%count
+         has_words = has_words .or. allocated(motions%motions(c)%diagnostics)
       end do
    end function has_words
 
    !> Finds the row of a request of the set.
-   pure subroutine find_row_in_set(s, i, row)
-      type(set_motion_t), intent(in) :: s
+   pure subroutine find_row_in_set(motions, i, row)
+      type(set_motion_t), intent(in) :: motions
       integer, intent(in) :: i               !< its number among the requests of the set
       type(row_t), intent(inout) :: row
 
       ! The request in its place: as the result of a function it would be copied.
-      associate (c => s%rows(i)%part)
-         call find_row(s%parts(c), s%motions(c), s%parts(c)%requests(s%rows(i)%number), row)
+      associate (c => motions%rows(i)%part)
+         call find_row(motions%parts(c), motions%motions(c), motions%parts(c)%requests(motions%rows(i)%number), row)
       end associate
    end subroutine find_row_in_set
 end module set_motion
