@@ -156,12 +156,12 @@ function put_companion(  rate, first) {
    write_card("LINK", "Q-CRANK", "", "", 3, 5, 7, 0.5/unit)
    write_card("LINK", "Q-COUP", "", "", 3, 5.0009, 7.0005, 1.4/unit)
    write_card("LINK", "Q-ROCK", "", "", 3, 5.0035, 7.0019, 2.4/unit)
-   write_card("POINT", "Q-A0", "Q-BASE", "", 2, 0, 0); put_card("POINT", "Q-B0", "Q-BASE", "", 2, 0.004, 0)
-   write_card("POINT", "Q-A0C", "Q-CRANK", "", 2, 0, 0); put_card("POINT", "Q-AC", "Q-CRANK", "", 2, 0.001, 0)
-   write_card("POINT", "Q-A", "Q-COUP", "", 2, 0, 0); put_card("POINT", "Q-B", "Q-COUP", "", 2, 0.0035, 0)
-   write_card("POINT", "Q-B0R", "Q-ROCK", "", 2, 0, 0); put_card("POINT", "Q-BR", "Q-ROCK", "", 2, 0.003, 0)
-   write_card("REVOLUTE", "Q-A0", "Q-A0C", "Q-PA0"); put_card("REVOLUTE", "Q-AC", "Q-A", "Q-PA")
-   write_card("REVOLUTE", "Q-B", "Q-BR", "Q-PB"); put_card("REVOLUTE", "Q-B0R", "Q-B0", "Q-PB0")
+   write_card("POINT", "Q-A0", "Q-BASE", "", 2, 0, 0); write_card("POINT", "Q-B0", "Q-BASE", "", 2, 0.004, 0)
+   write_card("POINT", "Q-A0C", "Q-CRANK", "", 2, 0, 0); write_card("POINT", "Q-AC", "Q-CRANK", "", 2, 0.001, 0)
+   write_card("POINT", "Q-A", "Q-COUP", "", 2, 0, 0); write_card("POINT", "Q-B", "Q-COUP", "", 2, 0.0035, 0)
+   write_card("POINT", "Q-B0R", "Q-ROCK", "", 2, 0, 0); write_card("POINT", "Q-BR", "Q-ROCK", "", 2, 0.003, 0)
+   write_card("REVOLUTE", "Q-A0", "Q-A0C", "Q-PA0"); write_card("REVOLUTE", "Q-AC", "Q-A", "Q-PA")
+   write_card("REVOLUTE", "Q-B", "Q-BR", "Q-PB"); write_card("REVOLUTE", "Q-B0R", "Q-B0", "Q-PB0")
    write_card("DRIVE", "ANGLE", "Q-CRANK", "", 2, 0.5/unit - rate*first, rate)
 }
 
