@@ -34,7 +34,7 @@ module proofs
       integer :: count = 0                       !< of them; the next one is in the making
       type(reason_t), allocatable :: reasons(:)  !< the first ones
       integer :: instants = 0, proved = 0        !< in all
-      real(wp) :: gap = 0.0_wp                   !< of redundant equations at most, in units of the blocks
+      real(wp) :: closure_error = 0.0_wp         !< bound, of redundant equations, in units of the blocks
    end type proofs_t
 
    !> So many reasons are kept; of more, the number.
@@ -59,7 +59,7 @@ contains
             associate (proof => set%now%proofs(c))
                line%parts = line%parts + proof%step%parts
                line%tube = max(line%tube, proof%step%radius)
-               if (proof%is_proved) proofs%gap = max(proofs%gap, proof%gap)
+               if (proof%is_proved) proofs%closure_error = max(proofs%closure_error, proof%closure_error)
                if (holds(proof)) cycle
                line%is_proved = .false.
                if (size(proofs%reasons) == max_reasons) cycle

@@ -1,5 +1,5 @@
 !> Rows of a mechanism whose numbers are changed, solved from the position at hand by Newton's method, block by block:
-!> never by a run of its own, which beside a change point could take the other branch.
+!> never by a run of its own, which could take the other branch near a change point.
 module changed_rows
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -20,7 +20,7 @@ module changed_rows
    private
    public :: perturbed_t, base_position_t, find_place, make_ready, assign_changes, rows_with
 
-   !> A mechanism with changed numbers: a geometry of the structure that the mechanism itself has.
+   !> A mechanism with changed numbers: another geometry of one structure.
    type :: perturbed_t
       type(mechanism_t) :: m                     !< its links are where the cards put them
       type(geometry_t) :: geometry
@@ -28,49 +28,50 @@ module changed_rows
       logical :: is_ready = .false.              !< made for this mechanism
       logical :: fits = .true.                   !< the structure serves for its numbers
       integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
-      real(wp) :: roundings = 0.0_wp, time_off = 0.0_wp   !< the instant is off by this part of it
-      real(wp) :: length = 0.0_wp                !< then: see `perturb_numbers`
+      real(wp) :: roundings = 0.0_wp             !< by so many; below 0: in the opposite direction
+      real(wp) :: time_off = 0.0_wp              !< the instant is off by this part of it
+      real(wp) :: length = 0.0_wp                !< as `length` of `perturb_numbers`
    end type perturbed_t
 
-   !> The position at hand, what solves from it for one changed mechanism after another, and what the rows show that
-   !> were found last.
+   !> The position at hand, state and workspace to solve from it for one changed mechanism after another, and the
+   !> findings of the last solution.
    type :: base_position_t
       type(unknown_t), allocatable :: start(:)   !< (0:unknowns) slides in the deck's unit
-      logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
+      logical :: only_driven = .false.           !< nothing is known of it but links that only drives move
       logical :: is_singular = .false.           !< it has no unique rates
-      logical :: stays = .false.                 !< a search begins there, not a nudge away
+      logical :: stays = .false.                 !< a search begins there, without a nudge
       type(turned_t), allocatable :: turned(:)   !< (measures) angles of measures go on from there
       type(state_t) :: state
       type(workspace_t) :: work
       type(motion_t) :: q                        !< found last
-      !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
-      !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
-      real(wp) :: ratio = 0.0_wp, change = 0.0_wp
-      logical :: jams = .false.
-      !> Redundant equations: the largest closure error (unit of the loop, rad), and what there is room for.
+      !> The largest Kantorovich ratio of a block: the change of its position over the distance of the next one.
+      real(wp) :: ratio = 0.0_wp
+      real(wp) :: change = 0.0_wp                !< largest of an unknown, rad or unit of the block
+      logical :: jams = .false.                  !< equations contradict
+      !> Redundant equations: the largest closure error (unit of the loop, or rad) over its `level`, and its bound.
       real(wp) :: opened = 0.0_wp, room = huge(1.0_wp)
    end type base_position_t
 
-   !> Of a mechanism with so many links at most the changed ones are kept from instant to instant, each with its
-   !> numbers; a larger one has one spare set of numbers, and needs less memory.
+   !> Up to so many links, a mechanism keeps the changed ones from instant to instant, each with its numbers. A larger
+   !> one has one spare set of numbers, and needs less memory.
    integer, parameter :: most_links = 1000
    !> A search begins this far (rad, unit of the block) from the position at hand: there it would end at once, and show
-   !> nothing of the residual that is left. On a dead point it begins where roundings may have moved it.
+   !> nothing of the residual that is left. On a dead point it begins as far away as roundings may have moved it.
    real(wp), parameter :: nudge = sqrt(epsilon(1.0_wp))/1024.0_wp, singular_nudge = 16.0_wp*sqrt(epsilon(1.0_wp))
    !> Nothing is known of a change with a larger Kantorovich ratio: it is not of first order.
-   real(wp), parameter :: largest_ratio = 0.5_wp
-   !> At a dead point a position moves by the root of what changes (rad, unit of the block); a search that goes farther
-   !> has found none, and ends anywhere.
+   real(wp), parameter :: first_order_ratio = 0.5_wp
+   !> At a dead point a position moves by the root of a change of numbers (rad, unit of the block). A search that goes
+   !> farther has found no position, and ends anywhere.
    real(wp), parameter :: singular_change = 4096.0_wp*sqrt(epsilon(1.0_wp))
 
 contains
 
-   !> Finds the place of the motion `q`, the state `s` of the blocks `b`: from now on rows are solved from it.
+   !> Takes a motion as the place from which rows are solved from now on.
    subroutine find_place(b, x, s, q, place)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      type(motion_t), intent(in) :: q
+      type(state_t), intent(in) :: s         !< of the motion
+      type(motion_t), intent(in) :: q        !< of the unchanged mechanism
       type(base_position_t), intent(inout) :: place
       integer :: k
 
@@ -89,24 +90,23 @@ contains
       end do
    end subroutine find_place
 
-   !> Makes room for the solution of the blocks `b`, which so many `drives` move.
+   !> Makes room for the solution of a structure.
    subroutine make_room(b, drives, place)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives          !< number of drives that move it
       type(base_position_t), intent(inout) :: place
 
       place%state = new_state(b, drives)
       place%work = new_workspace(b)
    end subroutine make_room
 
-   !> Makes number `i` of `list` ready for direction `k` of changes of `m`, whose geometry is `x`, if it is not yet; its
-   !> numbers are still others.
+   !> Finds the changed mechanism of a direction, and makes it ready if it is not yet. Its numbers are still others.
    subroutine make_ready(list, k, m, x, i)
-      type(perturbed_t), allocatable, intent(inout) :: list(:)
-      integer, intent(in) :: k
-      type(mechanism_t), intent(in) :: m
-      type(geometry_t), intent(in) :: x
-      integer, intent(out) :: i
+      type(perturbed_t), allocatable, intent(inout) :: list(:)   !< (0:directions) or (0:0); made if not allocated
+      integer, intent(in) :: k               !< the direction; 0: numbers as they stand
+      type(mechanism_t), intent(in) :: m     !< the unchanged mechanism
+      type(geometry_t), intent(in) :: x      !< its geometry
+      integer, intent(out) :: i              !< the number in `list`
 
       if (.not. allocated(list)) allocate (list(0:merge(directions + own_directions, 0, size(m%links) <= most_links)))
       i = merge(k, 0, k <= ubound(list, 1))
@@ -119,26 +119,26 @@ contains
       end associate
    end subroutine make_ready
 
-   !> Gives the geometry of `perturbed`, of the structure `b`, the numbers of p%m. `by_roundings`: they are off by
-   !> roundings alone, and what cancels in the equations is left out: redundant equations stay so, and so do guides that
-   !> are parallel.
+   !> Gives the geometry of a changed mechanism the numbers of its cards.
    subroutine assign_changes(b, perturbed, by_roundings)
       type(blocks_t), intent(in) :: b
-      type(perturbed_t), intent(inout) :: perturbed
-      logical, intent(in) :: by_roundings
+      type(perturbed_t), intent(inout) :: perturbed   !< its `m` has the numbers
+      !> With roundings only, terms that cancel in the equations are left out: redundant equations stay redundant, and
+      !> parallel guides stay parallel.
+      logical, intent(in) :: by_roundings    !< the numbers are off by roundings only
 
       perturbed%m%tolerance = 0.0_wp
       call assign_geometry(perturbed%m, b, perturbed%geometry, perturbed%path, perturbed%fits)
       perturbed%fits = perturbed%fits .or. by_roundings
    end subroutine assign_changes
 
-   !> The `rows` (requests) of `perturbed`, of the structure `b`, at the time `t`, solved from `place`.
+   !> Finds the rows of a changed mechanism, solved from a place. A row shows how much of it was found.
    subroutine rows_with(b, perturbed, t, place, rows)
       type(blocks_t), intent(in) :: b
       type(perturbed_t), intent(in) :: perturbed
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       type(base_position_t), intent(inout) :: place
-      type(row_t), intent(inout) :: rows(:)
+      type(row_t), intent(inout) :: rows(:)  !< (requests)
       type(structure_t) :: other
       type(drive_path_t) :: path
       integer :: i
@@ -158,19 +158,19 @@ contains
             place%q%link_known = spread(-1, 1, size(perturbed%m%links))
          end if
       end if
+
       if (allocated(place%turned)) place%q%turned = place%turned
       do i = 1, size(rows)
          call find_row(perturbed%m, place%q, perturbed%m%requests(i), rows(i))
       end do
    end subroutine rows_with
 
-   !> Solves the needed ones of the blocks `b` with the geometry `x` in turn, to the limit of rounding, for the motion
-   !> place%q at its time. What is known of it may differ from link to link.
+   !> Solves the needed blocks in turn, to the limit of rounding. Links may differ in how much of their motion is found.
    subroutine solve_needed(b, x, path, place)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(base_position_t), intent(inout) :: place
+      type(base_position_t), intent(inout) :: place   !< place%q: the motion, at its time
       type(convergence_t) :: c
       integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite
@@ -185,11 +185,12 @@ contains
          do k = 1, ubound(s%u, 1)
             associate (value => s%u(k)%value)
                value = value/slide_unit(b, x, k)
-               ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
+               ! On a dead point the Jacobian has an inverse only if links that are in line turn apart.
                if (.not. place%stays) value = value + merge(singular_nudge*(-1)**k, nudge, place%is_singular)
             end associate
          end do
          call set_drive_values(path, q%t, s)
+
          missing = missing_nothing
          worst = missing_nothing
          do k = 1, size(b%needed)
@@ -208,7 +209,7 @@ contains
                   if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(b, x, i, w, s)
                   if (place%is_singular) then
                      if (c%change > singular_change) lack = missing_all
-                  else if (c%kantorovich_ratio > largest_ratio .and. .not. c%singular) then
+                  else if (c%kantorovich_ratio > first_order_ratio .and. .not. c%singular) then
                      lack = missing_all
                   end if
                end if
@@ -216,7 +217,7 @@ contains
                if (lack > missing_nothing) missing(b%unknown(block%first:block%last)) = lack
             end associate
          end do
-         ! That of a drive's own unknown counts too: full turns are no return.
+         ! The change of a drive's own unknown counts too: full turns are no return.
          do k = 1, ubound(s%u, 1)
             place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))
          end do
@@ -228,13 +229,13 @@ contains
       end associate
    end subroutine solve_needed
 
-   !> The rates of block `i` again, by iterative refinement. Orthogonal factors, of equations that are too many,
-   !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
-   !> Numerical Algorithms, 2002, ch. 20).
+   !> Computes rates and accelerations of a block again, by iterative refinement. A singular Jacobian leaves them. The
+   !> orthogonal factors of redundant equations leave errors as large as the largest of all rows; one pass reduces the
+   !> error of each row to its own size (Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 20).
    subroutine refine_rates(b, x, i, w, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the block
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       real(wp), allocatable :: jacobian(:, :)

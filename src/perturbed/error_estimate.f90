@@ -1,5 +1,5 @@
-!> The error estimate: how far the numbers of a motion are known, by the rows of mechanisms whose numbers are off by
-!> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
+!> The error estimate: how far the numbers of a motion are known. It solves the rows of mechanisms whose numbers are
+!> off by roundings, at instants at which digits of the tables could be in doubt or errors are asked for.
 module error_estimate
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_point, request_measure, request_pole, is_centre
@@ -17,49 +17,54 @@ module error_estimate
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error
 
-   !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
-   !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
-   real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
-   !> A sum is off by so many roundings of its largest number. So the estimates of `make errors` are above all the true
-   !> errors, and 7 to 10 times these in the mean.
-   real(wp), parameter :: of_sum = 0.9_wp
-   !> Roundings of a drawing may leave equations open by less than they are: of 140 drawings all are within the factor.
-   real(wp), parameter :: closure_parts = 8.0_wp, closure_caution = 2.0_wp
-   !> The last digit that is shown is worth so many errors by the closure error: as many as of roundings would leave
-   !> nothing of a drawing.
+   !> Numbers are off by many roundings: compared with them the roundings of the calculation are small.
+   real(wp), parameter :: many_roundings = 256.0_wp
+   !> They are off by few if changes by many have a larger Kantorovich ratio, as 1E-12 from a dead point: below it
+   !> changes are of first order, but for about this part.
+   real(wp), parameter :: few_roundings = 16.0_wp, linear_ratio = 0.05_wp
+   !> A sum is off by so many roundings of its largest number. With 0.9 the estimates of `make errors` are above all
+   !> true errors, and 7 to 10 times as large in the mean.
+   real(wp), parameter :: roundings_of_sum = 0.9_wp
+   !> Lengths and directions are off by the closure error over this.
+   real(wp), parameter :: closure_parts = 8.0_wp
+   !> The roundings of a drawing may be larger than its closure error: all of 140 drawings are within this factor.
+   real(wp), parameter :: closure_caution = 2.0_wp
+   !> The last digit that is shown is worth so many errors by the closure error: with as many as of roundings nothing of
+   !> a drawing would be shown.
    real(wp), parameter :: closure_errors_a_digit = 1.0_wp
-   !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
-   !> are masked then, or where the errors are `asked` for, if anything moves.
+
+   !> How far the motion at one instant is known. It is `taken` if anything moves, and digits of the tables could be
+   !> `in_doubt`, which are masked then, or errors are `asked` for.
    type :: error_estimate_t
-      logical :: taken = .false.             !< `changes` tell something
+      logical :: taken = .false.             !< an estimate was made
       logical :: asked = .false.             !< --errors: wanted at every instant
-      real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
-      type(sizes_t) :: sizes                 !< what numbers are compared with, where `taken`
-      logical :: in_doubt = .false.          !< it is so much that digits may be lost
-      !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
+      real(wp) :: growth = 0.0_wp            !< factor of roundings at this instant; huge if numbers are large
+      type(sizes_t) :: sizes                 !< if `taken`: numbers are compared with these
+      logical :: in_doubt = .false.          !< the growth is so large that digits may be lost
+      !> (3, 0:2, requests) The largest change by a rounding of all numbers, or `nothing_known`.
       real(wp), allocatable :: changes(:, :, :)
-      !> (3, 0:2, requests) --errors: how far numbers are known, with the roundings of the calculation itself: rates of
+      !> (3, 0:2, requests) --errors: the error by numbers and by the roundings of the calculation itself: rates of
       !> links that turn as one have no other error.
       real(wp), allocatable :: own(:, :, :)
-      !> (3, 0:2, requests) What lengths and directions off by the closure error change at most; 0 without one.
+      !> (3, 0:2, requests) The largest change by lengths and directions off by the closure error; 0 without one.
       real(wp), allocatable :: by_closure(:, :, :)
       type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
    end type error_estimate_t
 
-   !> What the estimates of a mechanism need.
+   !> The means of all estimates of a mechanism.
    type :: estimator_t
       type(sizes_t) :: sizes
       real(wp) :: closure = 0.0_wp           !< closure error at most in its run (characteristic lengths, rad), or 0
       type(base_position_t) :: place
-      !> (0:directions + own_directions, or 0:0) Once an estimate has been asked for: with numbers as they stand; off in
-      !> each direction by `many` or `few` roundings; off in each further direction by one.
+      !> (0:directions + own_directions) or (0:0), after the first estimate. Number 0 has numbers as they stand; they
+      !> are off by many or few roundings in each direction, and by one in each own direction.
       type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
 contains
 
-   !> For the errors of `m`, a variant of the mechanism before if there was one; the rest is made when it is first asked
-   !> for.
+   !> Prepares the estimates of a mechanism, a variant of the mechanism before if there was one. The first estimate
+   !> makes the rest.
    subroutine make_estimator(estimator, m)
       type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
@@ -68,8 +73,7 @@ contains
       if (allocated(estimator%perturbed)) estimator%perturbed%is_ready = .false.
    end subroutine make_estimator
 
-   !> How far the motion `q` of `m` is known, the `state` of the blocks `b`. `always`: also where no digit of a table is
-   !> in doubt. `told`: its errors are told themselves (--errors).
+   !> Estimates how far a motion is known. The estimate is not `taken` if no digit is in doubt, or nothing moves.
    subroutine estimate_errors(estimator, m, b, x, state, q, always, told, found)
       type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
@@ -77,7 +81,8 @@ contains
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: state
       type(motion_t), intent(in) :: q
-      logical, intent(in) :: always, told
+      logical, intent(in) :: always          !< also if no digit of a table is in doubt
+      logical, intent(in) :: told            !< the errors themselves are printed (--errors)
       type(error_estimate_t), intent(inout) :: found
       logical :: is_small
 
@@ -93,16 +98,17 @@ contains
          found%solved(size(m%requests)))
       found%sizes = estimator%sizes
       found%taken = .true.
+
       call find_place(b, x, state, q, estimator%place)
       estimator%place%stays = estimator%place%is_singular
-      call find_changed(0, many, 0.0_wp, found%solved)
+      call find_changed(0, many_roundings, 0.0_wp, found%solved)
       estimator%place%stays = .false.
-      call find_largest_changes(many, estimator%place%is_singular, is_small)
-      if (.not. is_small) call find_largest_changes(few, .true., is_small)
+      call find_largest_changes(many_roundings, estimator%place%is_singular, is_small)
+      if (.not. is_small) call find_largest_changes(few_roundings, .true., is_small)
       found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
       if (told .and. .not. estimator%place%is_singular) then
          call find_own_changes()
-         ! As far as they exceed the largest change by numbers alone, the calculation has made them.
+         ! As far as they exceed the largest change by numbers, the calculation has made them.
          associate (own => found%own, by_numbers => found%changes)
             own = max(own_safety_factor*own, &
                calculation_safety_factor*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
@@ -114,13 +120,12 @@ contains
 
    contains
 
-      !> The `rows` of `m` near the motion `q` with all numbers off by so many `roundings` in direction `k`; 0: with
-      !> none off. `length`: see `perturb_numbers`.
+      !> Finds the rows near the motion with all numbers off by roundings in a direction.
       subroutine find_changed(k, roundings, length, rows)
-         integer, intent(in) :: k
-         real(wp), intent(in) :: roundings
-         real(wp), intent(in) :: length      !< length; 0: each number is off by its own size
-         type(row_t), intent(inout) :: rows(:)
+         integer, intent(in) :: k            !< the direction; 0: no number is off
+         real(wp), intent(in) :: roundings   !< so many; below 0: in the opposite direction
+         real(wp), intent(in) :: length      !< each length is off as if it were so large; 0: by its own size
+         type(row_t), intent(inout) :: rows(:)   !< (requests)
          integer :: i
 
          call make_ready(estimator%perturbed, k, m, x, i)
@@ -138,13 +143,13 @@ contains
          end associate
       end subroutine find_changed
 
-      !> Puts the opposite change in the place of each of the `rows` that has lost numbers by `find_changed`: it is as
-      !> likely, and as large, and on a dead point one of the two has a position.
+      !> Replaces each row that has lost numbers by `find_changed` with the row of the opposite change. Both changes are
+      !> equally likely and large, and on a dead point only one of the two has a position.
       subroutine use_opposite(k, roundings, length, rows)
-         integer, intent(in) :: k
-         real(wp), intent(in) :: roundings
-         real(wp), intent(in) :: length      !< see `find_changed`
-         type(row_t), intent(inout) :: rows(:)
+         integer, intent(in) :: k            !< the direction
+         real(wp), intent(in) :: roundings   !< as in `find_changed`
+         real(wp), intent(in) :: length      !< as in `find_changed`
+         type(row_t), intent(inout) :: rows(:)   !< (requests)
          type(row_t) :: other(size(rows))
 
          if (all(rows%known >= found%solved%known)) return
@@ -152,22 +157,22 @@ contains
          where (rows%known < found%solved%known) rows = other
       end subroutine use_opposite
 
-      !> Finds the largest changes of the rows by a rounding, from those by so many `roundings`. `is_small`: they are so
-      !> small that they are of first order, if not all of them are asked for `anyway`.
+      !> Finds the largest changes of the rows by a rounding, from changes by several. At the first change that is not
+      !> of first order it ends, unless all are wanted.
       subroutine find_largest_changes(roundings, anyway, is_small)
-         real(wp), intent(in) :: roundings
-         logical, intent(in) :: anyway
-         logical, intent(out) :: is_small
+         real(wp), intent(in) :: roundings   !< numbers are off by so many
+         logical, intent(in) :: anyway       !< all are wanted, of first order or not
+         logical, intent(out) :: is_small    !< all changes are of first order, or all were wanted
          type(row_t) :: rows(size(found%solved))
          real(wp) :: part
          integer :: k, i
 
-         ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
+         ! If the Jacobian has no inverse, a position changes with the root of the change of the deck.
          part = 1.0_wp/merge(sqrt(roundings), roundings, estimator%place%is_singular)
          found%changes = 0.0_wp
          do k = 1, directions
             call find_changed(k, roundings, 0.0_wp, rows)
-            is_small = anyway .or. (estimator%place%ratio <= small_ratio .and. all(rows%known >= found%solved%known))
+            is_small = anyway .or. (estimator%place%ratio <= linear_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
             call use_opposite(k, roundings, 0.0_wp, rows)
             do i = 1, size(rows)
@@ -192,7 +197,7 @@ contains
          end do
       end subroutine find_own_changes
 
-      !> Finds the largest changes of the rows by lengths and directions that are off by the closure error, from those
+      !> Finds the largest changes of the rows by lengths and directions that are off by the closure error, from changes
       !> by a part of it. A much smaller part would show how the weights of equations change, which goes with the error.
       subroutine find_changes_by_closure()
          type(row_t) :: rows(size(found%solved))
@@ -211,7 +216,7 @@ contains
          found%by_closure = min(found%by_closure, nothing_known)
       end subroutine find_changes_by_closure
 
-      !> Adds to both changes those by a rounding of the sums that the motion and its rows are.
+      !> Adds the changes by a rounding of sums to both kinds of changes: the motion and its rows are sums.
       subroutine add_sums()
          real(wp) :: of_sums(3, 0:2, size(m%requests))
          type(motion_t) :: other
@@ -224,16 +229,17 @@ contains
          of_sums = 0.0_wp
          do k = 1, directions
             other = q
-            ! By one they could be hidden by the roundings of the rows.
-            call perturb_sums(b%tree, estimator%sizes%length, k, few, other)
+            ! The roundings of the rows could hide the changes by one rounding.
+            call perturb_sums(b%tree, estimator%sizes%length, k, few_roundings, other)
             if (allocated(q%by)) call perturb_ratios(k, other)
             do i = 1, size(rows)
                call find_row(m, other, m%requests(i), one)
                ! No sum moves a centre from infinity.
                if (rows(i)%state /= centre_finite) one%state = rows(i)%state
-               of_sums(:, :, i) = max(of_sums(:, :, i), change(one, rows(i), of_sum/few))
+               of_sums(:, :, i) = max(of_sums(:, :, i), change(one, rows(i), roundings_of_sum/few_roundings))
             end do
          end do
+
          found%own = min(hypot(found%own, of_sums), nothing_known)
          ! For the tables a rate that is zero, and that no change of the numbers changes, is no sum.
          do i = 1, size(rows)
@@ -243,10 +249,10 @@ contains
          found%changes = min(hypot(found%changes, of_sums), nothing_known)
       end subroutine add_sums
 
-      !> Puts the motions by which ratios are taken off by roundings of the sums that they are, as the motion `other`.
+      !> Changes the unit motions of a motion, of which ratios are made, by roundings of the sums that they are.
       subroutine perturb_ratios(k, other)
          integer, intent(in) :: k            !< the direction
-         type(motion_t), intent(inout) :: other
+         type(motion_t), intent(inout) :: other   !< its unit motions are changed
          type(motion_t) :: unit
          integer :: d
 
@@ -258,17 +264,18 @@ contains
             unit%known = 2
             unit%link_known = merge(2, -1, q%by(d)%is_known)
             unit%origin = q%origin
-            call perturb_sums(b%tree, estimator%sizes%length, k, few, unit)
+            call perturb_sums(b%tree, estimator%sizes%length, k, few_roundings, unit)
             other%by(d)%velocity = unit%velocity
             other%by(d)%acceleration = unit%acceleration
          end do
       end subroutine perturb_ratios
    end subroutine estimate_errors
 
-   !> The change (3, 0:2) by a rounding, from the rows `middle` and `one`, of which a `part` is that of one rounding.
+   !> Gives the change (3, 0:2) of a row by a rounding; `nothing_known` for numbers that the changed row has lost.
    pure function change(one, middle, part) result(x)
-      type(row_t), intent(in) :: one, middle
-      real(wp), intent(in) :: part
+      type(row_t), intent(in) :: one         !< the changed row
+      type(row_t), intent(in) :: middle      !< the unchanged row
+      real(wp), intent(in) :: part           !< of their difference: the change by one rounding
       real(wp) :: x(3, 0:2)
 
       x = part*difference(one, middle)
@@ -279,19 +286,19 @@ contains
       end if
    end function change
 
-   !> Estimates what rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`,
-   !> in its units. `nothing_known`, where it is so.
+   !> Estimates the error (3, 0:2) of a row by rounding of the deck's numbers, in the units of the row, or gives
+   !> `nothing_known`.
    pure function estimate_of(row, m, estimate, i) result(error)
       type(row_t), intent(in) :: row
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: estimate
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the request
       real(wp), dimension(3, 0:2) :: error
 
       error = 0.0_wp
       associate (request => m%requests(i))
          if (is_fixed(m, request) .and. request%kind /= request_measure) then
-            ! A sum of numbers of cards.
+            ! Its value is a sum of numbers of cards.
             error(:, 0) = abs(row%value(:, 0))
             if (request%kind == request_point) error(:, 0) = max(error(:, 0), norm2(m%points(request%subject)%offset), &
                norm2(m%links(m%points(request%subject)%link)%position(:2)))
@@ -300,23 +307,22 @@ contains
          end if
          if (estimate%asked) error = nothing_known
          if (.not. estimate%taken) return
-         error = merge(nothing_known, safety_factor*estimate%changes(:, :, i), max(estimate%changes(:, :, i), &
-            estimate%by_closure(:, :, i)) &
-            >= nothing_known)
-         where (error < nothing_known) error = hypot(error, estimate%by_closure(:, :, &
-            i)*closure_errors_a_digit/errors_a_digit)
+         error = merge(nothing_known, safety_factor*estimate%changes(:, :, i), &
+            max(estimate%changes(:, :, i), estimate%by_closure(:, :, i)) >= nothing_known)
+         where (error < nothing_known) &
+            error = hypot(error, estimate%by_closure(:, :, i)*closure_errors_a_digit/errors_a_digit)
          if (.not. is_centre(request%kind)) &
             error(:, min(row%known, last_common(estimate%solved(i), row)) + 1:) = nothing_known
       end associate
    end function estimate_of
 
-   !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
-   !> that of the motion solved to the limit of rounding.
+   !> Gives the estimated error (3, 0:2) of a row: the error by rounding, and the distance from the row of the motion
+   !> that is solved to the limit of rounding.
    pure function row_error(m, estimate, q, i) result(error)
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: estimate
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the request
       real(wp), dimension(3, 0:2) :: error
       type(row_t) :: row
 
@@ -324,13 +330,13 @@ contains
       error = estimate_of(row, m, estimate, i)
       if (.not. estimate%taken) return
       if (is_fixed(m, m%requests(i)) .and. row%kind /= request_measure) return
-      where (error < nothing_known) error = estimate%own(:, :, i) + estimate%by_closure(:, :, i) + difference(row, &
-         estimate%solved(i))
+      where (error < nothing_known) &
+         error = estimate%own(:, :, i) + estimate%by_closure(:, :, i) + difference(row, estimate%solved(i))
       if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
    end function row_error
 
-   !> Finds how much of a row a sample tells of, as in `row_t`: where points of the sample coincide and those of the row
-   !> do not, only what exists there.
+   !> Finds how much of a row a sample has, as `known` of `row_t`. If points of the sample coincide and points of the
+   !> row do not, the sample has only the numbers that exist there.
    pure integer function last_common(one, row)
       type(row_t), intent(in) :: one         !< the sample
       type(row_t), intent(in) :: row
@@ -339,11 +345,13 @@ contains
       if (row%state /= points_coincide) last_common = known_at(one)
    end function last_common
 
-   !> The numbers (3, 0:2) of the pole or curve `row` of which a sample with the row `one` leaves nothing: all, where it
-   !> has no such motion; places, where one of the two has its centre at infinity, or rests, and the other not, or they
-   !> are on two sides of infinity; and directions, where one rests.
+   !> Finds the numbers (3, 0:2) of a pole or curve that a sample does not have:
+   !> - all, if less of its motion is known;
+   !> - places, if only one of the two has its centre at infinity or rests, or they are on two sides of infinity;
+   !> - directions, if one rests.
    pure function lost_numbers(one, row) result(lost)
-      type(row_t), intent(in) :: one, row
+      type(row_t), intent(in) :: one         !< the sample
+      type(row_t), intent(in) :: row         !< of the pole or curve
       logical :: lost(3, 0:2)
       integer :: first
       logical :: same_side

@@ -2,20 +2,20 @@
 !> times eps times its size. The deviates are a hash of the number's address: they are the same in millimetres and in
 !> kilometres, at any instant, and in any process.
 !>
-!> The factor by which the largest change of a row in these directions is multiplied. To first order the error of a row
-!> is a sum over many numbers, and its change in a direction is the sum of normal deviates, so normal, whatever the
-!> mechanism; its standard deviation is s. A real x rounded to nearest is off by eps x times a deviate whose variance is
-!> the mean of 1/(12 m**2) over mantissas m = 1 to 2, 0.045, if small mantissas are as frequent as in numbers by chance.
+!> The largest change of a row in these directions is multiplied by a factor. To first order the error of a row is a sum
+!> over many numbers. Its change in a direction is a sum of normal deviates, and therefore normal for any mechanism; its
+!> standard deviation is s. A real x rounded to nearest is off by eps x times a deviate. The variance of that deviate is
+!> the mean of 1/(12 m**2) over mantissas m = 1 to 2, 0.045, if small mantissas are as frequent as in random numbers.
 !> A vector of length L that turns is rounded four times: on its card, in the sine and cosine, in their products, and in
 !> the sum of two of these. Each leaves 0.045 (eps L)**2 in both components together; the directions have 2 (eps L)**2.
-!> So the standard deviation of the error is s sqrt(4*0.045/2) = 0.30 s.
+!> Therefore the standard deviation of the error is s sqrt(4*0.045/2) = 0.30 s.
 !> Of eight normal deviates the largest is below a ninth one over r in one of a million cases if r = 7.84; for sixteen
 !> directions r would be 4.07. The factor is 7.84*0.30 = 2.35.
 !>
-!> An error that is told has more directions, since nothing else brings it nearer to the true one. By Student's t a
+!> An error that is printed has more directions, since nothing else brings it nearer to the true one. By Student's t a
 !> deviate exceeds 6.93 times the root of the mean square of 20 others in one case of a million. Their numbers are
 !> off by one rounding, so a change holds the calculation's own roundings twice: its variance is (1 + 2*0.09) s**2, and
-!> the factor 6.93*0.30/1.09 = 1.91. What the calculation alone leaves open has the factor 6.93/sqrt(2) = 4.90.
+!> the factor 6.93*0.30/1.09 = 1.91. The error by the calculation only has the factor 6.93/sqrt(2) = 4.90.
 module rounded_numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -30,38 +30,38 @@ module rounded_numbers
    public :: directions, own_directions, safety_factor, own_safety_factor, calculation_safety_factor, &
       perturb_numbers, perturb_sums
 
+   !> The derivation of these numbers is above.
    integer, parameter :: directions = 8, own_directions = 20
    real(wp), parameter :: safety_factor = 2.35_wp, own_safety_factor = 1.91_wp, calculation_safety_factor = 4.90_wp
 
    !> The hash: numbers modulo a prime, multiplied as in Park and Miller's generator.
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
-   !> Guides are parallel, or at right angles, where their directions differ by less than this part of a quarter turn.
-   integer, parameter :: quarter = 2**20
+   !> Guides are parallel, or at right angles, if their directions in such parts of a quarter turn are whole quarters.
+   integer, parameter :: parts_of_quarter = 2**20
 
 contains
 
-   !> Gives `off`, which has the links, points, pairs and drives of `m`, the numbers of `m`, each off in direction `k`
-   !> by so many `roundings`; 0: by none. `time_off`: by this part of it the instant is off. As they stand are the time
-   !> of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial guess of moving
-   !> links. `tree`, `axes`: of `m`. With a `length` above 0 lengths are off as if each were so large, and drives and
-   !> the time are as they stand.
+   !> Gives a mechanism the numbers of another one, each off by roundings in a direction. These numbers stay as they
+   !> stand: the time of a table, the exponent of a power, the angles of ground links, BETA of guides, and the initial
+   !> guess of moving links; with a `length` above 0 also drives and the time.
    subroutine perturb_numbers(m, tree, axes, k, roundings, length, off, time_off)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
-      integer, intent(in) :: k
-      real(wp), intent(in) :: roundings
-      real(wp), intent(in) :: length         !< length; 0: each number is off by its own size
-      type(mechanism_t), intent(inout) :: off
-      real(wp), intent(out) :: time_off
+      integer, intent(in) :: k               !< the direction; 0: no number is off
+      real(wp), intent(in) :: roundings      !< so many; below 0: in the opposite direction
+      real(wp), intent(in) :: length         !< each length is off as if it were so large; 0: by its own size
+      type(mechanism_t), intent(inout) :: off   !< has the links, points, pairs and drives of `m`
+      real(wp), intent(out) :: time_off      !< the instant is off by this part of it
       real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
-      ! What is off leaves redundant equations open by more than the tolerance allows.
+      ! Numbers that are off leave redundant equations open by more than the tolerance allows.
       if (m%closing > 0.0_wp) off%closing = huge(1.0_wp)
       time_off = 0.0_wp
       if (k > 0 .and. .not. length > 0.0_wp) &
          time_off = roundings*epsilon(1.0_wp)*deviate(parameter_t(parameter_time, 0, 0, 0), k)
+
       do i = 1, size(m%links)
          if (.not. m%links(i)%ground) cycle
          do j = 1, 2
@@ -80,6 +80,7 @@ contains
          call put(parameter_t(parameter_point, i, 0, 1), size_of)
          call put(parameter_t(parameter_point, i, 0, 2), size_of)
       end do
+
       largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
       do i = 1, size(m%pairs)
          if (.not. has_guide(m%pairs(i)%kind)) cycle
@@ -88,8 +89,8 @@ contains
          ! are off by the same part of a radian, whatever the angles are of which they are sums. The angles of ground
          ! links and between guides are as they stand: the arms that they turn are off.
          associate (link => m%points(m%pairs(i)%point_i)%link)
-            quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
-               int(quarter, int64)))
+            quarters = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*parts_of_quarter/pi), int64), &
+               int(parts_of_quarter, int64)))
             off%pairs(i)%alpha = m%pairs(i)%alpha
             if (k > 0) off%pairs(i)%alpha = m%pairs(i)%alpha + roundings*epsilon(1.0_wp)*largest &
                *deviate(parameter_t(parameter_pair, tree%orientation(link), quarters, 1), k)
@@ -112,10 +113,10 @@ contains
 
    contains
 
-      !> Puts a number off that is rounded by its size.
+      !> Gives a number of `off` its value in `m`, off by roundings of its size; not if the size is 0.
       subroutine put(number, size_of)
          type(parameter_t), intent(in) :: number
-         real(wp), intent(in) :: size_of
+         real(wp), intent(in) :: size_of     !< in the unit of the number, at least 0
 
          real(wp) :: by
 
@@ -125,10 +126,11 @@ contains
          call set_parameter(off, number, parameter_value(m, number) + by)
       end subroutine put
 
-      !> Puts the numbers of a term off. A row of a table is off by the rounding of its time as well.
+      !> Puts the numbers of a term off by roundings. A row of a table is off by the rounding of its time as well.
       subroutine perturb_term(term, drive, j)
          type(term_t), intent(in) :: term
-         integer, intent(in) :: drive, j
+         integer, intent(in) :: drive        !< number of its drive
+         integer, intent(in) :: j            !< its number among the terms of the drive
          real(wp) :: slope
          integer :: i
 
@@ -150,14 +152,15 @@ contains
       end subroutine perturb_term
    end subroutine perturb_numbers
 
-   !> Puts the motion `q` of links with the `tree` off in direction `k`, by so many `roundings` of sums of numbers as
-   !> large as the largest of its links; `length`: the characteristic one. What is summed up to a velocity is no smaller
-   !> than an angular velocity times a length, what is summed up to an acceleration has the square of one. A coordinate
-   !> that is zero and rests stays so, but for angles, which may cancel. Links that turn as one turn as one.
+   !> Puts a motion off in a direction, by roundings of sums of numbers as large as the largest of its links. The terms
+   !> of a velocity are at least an angular velocity times a length; those of an acceleration have the square of the
+   !> angular velocity. A coordinate that is zero and rests stays zero, but for angles, which may cancel. Links that
+   !> turn as one still turn as one.
    subroutine perturb_sums(tree, length, k, roundings, q)
       type(spanning_tree_t), intent(in) :: tree
-      real(wp), intent(in) :: length, roundings
-      integer, intent(in) :: k
+      real(wp), intent(in) :: length         !< characteristic length
+      integer, intent(in) :: k               !< the direction
+      real(wp), intent(in) :: roundings      !< so many
       type(motion_t), intent(inout) :: q
       real(wp) :: size_of(2, 0:2), x(0:2)
       integer :: i, c, j
@@ -190,10 +193,10 @@ contains
       end do
    end subroutine perturb_sums
 
-   !> The normal deviate of the number with this address in direction `k` (Box and Muller).
+   !> Gives the normal deviate of the number with an address, in a direction (Box and Muller).
    pure real(wp) function deviate(number, k) result(z)
       type(parameter_t), intent(in) :: number
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< the direction, from 1
       real(wp) :: u, v
       integer(int64) :: x
 
@@ -203,10 +206,10 @@ contains
       z = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
    end function deviate
 
-   !> A number from 1 to the modulus less one that hangs on `bits` and on `n`: the fifth power takes no value twice.
+   !> Mixes two integers to a number from 1 to the modulus less one. The fifth power takes no value twice.
    pure integer(int64) function mixed(bits, n) result(y)
-      integer(int64), intent(in) :: bits
-      integer, intent(in) :: n
+      integer(int64), intent(in) :: bits     !< from 0 to the modulus less one
+      integer, intent(in) :: n               !< at least -1
       integer(int64) :: square
 
       y = mod(multiplier*bits + n + 1, modulus)

@@ -1,6 +1,6 @@
-!> The sensitivities of the rows of a motion to the numbers that have tolerances, at one instant, and what the
-!> tolerances make of them: the worst case, the sum of |s| times the tolerance, and the root of the sum of squares.
-!> A sensitivity is the difference of two rows of the mechanism with one number a little above and below.
+!> The sensitivities s of the rows of a motion to the numbers that have tolerances, at one instant, and the effect of
+!> the tolerances: the worst case, which is the sum of |s| times the tolerance, and the root of the sum of squares. A
+!> sensitivity is the difference of two rows of the mechanism with one number a little above and below.
 module sensitivities
    use kinds, only: wp
    use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, parameter_drive, term_kinds
@@ -25,38 +25,41 @@ module sensitivities
    type :: sensitivities_t
       logical :: taken = .false.                     !< some number has a tolerance
       real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests)
-      real(wp), allocatable :: error(:, :, :, :)     !< likewise: what rounding leaves open of them
-      integer, allocatable :: known(:)               !< (requests) as of a row: -1 none of them exists
+      real(wp), allocatable :: error(:, :, :, :)     !< (3, 0:2, numbers, requests) their errors by rounding
+      integer, allocatable :: known(:)               !< (requests) as `known` of a row: -1 none of them exists
       logical, allocatable :: jams(:)                !< (numbers) redundant equations do not allow it to change
    end type sensitivities_t
 
-   !> A number is changed by about this part of its natural unit, the ninth root of a rounding: with three steps of
-   !> Richardson the error of the difference, the eighth power of the change, is about that which rounding leaves in it.
-   !> To one side it is the fifth root, with the fourth power.
+   !> A number is changed by about this part of its natural unit, the ninth root of a rounding. With three steps of
+   !> Richardson's extrapolation the error of the difference is the eighth power of the change, about as large as the
+   !> error that rounding leaves in it. If the number changes to one side, the fifth root has the fourth power.
    real(wp), parameter :: usual_step = 0.5_wp*epsilon(1.0_wp)**(1.0_wp/9.0_wp)
    real(wp), parameter :: step_to_one_side = 0.5_wp*epsilon(1.0_wp)**0.2_wp
-   !> The steps are this one, its half, and so on; so much of the slopes by each is taken.
+   !> So many steps, each half the one before; the sensitivity is the sum of these parts of their slopes.
    integer, parameter :: halvings = 4
    real(wp), parameter :: of_both_sides(halvings) = [-1.0_wp, 84.0_wp, -1344.0_wp, 4096.0_wp]/2835.0_wp
    real(wp), parameter :: of_one_side(halvings) = [-1.0_wp, 14.0_wp, -56.0_wp, 64.0_wp]/21.0_wp
-   !> What rounding leaves open of rows grows by so much over the step: that of each row is another one.
+   !> The error of a sensitivity is the rounding error of a row over the step, times this: the errors of all rows
+   !> differ.
    real(wp), parameter :: amplification_of_both = norm2(of_both_sides*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])/sqrt(2.0_wp)
    real(wp), parameter :: amplification_of_one = norm2(of_one_side*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])*sqrt(2.0_wp)
-   !> By less where an unknown would change by more (rad, unit of the block), or with a larger Kantorovich ratio r. At
-   !> the distance d from a dead point a change by h has r = h/(2 d), and the difference of accelerations, which are as
-   !> d**-2.5, has the relative error 0.6 r**8.
-   real(wp), parameter :: largest_change = 4.0_wp*usual_step, largest_ratio = 6.0e-2_wp
-   !> A change that is too far, as a part of what it may be, is made shorter; one that is too near was made too short,
-   !> and leaves a larger rounding. Beyond the limit of a motion, where there is no root, it counts as so far at least.
-   real(wp), parameter :: too_near = 0.25_wp, no_root = 4.0_wp
+   !> The step is shorter if an unknown would change by more than this (rad, unit of the block), or with a larger
+   !> Kantorovich ratio r. At the distance d from a dead point a change by h has r = h/(2 d). Accelerations are as
+   !> d**-2.5 there, and their difference has the relative error 0.6 r**8.
+   real(wp), parameter :: max_unknown_change = 4.0_wp*usual_step, max_ratio = 6.0e-2_wp
+   !> Of the largest step that these limits allow: a step below this part was made too short, and leaves a larger
+   !> rounding.
+   real(wp), parameter :: too_near = 0.25_wp
+   !> Beyond the limit of a motion there is no root: the step counts as so many times too long, or more.
+   real(wp), parameter :: no_root = 4.0_wp
    integer, parameter :: max_attempts = 12
-   !> A change of a number that fits opens equations by a small part more.
+   !> The closure error of redundant equations grows at most by this factor if a number may change.
    real(wp), parameter :: more_open = 2.0_wp
 
 contains
 
-   !> The sensitivities of all requests of `m` at its motion `q`, whose `state` the blocks `b` have. `estimate`: how far
-   !> `estimator` has found the motion to be known.
+   !> Finds the sensitivities of all requests of a mechanism at its motion. Sensitivities that do not exist are not
+   !> `known`.
    subroutine find_sensitivities(estimator, m, b, x, state, q, estimate, found)
       type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
@@ -64,7 +67,7 @@ contains
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: state
       type(motion_t), intent(in) :: q
-      type(error_estimate_t), intent(in) :: estimate
+      type(error_estimate_t), intent(in) :: estimate   !< of the motion, by `estimator`
       type(sensitivities_t), intent(inout) :: found
       type(row_t), dimension(size(m%requests)) :: middle, up, down
       type(row_t) :: row
@@ -79,12 +82,14 @@ contains
       found%of = 0.0_wp
       found%error = 0.0_wp
       found%jams = .false.
+
       call find_place(b, x, state, q, estimator%place)
       call make_ready(estimator%perturbed, 0, m, x, i)
       estimator%place%room = huge(1.0_wp)
       call find_rows(middle)
       ! Within a closing tolerance a change that opens redundant equations more than they are open jams all the same.
       estimator%place%room = inconsistent_level + more_open*estimator%place%opened
+
       do i = 1, size(m%requests)
          call find_row(m, q, m%requests(i), row)
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &
@@ -99,30 +104,30 @@ contains
                h = step*0.5_wp**(k - 1)
                if (k > 1) call find_rows(up, one, h)
                if (side == 0) call find_rows(down, one, -h)
-               call record_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == &
-                  0))
+               call record_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, &
+                  merge(of_both_sides(k), of_one_side(k), side == 0))
             end do
             do i = 1, size(m%requests)
                found%known(i) = min(found%known(i), order)
                if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
-                  where (rounding < nothing_known) error = merge(amplification_of_both, amplification_of_one, side == &
-                     0) &
+                  where (rounding < nothing_known) &
+                     error = merge(amplification_of_both, amplification_of_one, side == 0) &
                      *safety_factor*rounding*abs(one%unit/step)
                end associate
             end do
          end associate
       end do
-      ! Its numbers are those of no direction.
+      ! Its numbers belong to no direction.
       estimator%perturbed(0)%is_ready = .false.
 
    contains
 
-      !> Adds to the sensitivities to number `d` this `part` of the slopes from the rows `down` to those `up`, whose
-      !> numbers are `apart`.
+      !> Adds a part of the slopes from the rows `down` to the rows `up` to the sensitivities to number `d`.
       subroutine record_slopes(apart, part)
-         real(wp), intent(in) :: apart, part
+         real(wp), intent(in) :: apart       !< difference of the numbers of `up` and `down`, in their unit
+         real(wp), intent(in) :: part        !< of the slopes; without a unit
          integer :: i
 
          do i = 1, size(m%requests)
@@ -133,11 +138,11 @@ contains
          end do
       end subroutine record_slopes
 
-      !> The `rows` with the number of tolerance `one`, if it is there, changed by `by`.
+      !> Finds the rows with one number changed, or with none.
       subroutine find_rows(rows, one, by)
-         type(row_t), intent(inout) :: rows(:)
-         type(tolerance_t), intent(in), optional :: one
-         real(wp), intent(in), optional :: by
+         type(row_t), intent(inout) :: rows(:)   !< (requests)
+         type(tolerance_t), intent(in), optional :: one   !< of the number that is changed
+         real(wp), intent(in), optional :: by   !< its change, in the unit of the number; there if `one` is
 
          associate (p => estimator%perturbed(0))
             p%m = m
@@ -148,11 +153,11 @@ contains
          if (present(one)) found%jams(d) = found%jams(d) .or. estimator%place%jams
       end subroutine find_rows
 
-      !> The `step` by which the number of tolerance `one` is changed, above 0 if `side` is 0; `up`: the rows there.
+      !> Finds the step by which a number is changed, with the rows `up` there.
       subroutine find_step(one, side, step)
-         type(tolerance_t), intent(in) :: one
-         integer, intent(in) :: side
-         real(wp), intent(out) :: step
+         type(tolerance_t), intent(in) :: one   !< of the number
+         integer, intent(in) :: side         !< to which it may change: -1, 1, or 0: to both
+         real(wp), intent(out) :: step       !< in the unit of the number; above 0 unless `side` is -1
          real(wp) :: usual, too_far
          integer :: k
 
@@ -160,9 +165,9 @@ contains
          step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
             call find_rows(up, one, step)
-            ! On a dead point there is nothing but what drives alone move, and no distance to it.
+            ! On a dead point only links that drives move are known, and there is no distance to it.
             if (estimator%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
-            too_far = max(estimator%place%change/largest_change, estimator%place%ratio/largest_ratio, too_near/2.0_wp)
+            too_far = max(estimator%place%change/max_unknown_change, estimator%place%ratio/max_ratio, too_near/2.0_wp)
             if (any(up%known < middle%known)) too_far = max(too_far, no_root)
             if (too_far <= 1.0_wp .and. (too_far >= too_near .or. .not. abs(step) < usual)) exit
             step = sign(min(usual, abs(step)*max(0.5_wp/too_far, 1.0e-3_wp)), step)
@@ -170,17 +175,17 @@ contains
       end subroutine find_step
    end subroutine find_sensitivities
 
-   !> A change of 1, as far as the motion of a mechanism of these `sizes` is concerned, of the number of tolerance
-   !> `one`, in the units of `mechanism_t`.
+   !> Gives the natural unit of a number, of the characteristic length and rate, in the units of `mechanism_t`: a
+   !> change by it has the effect 1 on the motion.
    pure real(wp) function natural_unit(one, sizes)
-      type(tolerance_t), intent(in) :: one
-      type(sizes_t), intent(in) :: sizes
+      type(tolerance_t), intent(in) :: one   !< of the number
+      type(sizes_t), intent(in) :: sizes     !< of the mechanism
 
       natural_unit = sizes%length**one%powers(1)*sizes%rate**(-one%powers(2))
    end function natural_unit
 
-   !> Tells whether what `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole
-   !> and no curve.
+   !> Tells whether a request has sensitivities: some number has a tolerance, and the request is no pole, curve or
+   !> ratio.
    pure logical function has_tolerances(m, request)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
@@ -188,16 +193,16 @@ contains
       has_tolerances = allocated(m%tolerances) .and. .not. is_centre(request%kind) .and. request%drive == 0
    end function has_tolerances
 
-   !> Finds what the next joint of the rise that has the number of tolerance `one` says of derivatives at the time `t`.
-   !> `side`: to which the number may change by a few times `step`: -1, 1, or 0: to both; a start or a duration that
-   !> grows moves joints to later times. `order`: the highest derivative with respect to time, 0 to 2, that has a
-   !> derivative with respect to the number: at a joint that moves the acceleration, or the velocity, has other ones to
-   !> either side.
+   !> Finds which derivatives with respect to a number exist at a time, and on which side: the joints of a rise may be
+   !> near. A start or a duration that grows moves joints to later times. At a joint that moves, the derivative of the
+   !> acceleration, or of the velocity, with respect to the number is another one on either side.
    pure subroutine look_at_joint(m, one, t, step, side, order)
       type(mechanism_t), intent(in) :: m
-      type(tolerance_t), intent(in) :: one
-      real(wp), intent(in) :: t, step
-      integer, intent(out) :: side, order
+      type(tolerance_t), intent(in) :: one   !< of the number
+      real(wp), intent(in) :: t              !< time
+      real(wp), intent(in) :: step           !< the number changes by it, in its unit
+      integer, intent(out) :: side           !< to which it may change by a few steps: -1, 1, or 0: to both
+      integer, intent(out) :: order          !< the highest derivative with respect to time, 0 to 2, that has one
       real(wp) :: joints(3), ahead
 
       side = 0
@@ -209,16 +214,15 @@ contains
          ahead = joints(minloc(abs(joints), dim=1))
          if (abs(ahead) <= joint_distance(term)) order = merge(0, 1, term_kinds(term%kind)%jumps)
          if (abs(ahead) > 2.0_wp*step/term%r(2)*max(1.0_wp, abs(t - term%r(1))/term%r(2))) return
-         ! At the joint itself the derivative is that from the right.
+         ! At the joint itself the derivative from the right is taken.
          side = merge(1, -1, ahead > joint_distance(term))
       end associate
    end subroutine look_at_joint
 
-   !> The largest change (3, 0:2) of a row with the sensitivities `changes` (3, 0:2, numbers) that the `tolerances`
-   !> (numbers) allow.
+   !> Gives the largest change (3, 0:2) of a row that tolerances allow.
    pure function worst_case(tolerances, changes) result(x)
-      type(tolerance_t), intent(in) :: tolerances(:)
-      real(wp), intent(in) :: changes(:, 0:, :)
+      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
+      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
       real(wp) :: x(3, 0:2)
       integer :: d
 
@@ -228,10 +232,10 @@ contains
       end do
    end function worst_case
 
-   !> The root (3, 0:2) of the sum of the squares of its changes by one tolerance at a time.
+   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time.
    pure function root_of_squares(tolerances, changes) result(x)
-      type(tolerance_t), intent(in) :: tolerances(:)
-      real(wp), intent(in) :: changes(:, 0:, :)
+      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
+      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
       real(wp) :: x(3, 0:2)
       integer :: c, k
 

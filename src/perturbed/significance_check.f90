@@ -1,5 +1,5 @@
-!> By how much roundings grow at most in a motion: whether digits of the tables could be in doubt. The question is asked
-!> at every instant that is printed, and must cost little.
+!> The largest growth of roundings in a motion: whether digits of the tables could be in doubt. This is asked at every
+!> instant that is printed, and must cost little.
 module significance_check
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
@@ -15,35 +15,37 @@ module significance_check
    private
    public :: sizes_t, sizes_of, find_amplification, amplification_in_centres, max_amplification
 
-   !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
-   real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
-   !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
+   !> The tables have the same digits in every kind of real: a kind that is coarser than real64 allows this part of the
+   !> roundings.
+   real(wp), parameter :: part_of_real64 = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
+   !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times the requested number. Below this many
    !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
-   real(wp), parameter :: max_amplification = 1.0e4_wp*of_kind
+   real(wp), parameter :: max_amplification = 1.0e4_wp*part_of_real64
    real(wp), parameter :: safe_size = 1.0e4_wp
-   !> Angles that are no larger than a few radians count as any number does. Of larger ones it is their rounding alone
-   !> that grows, and not what their motion is added up of: so large, times that growth, they may be. A digit of a table
-   !> is worth 1.7E-8 rad, or 1E-7 of the characteristic rate, at least.
-   real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp*of_kind
+   !> Angles up to this, in rad, count as any number does. Of larger angles only their rounding grows, and not the
+   !> terms of their motion. Times that growth they are safe up to `safe_angle`, in rad: a digit of a table is worth at
+   !> least 1.7E-8 rad, or 1E-7 of the characteristic rate.
+   real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp*part_of_real64
 
-   !> What the numbers of a mechanism are compared with: its characteristic length and rate in the deck's units.
+   !> The sizes of a mechanism, with which its numbers are compared.
    type :: sizes_t
-      real(wp) :: length = 1.0_wp, rate = 1.0_wp
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< characteristic length and rate in the deck's units
       real(wp) :: law(0:1) = 0.0_wp            !< size of the drives' laws at t = 0, and how it grows with |t|; no units
       logical :: has_centres = .false.         !< poles or curves are asked for
    end type sizes_t
 
-   !> With smaller pivots everything is in doubt.
+   !> With a smaller pivot of a block everything is in doubt.
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
-   !> A digit of a rate is worth so many of an angle, at least.
+   !> A digit of a rate is worth at least so many digits of an angle.
    real(wp), parameter :: rate_digits = 6.0_wp
-   !> What a block knows may be so many times as large as its own vectors before its roundings count for more.
+   !> The vectors that a block gets from other blocks may be so many times as large as its own before their roundings
+   !> count.
    real(wp), parameter :: usual_coarse = 16.0_wp
 
 contains
 
-   !> The sizes of `m`; of the largest law of its drives that at t = 0, and how much larger it is, over |t|: see
-   !> `growing_sizes`.
+   !> Finds the sizes of a mechanism: characteristic length and rate, and how the largest law of its drives grows
+   !> (`growing_sizes`).
    function sizes_of(m) result(s)
       type(mechanism_t), intent(in) :: m
       type(sizes_t) :: s
@@ -61,10 +63,10 @@ contains
       end do
    end function sizes_of
 
-   !> Finds by how much roundings grow at most in the motion `q` of `m`, where a pivot of the blocks `b` is small;
-   !> without limit where a number is large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found
-   !> the position to the last digits all the same; all equations at once have lost up to half of them. These have one
-   !> unit of length for large links and small ones: pivots of blocks say nothing of them, and they always are in doubt.
+   !> Finds the largest growth of roundings in a motion. Small pivots of blocks make them grow; with a large number they
+   !> grow without limit. If rates do not exist, blocks still have found the position to the last digits; all equations
+   !> at once have lost up to half of them. These have one unit of length for large links and small ones. Pivots of
+   !> blocks do not show their errors, and they always are in doubt.
    pure subroutine find_amplification(sizes, m, b, x, s, q, growth, in_doubt)
       type(sizes_t), intent(in) :: sizes
       type(mechanism_t), intent(in) :: m
@@ -72,8 +74,8 @@ contains
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
-      real(wp), intent(out) :: growth
-      logical, intent(out) :: in_doubt
+      real(wp), intent(out) :: growth        !< factor of a rounding, relative to the characteristic sizes; or huge
+      logical, intent(out) :: in_doubt       !< digits of the tables may be lost
       real(wp) :: law, angle, size_of, usual, of_angles, inverse
       real(wp) :: largest(2, 0:2)
       integer :: k
@@ -84,6 +86,7 @@ contains
       if (q%known < 2 .or. q%rests) return
       growth = huge(growth)
       in_doubt = .true.
+
       call find_largest(size(q%position, 2), q%position, q%velocity, q%acceleration, largest)
       angle = max(largest(2, 0), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
@@ -95,8 +98,9 @@ contains
       if (sizes%has_centres) size_of = max(size_of, amplification_in_centres(m, q))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
-      ! In a block with p the least pivot of its Jacobian (at most 1), L its Lipschitz constant and C its `coarse`
-      ! numbers grow by L/p^2, with C above `usual_coarse` also by C/p and C L/p^2; angles by C/p in positions and,
+
+      ! A block has p, the least pivot of its Jacobian (at most 1), L, its Lipschitz constant, and C, its `coarse`.
+      ! Numbers grow by L/p^2; with C above `usual_coarse` also by C/p and C L/p^2. Angles grow by C/p in positions and,
       ! over `rate_digits`, by C L^2/p^3 in accelerations.
       growth = 0.0_wp
       of_angles = 1.0_wp
@@ -135,8 +139,8 @@ contains
       end do
    end subroutine find_largest
 
-   !> By how much roundings of the motion `q` grow in the poles and curves of `m`, in characteristic ones; at infinity
-   !> and at rest without limit.
+   !> Finds the largest growth of roundings of a motion in the poles and curves of its mechanism, relative to their
+   !> characteristic sizes. At infinity and at rest the growth is huge.
    pure real(wp) function amplification_in_centres(m, q) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -159,7 +163,8 @@ contains
       end do
    end function amplification_in_centres
 
-   !> Finds by how much roundings of a motion grow in the measures of its mechanism, in characteristic ones.
+   !> Finds the largest growth of roundings of a motion in the measures of its mechanism, relative to their
+   !> characteristic sizes.
    pure real(wp) function amplification_in_measures(m, q, rate) result(growth)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known

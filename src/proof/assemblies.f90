@@ -1,6 +1,6 @@
 !> All assemblies of a mechanism at one instant: a tree, in which each assembly of the earlier blocks gives the next one
-!> its problem. A block is solved anew only where something that it builds on has changed. Each assembly is proved.
-!> Where all are known, a run begins in the one that is nearest to the deck's estimate.
+!> its problem. A block is solved again only if something that it builds on has changed. Each assembly is proved.
+!> If all are known, a run begins in the one that is nearest to the deck's estimate.
 module assemblies
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -23,11 +23,10 @@ module assemblies
    private
    public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, find_nearest, max_assemblies
 
-   !> More are not looked for.
+   !> A search ends after so many.
    integer, parameter :: max_assemblies = 1000
-   !> Distances that differ by less than this part are alike.
-   real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
-
+   !> Distances that differ by less than this part are equal: rounding shall not choose.
+   real(wp), parameter :: equal_distance_part = sqrt(epsilon(1.0_wp))
    !> A cylinder shorter than this part of the characteristic length may have the length 0.
    real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
 
@@ -40,10 +39,11 @@ module assemblies
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate: the root of the sum of `squared_distances`
    end type assembly_t
 
-   !> What was found of a block that iterates, in all assemblies of what it builds on.
+   !> The findings of a block that iterates, in all assemblies of the blocks that it builds on.
    type, extends(block_positions_t) :: assembly_block_t
       integer :: block = 0                      !< its number
-      !> Those whose angle it solves for; of a block of slides alone those that have their place then and no earlier.
+      !> The links whose angle it solves for. If all its unknowns are slides: the links that have their place then and
+      !> no earlier.
       integer, allocatable :: links(:)
       integer :: unknowns = 0                   !< of the block
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
@@ -53,18 +53,18 @@ module assemblies
       type(assembly_t), allocatable :: list(:)         !< nearest to the estimate first
       type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
       logical :: are_more = .false.                    !< than max_assemblies
-      integer :: chosen = 0                            !< the number of that in which a run begins; 0: none of them
-      integer :: negative = 0                          !< with a cylinder of negative length: they are not in the list
+      integer :: chosen = 0                            !< in this one a run begins; 0: in none of them
+      integer :: negative = 0                          !< so many have a cylinder of negative length, and are not listed
       logical :: is_missed = .false.                   !< a run begins at a position that is none of them
-      logical :: is_known = .true.                     !< they are all that there are, but for `moves` of blocks
+      logical :: is_known = .true.                     !< no other ones exist, but for `moves` of blocks
    end type assemblies_t
 
 contains
 
-   !> All `assemblies` of `m`, one independent mechanism with a structure that can be solved, at the time `t`.
+   !> Finds all assemblies of a mechanism at a time; none if its structure cannot be solved.
    subroutine find_assemblies(m, t, assemblies)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
+      type(mechanism_t), intent(in) :: m     !< one independent mechanism
+      real(wp), intent(in) :: t              !< time
       type(assemblies_t), intent(out) :: assemblies
       type(following_t) :: f
       type(assembly_block_t) :: one
@@ -91,13 +91,12 @@ contains
          .or. any(assemblies%blocks%is_wide .or. assemblies%blocks%failed > 0))
    end subroutine find_assemblies
 
-   !> Finds all assemblies as `find_assemblies`, and which of them a run begins in: that which the estimate of `m`
-   !> chooses, unless another one is nearer and all are known. Then the nearest is the estimate of `m` from now on;
-   !> also where the estimate chooses a position that is not separate. Where it chooses another one that was not
-   !> found, some may be missing.
+   !> Finds all assemblies of a mechanism, and the one in which a run begins. The deck's estimate chooses it, unless
+   !> another one is nearer and all are known, or the chosen position is not separate. Then the nearest assembly
+   !> becomes the estimate. If the estimate chooses a position that was not found, some may be missing.
    subroutine find_nearest(m, t, assemblies)
-      type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: t
+      type(mechanism_t), intent(inout) :: m  !< one independent mechanism
+      real(wp), intent(in) :: t              !< time
       type(assemblies_t), intent(out) :: assemblies
       type(following_t) :: f
       type(motion_t) :: q
@@ -112,7 +111,7 @@ contains
       if (is_found) then
          q = new_motion(size(m%links))
          call move_links(f%geometry%chain, size(f%geometry%chain%links), f%state, q, unused)
-         ! Of all that it may be that which is nearest to it, whole turns not counted.
+         ! Of all that are near enough it is the nearest one, whole turns not counted.
          nearest = same_place
          do i = 1, size(assemblies%list)
             apart = maxval(separation(assemblies%list(i)%position, q%position, f%geometry%span))
@@ -121,6 +120,7 @@ contains
             assemblies%chosen = i
          end do
       end if
+
       if (is_nearer_one()) then
          assemblies%chosen = 1
          do i = 1, size(m%links)
@@ -135,7 +135,7 @@ contains
 
    contains
 
-      !> All are known, and the first of the list is nearer than where the estimate leads.
+      !> Tells whether all are known, and the first of the list is nearer than the position that the estimate chooses.
       logical function is_nearer_one() result(is)
          is = size(assemblies%list) > 0 .and. assemblies%is_known
          if (is) is = assemblies%list(1)%is_proved
@@ -150,8 +150,8 @@ contains
       end function is_nearer_one
    end subroutine find_nearest
 
-   !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
-   !> changed it last; `seen`: of each block the same, when it was solved.
+   !> Goes through all choices of a position for each block. `changed` has the number of the last choice that changed an
+   !> unknown; `seen` has the number of the last choice before a block was solved.
    subroutine search(m, following, assemblies)
       type(mechanism_t), intent(in) :: m
       type(following_t), intent(inout) :: following
@@ -170,6 +170,7 @@ contains
       changed = 0
       choice = 0
       i = 1
+
       do while (i >= 1)
          if (i > size(found)) then
             assemblies%are_more = size(assemblies%list) == max_assemblies
@@ -180,6 +181,7 @@ contains
             i = i - 1
             cycle
          end if
+
          if (chosen(i) == 0 .and. largest_known(following%blocks, i, changed) > seen(i)) then
             call find_positions(following%blocks, following%geometry, i, following%work, following%state, max_group, &
                following%guess%starts(i)%paths, found(i))
@@ -201,13 +203,13 @@ contains
       end do
    end subroutine search
 
-   !> Puts the assembly that `following` has now among the others, the nearest first; of those that are alike in the
-   !> order in which they were found.
+   !> Puts an assembly among the others, the nearest first. If distances are equal they keep the order in which they
+   !> were found. An assembly with a cylinder of negative length is only counted.
    subroutine record_assembly(following, found, chosen, is_proved, assemblies)
-      type(following_t), intent(in) :: following
-      type(block_positions_t), intent(in) :: found(:)
-      integer, intent(in) :: chosen(:)
-      logical, intent(in) :: is_proved
+      type(following_t), intent(in) :: following   !< its state is the assembly
+      type(block_positions_t), intent(in) :: found(:)   !< (blocks)
+      integer, intent(in) :: chosen(:)       !< (blocks) numbers of the positions of the assembly
+      logical, intent(in) :: is_proved       !< the assembly is proved
       type(assemblies_t), intent(inout) :: assemblies
       type(assembly_t) :: one
       type(motion_t) :: q
@@ -231,7 +233,7 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%distance = sqrt(sum(squared_distances(one%position, following%guess%links, following%geometry%span)))
-      k = count(assemblies%list%distance <= one%distance*(1.0_wp + alike))
+      k = count(assemblies%list%distance <= one%distance*(1.0_wp + equal_distance_part))
       assemblies%list = [assemblies%list(:k), one, assemblies%list(k + 1:)]
    end subroutine record_assembly
 end module assemblies

@@ -22,14 +22,14 @@ module ball_equations
 
 #include "number_types.inc"
 
-   !> As in `geometry_t`.
+   !> The geometry in balls; the components are those of `geometry_t`.
    type :: ball_numbers_t
       type(row_numbers_t), allocatable :: rows(:)
       type(loop_numbers_t), allocatable :: loops(:)
       type(vector_t), allocatable :: d(:), e(:)
    end type ball_numbers_t
 
-   !> As in `state_t`.
+   !> The state in balls; the components are those of `state_t`.
    type :: ball_state_t
       type(unknown_t), allocatable :: u(:)             !< (0:unknowns)
       type(loop_state_t), allocatable :: loop(:)
@@ -39,39 +39,39 @@ module ball_equations
 
 contains
 
-   !> Room for the state of `b` with this number of `drives`, all at rest.
+   !> Makes room for the state of a structure, all at rest.
    pure function new_ball_state(b, drives) result(s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives          !< number of drives
       type(ball_state_t) :: s
 
       allocate (s%u(0:b%unknowns), s%loop(size(b%loops)), s%own(size(b%body_vectors)), s%guide(size(b%slides)))
       allocate (s%drive(0:2, 0:drives), source=ball_t(0.0_wp, 0.0_wp))
    end function new_ball_state
 
-   !> Gives `unknown` of `balls`, the blocks' `b`, the `value`.
+   !> Gives an unknown a value, and its direction if it is an angle.
    pure subroutine set_ball(b, unknown, value, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknown
-      type(ball_t), intent(in) :: value
+      integer, intent(in) :: unknown         !< its number
+      type(ball_t), intent(in) :: value      !< rad or unit of the block
       type(ball_state_t), intent(inout) :: balls
 
       balls%u(unknown)%value = value
       if (unknown <= b%orientations) call set_direction(balls%u(unknown))
    end subroutine set_ball
 
-   !> Gives it the `radius`, about the same midpoint.
+   !> Gives the value of an unknown a radius, about the midpoint that it has.
    pure subroutine set_radius(b, unknown, radius, balls)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknown
-      real(wp), intent(in) :: radius
+      integer, intent(in) :: unknown         !< its number
+      real(wp), intent(in) :: radius         !< rad or unit of the block
       type(ball_state_t), intent(inout) :: balls
 
       balls%u(unknown)%value%radius = radius
       if (unknown <= b%orientations) call widen(balls%u(unknown))
    end subroutine set_radius
 
-   !> Cosine and sine of the angle `unknown`, those of the library taken to be right within two units in the last place.
+   !> Computes cosine and sine of an angle. The library's are taken to be right within two units in the last place.
    pure subroutine set_direction(unknown)
       type(unknown_t), intent(inout) :: unknown
 
@@ -80,7 +80,8 @@ contains
       call widen(unknown)
    end subroutine set_direction
 
-   !> Their radii by that of the angle, |cos(m + r) - cos m| <= |sin m| r + |cos m| r^2/2.
+   !> Computes the radii of cosine and sine from the radius of the angle:
+   !> |cos(m + r) - cos m| <= |sin m| r + |cos m| r^2/2.
    pure subroutine widen(unknown)
       type(unknown_t), intent(inout) :: unknown
       real(wp) :: half, c, s
@@ -94,14 +95,15 @@ contains
       end associate
    end subroutine widen
 
-   !> Jacobian `jacobian`, stored as the shape of the block says, residual `residuals` (rows) of block `i` at the state,
-   !> and the right-hand side `right_side` (rows) for the velocities there, with what earlier blocks give.
+   !> Assembles Jacobian, residuals and the right-hand side for the velocities of a block at a state, with the motion of
+   !> earlier blocks.
    pure subroutine assemble_balls(b, numbers, i, balls, jacobian, residuals, right_side)
       type(blocks_t), intent(in) :: b
       type(ball_numbers_t), intent(in) :: numbers
-      integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: balls
-      type(ball_t), intent(inout) :: jacobian(*), residuals(*), right_side(*)
+      integer, intent(in) :: i               !< number of the block
+      type(ball_state_t), intent(inout) :: balls   !< the state
+      type(ball_t), intent(inout) :: jacobian(*)   !< stored as in the shape of the block
+      type(ball_t), intent(inout) :: residuals(*), right_side(*)   !< (rows)
 
       associate (block => b%list(i))
          call find_known(block%first_loop, block%last_loop, b%loops, numbers%loops, b%body_vectors, numbers%d, &
@@ -111,13 +113,12 @@ contains
       end associate
    end subroutine assemble_balls
 
-   !> The right-hand side `right_side` (rows) for the accelerations of block `i`, with the vectors of the last
-   !> `assemble_balls`.
+   !> Computes the right-hand side for the accelerations of a block, with the vectors of the last `assemble_balls`.
    pure subroutine ball_accelerations(b, i, balls, right_side)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(ball_state_t), intent(in) :: balls
-      type(ball_t), intent(inout) :: right_side(*)
+      integer, intent(in) :: i               !< number of the block
+      type(ball_state_t), intent(in) :: balls   !< the state
+      type(ball_t), intent(inout) :: right_side(*)   !< (rows)
       integer :: m
 
       associate (block => b%list(i))

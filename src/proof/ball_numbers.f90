@@ -1,10 +1,9 @@
-!> What the numbers of the cards make of the blocks, in balls. A radius is what the roundings of sums and of the deck's
-!> decimals leave open.
+!> The geometry of the blocks in balls. A radius bounds the roundings of sums and of the deck's decimals.
 !>
 !> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the
-!> deck's decimals are one. Splines of tables count as they are computed. What the structure takes for zero (vectors
-!> that cancel but for rounding) is zero. Sines and cosines of the library are taken to be right within two units in the
-!> last place; all other operations round to nearest.
+!> deck's decimals are one. Splines of tables count as they are computed. A vector that is zero in the structure (its
+!> terms cancel but for rounding) is zero. Sines and cosines of the library are taken to be right within two units in
+!> the last place; all other operations round to nearest.
 module ball_numbers
    use kinds, only: wp
    use plane_vectors, only: length_of, real_vector_t => vector_t
@@ -16,14 +15,14 @@ module ball_numbers
    private
    public :: new_ball_numbers, around, angle_error, length_in_link
 
-   !> Of a number of the deck: so many roundings, those of its decimals and units.
-   real(wp), parameter, public :: of_number = 4.0_wp*rounding
-   !> Of the components of a vector that the deck's angles turn: sine and cosine, products and their sum.
-   real(wp), parameter, public :: of_vector = 8.0_wp*rounding
+   !> Relative error of a number of the deck: the roundings of its decimals and units.
+   real(wp), parameter, public :: number_error = 4.0_wp*rounding
+   !> Relative error of the components of a vector that the deck's angles turn: sine and cosine, products and their sum.
+   real(wp), parameter, public :: vector_error = 8.0_wp*rounding
 
 contains
 
-   !> Makes the ball numbers of `m`, of which the blocks `b` and their geometry `x` are made.
+   !> Makes the geometry of a mechanism in balls.
    function new_ball_numbers(m, b, x) result(p)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -33,12 +32,13 @@ contains
       integer :: i, k
 
       angle = angle_error(m)
-      of_direction = 2.0_wp*of_vector + angle
+      of_direction = 2.0_wp*vector_error + angle
+
       allocate (p%rows(size(b%rows)), p%loops(size(b%loops)), p%d(size(b%body_vectors)), p%e(size(b%slides)))
       do i = 1, size(b%loops)
          associate (g => b%loops(i), own => x%loops(i), v => b%equations%vector_loops)
             if (g%kind == loop_angles) cycle
-            ! Of all vectors of the loop that turn with each orientation.
+            ! With each orientation: the length of all vectors of the loop that turn with it.
             lengths = 0.0_wp
             do k = v%first_term(g%vector_loop), v%first_term(g%vector_loop + 1) - 1
                associate (l => lengths(v%vector_orientation(v%term_vector(k))), term => abs(v%terms(:, k)))
@@ -47,7 +47,8 @@ contains
                end associate
             end do
             associate (terms => v%first_term(g%vector_loop + 1) - v%first_term(g%vector_loop))
-               lengths = lengths*(of_number + of_vector + angle + terms*rounding)/(x%equations%length*own%unit)*room
+               lengths = lengths*(number_error + vector_error + angle + terms*rounding) &
+                  /(x%equations%length*own%unit)*room
             end associate
             p%loops(i)%ground = around(own%ground, lengths(0))
             p%loops(i)%direction = around(own%direction, of_direction*length_of(own%direction))
@@ -60,34 +61,34 @@ contains
          end associate
       end do
       p%rows%constant%mid = x%rows%constant
-      p%rows%constant%radius = (2.0_wp*of_number*abs(x%rows%constant) &
+      p%rows%constant%radius = (2.0_wp*number_error*abs(x%rows%constant) &
          + merge(2.0_wp*angle, 0.0_wp, b%rows%angular))*room
    end function new_ball_numbers
 
-   !> The `vector`, of which each component is known up to `radius`.
+   !> Makes the ball of a vector of which each component is known up to a radius.
    elemental type(vector_t) function around(vector, radius)
       type(real_vector_t), intent(in) :: vector
-      real(wp), intent(in) :: radius
+      real(wp), intent(in) :: radius         !< in the unit of the vector
 
       around = vector_t(ball_t(vector%x, radius*room), ball_t(vector%y, radius*room))
    end function around
 
-   !> Bounds the errors of all angles of links against their orientations, sums of the deck's, and of the directions of
-   !> guides, by all angles on cards of `m` that can be in such a sum.
+   !> Bounds the errors, in rad, of all directions of guides and of all angles of links from their orientations. These
+   !> are sums of angles of the deck, and the bound takes all angles on cards that can be in such a sum.
    pure real(wp) function angle_error(m) result(angle)
       type(mechanism_t), intent(in) :: m
 
       associate (guides => has_guide(m%pairs%kind))
-         angle = (of_number + (1 + count(guides))*rounding)*(sum(abs(m%pairs%beta) + abs(m%pairs%alpha), guides) &
+         angle = (number_error + (1 + count(guides))*rounding)*(sum(abs(m%pairs%beta) + abs(m%pairs%alpha), guides) &
             + maxval([0.0_wp, abs(m%links%position(3))], [.true., m%links%ground]))
       end associate
    end function angle_error
 
-   !> Bounds the length to point `i` of `m` from the origin of its link or, on the ground, from those of the motion and
-   !> the plane, in the deck's unit.
+   !> Bounds the distance of a point from the origin of its link, in the deck's unit. A point of the ground is counted
+   !> from the origins of the motion and of the plane.
    elemental real(wp) function length_in_link(m, i) result(length)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the point
 
       associate (link => m%links(m%points(i)%link))
          length = norm2(m%points(i)%offset)

@@ -1,22 +1,23 @@
 !> Balls: numbers that are known up to a radius, and their sums and products.
 !>
-!> Midpoints are what the same operations make of reals, rounded to nearest. A radius holds what its operation leaves
-!> open, and is enlarged by more than its own roundings (Rump, Acta Numerica 2010): no rounding mode is switched.
-!> Radii of sums and products are polynomials of those of their terms, without a negative coefficient.
+!> Midpoints are the results of the operations on reals, rounded to nearest. A radius bounds the error of its operation,
+!> and is enlarged by more than its own roundings (Rump, Acta Numerica 2010): no rounding mode is switched.
+!> Radii of sums and products are polynomials of the radii of their terms, without a negative coefficient.
 module balls
    use kinds, only: wp
    implicit none
    private
    public :: ball_t, top, distance, operator(+), operator(-), operator(*)
 
-   !> One rounding error, with room: half of it is the bound of one operation.
+   !> One relative rounding error, with room: half of it is the bound of one operation.
    real(wp), parameter, public :: rounding = epsilon(1.0_wp)
-   !> Enlarges a sum of a few numbers by more than its roundings.
+   !> Factors that enlarge a sum by more than its roundings: `room` a sum of a few products, `up` the radius of one
+   !> operation.
    real(wp), parameter, public :: room = 1.0_wp + 32.0_wp*rounding
    real(wp), parameter, public :: up = 1.0_wp + 8.0_wp*rounding
 
    type :: ball_t
-      real(wp) :: mid, radius
+      real(wp) :: mid, radius                !< midpoint and radius
    end type ball_t
 
    interface operator(+)
@@ -31,22 +32,22 @@ module balls
 
 contains
 
-   !> The largest absolute value in `ball`.
+   !> Bounds the absolute values in a ball.
    elemental real(wp) function top(ball)
       type(ball_t), intent(in) :: ball
 
       top = (abs(ball%mid) + ball%radius)*up
    end function top
 
-   !> The largest distance of a number in `ball` from `number`.
+   !> Bounds the distance of the numbers in a ball from a number.
    elemental real(wp) function distance(ball, number)
       type(ball_t), intent(in) :: ball
-      real(wp), intent(in) :: number
+      real(wp), intent(in) :: number         !< in the unit of the ball
 
       distance = (abs(ball%mid - number) + ball%radius)*up
    end function distance
 
-   !> a + b.
+   !> Gives the ball that holds the sums of two balls.
    elemental type(ball_t) function add(first, second) result(c)
       type(ball_t), intent(in) :: first, second
 
@@ -54,7 +55,7 @@ contains
       c%radius = (first%radius + second%radius + rounding*abs(c%mid))*up
    end function add
 
-   !> a - b.
+   !> Gives the ball that holds the differences of two balls.
    elemental type(ball_t) function subtract(first, second) result(c)
       type(ball_t), intent(in) :: first, second
 
@@ -62,14 +63,15 @@ contains
       c%radius = (first%radius + second%radius + rounding*abs(c%mid))*up
    end function subtract
 
-   !> -a.
+   !> Gives a ball with the opposite sign.
    elemental type(ball_t) function negate(ball) result(c)
       type(ball_t), intent(in) :: ball
 
       c = ball_t(-ball%mid, ball%radius)
    end function negate
 
-   !> a b: with zero zero; any other has room for underflow.
+   !> Gives the ball that holds the products of two balls. A product with zero is zero; any other has room for
+   !> underflow.
    elemental type(ball_t) function multiply(first, second) result(c)
       type(ball_t), intent(in) :: first, second
       real(wp) :: of_a, of_b

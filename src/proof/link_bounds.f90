@@ -1,4 +1,4 @@
-!> From the balls of the unknowns to those of links, along the tree as `link_motion` has it.
+!> From the balls of the unknowns to the balls of links, along the tree of `link_motion`.
 module link_bounds
    use kinds, only: wp
    use plane_vectors, only: real_vector_t => vector_t
@@ -7,7 +7,7 @@ module link_bounds
    use blocks, only: geometry_t
    use balls, only: ball_t, distance, operator(+), operator(*)
    use ball_equations, only: vector_t, unknown_t, ball_state_t, add_rotating
-   use ball_numbers, only: angle_error, length_in_link, around, of_number, of_vector
+   use ball_numbers, only: angle_error, length_in_link, around, number_error, vector_error
    implicit none
    private
    public :: bound_links
@@ -16,26 +16,26 @@ module link_bounds
 
 contains
 
-   !> The exact place from the origin of `q` and angle of each link and their derivatives lie in `links` (3, 0:2,
-   !> links); the exact unknowns lie in `balls`. 0 of the ground and of links that nothing asks for. `largest` (2, 0:2):
-   !> the largest distances of lengths and of angles from those of the motion `q` of `m`, whose geometry is `x`.
+   !> Bounds the exact places and angles of all links and their derivatives; those of the ground and of links that are
+   !> not needed are 0.
    pure subroutine bound_links(m, x, balls, q, links, largest)
       type(mechanism_t), intent(in) :: m
       type(geometry_t), intent(in) :: x
-      type(ball_state_t), intent(in) :: balls
-      type(motion_t), intent(in) :: q
-      type(ball_t), intent(out) :: links(3, 0:2, size(m%links))
-      real(wp), intent(out) :: largest(2, 0:2)
+      type(ball_state_t), intent(in) :: balls   !< hold the exact unknowns
+      type(motion_t), intent(in) :: q        !< as computed
+      type(ball_t), intent(out) :: links(3, 0:2, size(m%links))   !< x and y from the origin of `q`, angle (rad)
+      real(wp), intent(out) :: largest(2, 0:2)   !< largest error of the lengths and angles (rad) of `q`
       type(vector_t) :: here(0:2)
       real(wp) :: error(3, 0:2), slide(2), of_angle, of_direction, of_vectors
       integer :: i
 
       of_angle = angle_error(m)
-      of_direction = of_number + 2.0_wp*of_vector + of_angle
+      of_direction = number_error + 2.0_wp*vector_error + of_angle
       of_vectors = of_direction*(maxval([0.0_wp, length_in_link(m, [(i, i=1, size(m%points))])]) &
          + maxval([0.0_wp, abs(m%pairs%offset)]))
       links = zero
       largest = 0.0_wp
+
       do i = 1, x%chain%wanted
          associate (chain => x%chain%links, length => x%chain%length)
             associate (h => chain(i), own => chain(i)%link, place => chain(i)%place, &
@@ -69,11 +69,11 @@ contains
       end do
    end subroutine bound_links
 
-   !> Adds to `place` (0:2) the vector `direction`, which `angle` rotates, times `slide`, with its derivatives.
+   !> Adds a sliding vector to a place, with its derivatives: a direction that an angle rotates, times a slide.
    pure subroutine add_sliding(direction, angle, slide, place)
-      type(vector_t), intent(in) :: direction
-      type(unknown_t), intent(in) :: angle, slide
-      type(vector_t), intent(inout) :: place(0:2)
+      type(vector_t), intent(in) :: direction   !< at the angle 0, of the length of a slide of 1
+      type(unknown_t), intent(in) :: angle, slide   !< rad, unit of the block
+      type(vector_t), intent(inout) :: place(0:2)   !< and its derivatives
       type(vector_t) :: e(0:2)
 
       e = vector_t()
@@ -82,9 +82,9 @@ contains
       place%y = place%y + product_of([slide%value, slide%rate, slide%acceleration], e%y)
    end subroutine add_sliding
 
-   !> (0:2) The product of `first` and `second`, with its derivatives.
+   !> Gives the product (0:2) of two functions of the time, with its derivatives.
    pure function product_of(first, second) result(c)
-      type(ball_t), intent(in) :: first(0:2), second(0:2)
+      type(ball_t), intent(in) :: first(0:2), second(0:2)   !< the functions and their derivatives
       type(ball_t) :: c(0:2)
 
       c(0) = first(0)*second(0)

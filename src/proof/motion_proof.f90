@@ -1,8 +1,8 @@
-!> What card PROVE proves of a mechanism, instant by instant: the position, with bounds of all that is computed there,
-!> and the step to it from the last instant that was proved.
+!> The proofs of card PROVE, instant by instant: the position, with bounds of all that is computed there, and the step
+!> to it from the last instant that was proved.
 !>
 !> Proof of a step: of the motion between two instants, in as many parts as that takes. A part that is not proved is
-!> divided in its middle, where the blocks are solved once more.
+!> divided in its middle, at which the blocks are solved once more.
 module motion_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -15,27 +15,27 @@ module motion_proof
    use balls, only: ball_t
    use ball_equations, only: ball_numbers_t
    use ball_numbers, only: new_ball_numbers
-   use position_proof, only: placed_t, new_placed, prove_position, max_unknowns
+   use position_proof, only: placed_t, new_placed, prove_position, max_proved_unknowns
    use tube_proof, only: tube_t, new_tube, prove_tube
    use link_bounds, only: bound_links
    implicit none
    private
    public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_proof_t, prove_step
 
-   !> So many tubes are tried of a step at most, none shorter than this part of it.
-   integer, parameter :: max_tries = 1024
-   real(wp), parameter :: min_part = 1.0e-6_wp
+   !> Up to so many tubes are tried in a step, none shorter than this part of the step.
+   integer, parameter :: max_tubes = 1024
+   real(wp), parameter :: min_part_of_step = 1.0e-6_wp
 
-   !> What is proved of a step.
+   !> The proof of a step.
    type :: step_proof_t
       logical :: is_proved = .false.
       integer :: parts = 0                        !< proved
       integer :: tries = 0                        !< tubes tried
       real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
-      integer :: block = 0                        !< that is not proved
+      integer :: block = 0                        !< the block that is not proved; 0: none
    end type step_proof_t
 
-   !> What the proofs of a mechanism need and keep.
+   !> The means of all proofs of a mechanism.
    type :: motion_prover_t
       logical :: has_begun = .false.              !< a position is proved
       type(ball_numbers_t) :: numbers
@@ -43,14 +43,14 @@ module motion_proof
       integer :: now = 1                          !< which of them is at hand
    end type motion_prover_t
 
-   !> What is proved of an instant.
+   !> The proof of an instant.
    type :: motion_proof_t
       logical :: taken = .false.                  !< a PROVE card asks for it
-      logical :: is_proved = .false.              !< its position is
+      logical :: is_proved = .false.              !< its position is proved
       logical :: has_step = .false.               !< a step leads to it from a position that was proved
       type(step_proof_t) :: step
-      real(wp) :: gap = 0.0_wp                    !< of redundant equations at the instant, at most, in block units
-      !> (3, 0:2, links) place, angle and their derivatives, where they are asked for, in the deck's units and rad
+      real(wp) :: closure_error = 0.0_wp          !< bound, of redundant equations at the instant, in block units
+      !> (3, 0:2, links) Place, angle and their derivatives, if bounds are asked for, in the deck's units and rad.
       type(ball_t), allocatable :: links(:, :, :)
       real(wp) :: largest(2, 0:2) = 0.0_wp        !< the largest errors of lengths and angles in them
       integer, allocatable :: failed(:)           !< the links of the block that is not proved
@@ -59,8 +59,7 @@ module motion_proof
 
 contains
 
-   !> Proves the motion `q` of `m`, the state `s` of the blocks `b`, and the step to it. `bounded`: with bounds of all
-   !> that is computed; otherwise of positions alone, as the step needs them.
+   !> Proves a motion and the step to it. If a proof fails, `found` has the links of the first block that is not proved.
    subroutine prove_motion(prover, m, b, x, path, s, q, bounded, found)
       type(motion_prover_t), intent(inout) :: prover
       type(mechanism_t), intent(in) :: m
@@ -69,7 +68,7 @@ contains
       type(drive_path_t), intent(in) :: path
       type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
-      logical, intent(in) :: bounded
+      logical, intent(in) :: bounded         !< with bounds of all that is computed; or only of positions, for the step
       type(motion_proof_t), intent(inout) :: found
       integer, allocatable :: block_of(:)         !< of the ground, none, and of each unknown
       integer :: failed, i
@@ -92,7 +91,7 @@ contains
          found%is_proved = failed == 0
          if (found%is_proved) then
             if (bounded) call bound_links(m, x, here%ball_state_t, q, found%links, found%largest)
-            found%gap = here%gap
+            found%closure_error = here%closure_error
             found%has_step = prover%has_begun
             if (found%has_step) call prove_step(prover%numbers, b, x, path, s, before, here, found%step)
             failed = found%step%block
@@ -104,25 +103,24 @@ contains
 
       block_of = [0, b%block_of]
       found%failed = pack([(i, i=1, size(m%links))], block_of(1 + b%tree%orientation) == failed)
-      if (b%list(failed)%shape%n > max_unknowns) found%too_many = b%list(failed)%shape%n
+      if (b%list(failed)%shape%n > max_proved_unknowns) found%too_many = b%list(failed)%shape%n
    end subroutine prove_motion
 
-   !> All is proved that is asked for.
+   !> Tells whether all is proved that a PROVE card asks for.
    pure elemental logical function holds(proof)
       type(motion_proof_t), intent(in) :: proof
 
       holds = .not. proof%taken .or. (proof%is_proved .and. (proof%step%is_proved .or. .not. proof%has_step))
    end function holds
 
-   !> Proves the motion of those of the blocks `b` that are needed, with the `numbers`, between the proved positions
-   !> `from` and `to`, the state `s`.
+   !> Proves the motion of the needed blocks between two proved positions.
    subroutine prove_step(numbers, b, x, path, s, from, to, proof)
       type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      type(state_t), intent(in) :: s
-      type(placed_t), intent(in) :: from, to
+      type(state_t), intent(in) :: s         !< at `to`
+      type(placed_t), intent(in) :: from, to   !< the proved positions
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
       type(state_t), allocatable :: other               ! few steps need it
@@ -130,14 +128,14 @@ contains
 
       tube = new_tube(b, size(path%laws))
       proof%is_proved = .true.
-      call prove_part(from, to, min_part*abs(to%t - from%t))
+      call prove_part(from, to, min_part_of_step*abs(to%t - from%t))
 
    contains
 
-      !> Proves a part of a step, none less than `shortest`; if there is no tube about it, its two halves.
+      !> Proves a part of a step; if there is no tube about it, its two halves.
       recursive subroutine prove_part(from, to, shortest)
-         type(placed_t), intent(in) :: from, to
-         real(wp), intent(in) :: shortest
+         type(placed_t), intent(in) :: from, to   !< proved positions
+         real(wp), intent(in) :: shortest    !< time: a shorter part is not divided
          type(placed_t), allocatable :: middle
          type(convergence_t) :: c
          integer :: failed
@@ -151,7 +149,7 @@ contains
          end if
          proof%block = tube%block
          proof%is_proved = .false.
-         if (abs(to%t - from%t) <= shortest .or. proof%tries >= max_tries) return
+         if (abs(to%t - from%t) <= shortest .or. proof%tries >= max_tubes) return
 
          if (.not. allocated(other)) then
             other = s

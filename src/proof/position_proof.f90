@@ -1,21 +1,21 @@
 !> Proof of a position at one instant: that near the values found for the unknowns of a block there is exactly one
-!> solution of its exact equations, and how far from these values it is at most; the same for rates and accelerations.
-!> Blocks are proved in solving order: what earlier ones leave open counts in later ones.
+!> solution of its exact equations, with a bound of its distance from these values; then of rates and accelerations.
+!> Blocks are proved in solving order: the errors of earlier ones count in later ones.
 !>
 !> With F(x*) = 0 and |1 - A J| <= k in a ball about x that holds x*, |x - x*| <= |A| |F(x)|/(1 - k). The rates v solve
-!> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations likewise. F, J and b are what the
-!> equations are in balls: of the numbers, of what earlier blocks give, and of x.
+!> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations have the corresponding bound. F, J and
+!> b are the equations in balls: of the numbers, of the motion of earlier blocks, and of x.
 !>
 !> The ball is found by Newton and Kantorovich's argument: x - A F(x) maps the ball of radius r about c into itself and
 !> contracts it, if
 !>
 !>    |A| |F(c)| + z1 r + z2 r^2/2 <= r,   z1 >= |1 - A J(c)|,   z1 + z2 s >= |1 - A J| in the ball of radius s <= r
 !>
-!> So F has exactly one zero in the ball, J is regular in all of it, and z1 + z2 r < 1. (Ortega and Rheinboldt, ch. 12;
-!> the form with bounds from data is that of Day, Lessard and Mischaikow's radii polynomials.)
+!> Then F has exactly one zero in the ball, J is regular in all of it, and z1 + z2 r < 1. (Ortega and Rheinboldt, ch.
+!> 12; the form with bounds from data has Day, Lessard and Mischaikow's radii polynomials.)
 !>
-!> Where equations are too many, A is an inverse by least squares: as many sums of equations as there are unknowns are
-!> proved, and of all equations it is bounded by how much they stay open.
+!> If equations are redundant, A is an inverse by least squares: as many sums of equations as there are unknowns are
+!> proved, and the closure errors of all equations are bounded.
 module position_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
@@ -30,20 +30,19 @@ module position_proof
    private
    public :: placed_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
 
-   !> Times, too, are numbers of the deck.
-   real(wp), parameter, public :: of_time = 4.0_wp*rounding
-   !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, of which there may
-   !> be a thousand.
-   integer, parameter, public :: max_unknowns = 100
-   !> So many balls are tried at most. Each is larger by what the one before has shown of the change of the Jacobian.
-   integer, parameter :: max_tries = 8
-
+   !> Relative error of a time, which is a number of the deck.
+   real(wp), parameter, public :: time_error = 4.0_wp*rounding
+   !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, and a step may
+   !> have a thousand parts.
+   integer, parameter, public :: max_proved_unknowns = 100
+   !> Up to so many balls are tried. Each is larger by the change of the Jacobian in the one before.
+   integer, parameter :: max_balls = 8
    !> A map that contracts less is not used: 1 less its rate is a divisor.
    real(wp), parameter :: max_rate = 0.999_wp
-   !> Balls are a little larger than need be.
+   !> Balls are larger than necessary by this factor.
    real(wp), parameter :: larger = 1.01_wp
 
-   !> What the proof of a block computes.
+   !> The numbers of the proof of a block.
    type :: block_work_t
       integer, allocatable :: row(:), column(:)   !< (entries) of its Jacobian
       type(ball_t), allocatable :: j(:)           !< (entries) the Jacobian
@@ -52,50 +51,49 @@ module position_proof
       !> (n) Row sums of |1 - A J|: of the midpoints, at the centre of the ball, and in all of it.
       real(wp), allocatable, dimension(:) :: of_midpoints, at_centre, off
       real(wp), allocatable :: open(:)            !< (rows) bounds of the equations at the centre
-      real(wp), allocatable :: x(:)               !< (n) |A| times these
+      real(wp), allocatable :: x(:)               !< (n) |A| times these bounds
    end type block_work_t
 
-   !> A position that was found, and what is proved of it, in the units of the blocks: the exact unknowns and drives lie
-   !> in balls about those that were found.
+   !> A position that was found, and its proof, in the units of the blocks: the exact unknowns and drives lie in balls
+   !> about the found ones.
    type, extends(ball_state_t) :: placed_t
       real(wp) :: t = 0.0_wp                      !< time
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at the midpoints of all unknowns
-      real(wp) :: gap = 0.0_wp                    !< by how much redundant equations stay open at most
+      real(wp) :: closure_error = 0.0_wp          !< bound, of redundant equations
    end type placed_t
 
 contains
 
-   !> Room for a position of the blocks `b` with so many `drives`.
+   !> Makes room for a position of a structure.
    pure function new_placed(b, drives) result(q)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives          !< number of drives
       type(placed_t) :: q
 
       q%ball_state_t = new_ball_state(b, drives)
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
    end function new_placed
 
-   !> Proves the position `s` of those of the blocks `b` that are needed, at its time and values, for the `numbers`;
-   !> with `order` 2 instead of 0 velocities and accelerations as well. Result: `placed`, and `failed`, the
-   !> number of the first block that is not proved, where the proof ends; or 0.
+   !> Proves the position of the needed blocks at the time and values of a state, in solving order. The proof ends at
+   !> the first block that is not proved.
    subroutine prove_position(numbers, b, path, s, order, placed, failed)
       type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
       type(state_t), intent(in) :: s
-      integer, intent(in) :: order
-      type(placed_t), intent(inout) :: placed
-      integer, intent(out) :: failed
+      integer, intent(in) :: order           !< 0: position; 2: velocities and accelerations as well
+      type(placed_t), intent(inout) :: placed   !< the proof
+      integer, intent(out) :: failed         !< number of the block that is not proved; 0: all are proved
       type(bounds_t) :: law
       logical :: is_proved
       integer :: i, k
 
       placed%t = s%t
-      placed%gap = 0.0_wp
+      placed%closure_error = 0.0_wp
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       placed%u(:) = unknown_t()
       do i = 1, size(path%laws)
-         law = bounds_of(path%laws(i), s%t - of_time*abs(s%t), s%t + of_time*abs(s%t), one_instant=.true.)
+         law = bounds_of(path%laws(i), s%t - time_error*abs(s%t), s%t + time_error*abs(s%t), one_instant=.true.)
          associate (value => s%drive_value(:, i), unit => path%unit(i))
             placed%drive(:, i)%mid = value
             placed%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &
@@ -111,15 +109,15 @@ contains
       failed = 0
    end subroutine prove_position
 
-   !> Proves block `i` at the values of `s`, with earlier blocks as in `placed`: the values of its unknowns and, with
-   !> `order` 2 instead of 0, their derivatives. Result: what `placed` has of this block.
+   !> Proves a block at the values of a state: the values of its unknowns, and their derivatives if these are wanted.
    subroutine prove_block(numbers, b, i, s, order, placed, is_proved)
       type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, order
+      integer, intent(in) :: i               !< number of the block
+      integer, intent(in) :: order           !< 0: values; 2: derivatives as well
       type(state_t), intent(in) :: s
-      type(placed_t), intent(inout) :: placed
-      logical, intent(out) :: is_proved
+      type(placed_t), intent(inout) :: placed   !< has earlier blocks, and now this one
+      logical, intent(out) :: is_proved      !< all that was wanted
       type(block_work_t) :: w
       type(unknown_t) :: exact
       real(wp) :: radius, largest
@@ -150,10 +148,11 @@ contains
          call subtract_product(1, placed%u, own, w)
          placed%open(0, block%first_row:block%last_row) = w%open
          placed%open(1, block%first_row:block%last_row) = top(w%v)
+
          call find_ball(b, numbers, i, placed%ball_state_t, w, radius)
          is_proved = radius >= 0.0_wp
          if (.not. is_proved) return
-         if (size(w%r) > size(own)) placed%gap = max(placed%gap, maxval(top(w%r)))
+         if (size(w%r) > size(own)) placed%closure_error = max(placed%closure_error, maxval(top(w%r)))
          do k = 1, size(own)
             call set_radius(b, own(k), min(radius, (w%x(k) + 0.5_wp*(w%at_centre(k) + w%off(k))*radius)*room), &
                placed%ball_state_t)
@@ -172,26 +171,23 @@ contains
       end associate
    end subroutine prove_block
 
-   !> Equations and Jacobian of block `i`, with the `numbers`, at the state `balls`, whose own unknowns are at the
-   !> centre of a ball, and about its inverse: all in `work`. `exists`: there is an inverse, and the block is not too
-   !> wide.
+   !> Computes equations and Jacobian of a block at the centre of a ball, and about the inverse of the Jacobian.
    subroutine contract(b, numbers, i, balls, work, exists)
       type(blocks_t), intent(in) :: b
       type(ball_numbers_t), intent(in) :: numbers
-      integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: balls
+      integer, intent(in) :: i               !< number of the block
+      type(ball_state_t), intent(inout) :: balls   !< the state; unknowns of the block are at the centre of the ball
       type(block_work_t), intent(out) :: work
-      logical, intent(out) :: exists
+      logical, intent(out) :: exists         !< there is an inverse, and the block has not too many unknowns
       real(wp), allocatable :: midpoints(:, :)    ! of the Jacobian
       integer :: k
 
       associate (shape => b%list(i)%shape)
-         exists = shape%n <= max_unknowns
+         exists = shape%n <= max_proved_unknowns
          if (.not. exists) return
          associate (rows => shape%rows, n => shape%n, entries => entries_of(shape))
             allocate (work%row(entries), work%column(entries), work%j(entries), work%r(rows), work%v(rows), &
-               work%open(rows), &
-               work%inverse(n, rows), work%of_midpoints(n), work%at_centre(n), work%off(n), work%x(n))
+               work%open(rows), work%inverse(n, rows), work%of_midpoints(n), work%at_centre(n), work%off(n), work%x(n))
             allocate (midpoints(rows, n), source=0.0_wp)
             if (shape%pattern == 0) then
                work%row(:) = [(1 + modulo(k - 1, rows), k=1, entries)]
@@ -215,10 +211,10 @@ contains
       if (exists) call find_off(work, work%at_centre)
    end subroutine contract
 
-   !> `off` (n): the row sums of |1 - A J| of the Jacobian J at hand.
+   !> Bounds the row sums of |1 - A J|, with the Jacobian J at hand.
    pure subroutine find_off(work, off)
       type(block_work_t), intent(in) :: work
-      real(wp), intent(out) :: off(:)
+      real(wp), intent(out) :: off(:)        !< (n) the bounds, without a unit
       real(wp) :: wide(size(work%r))
       integer :: k
 
@@ -230,18 +226,17 @@ contains
       off = (work%of_midpoints + off)*(1.0_wp + (16 + size(work%x))*rounding)
    end subroutine find_off
 
-   !> Finds the `radius` of a ball in which block `i`, with the `numbers`, has exactly one solution: about the own
-   !> unknowns of the state `balls`, where it was contracted and its equations are no larger than w%open. -1: none is
-   !> proved. These unknowns, and the equations in `work`, are then those in a ball that is no smaller. `others`:
-   !> earlier blocks are off by so much at most; w%v is then how much they change the equations.
+   !> Finds a ball in which a block has exactly one solution, about its unknowns. The unknowns of the state and the
+   !> equations in `work` become those in this ball or a larger one.
    subroutine find_ball(b, numbers, i, balls, work, radius, others)
       type(blocks_t), intent(in) :: b
       type(ball_numbers_t), intent(in) :: numbers
-      integer, intent(in) :: i
-      type(ball_state_t), intent(inout) :: balls
-      type(block_work_t), intent(inout) :: work
-      real(wp), intent(out) :: radius
-      real(wp), intent(in), optional :: others
+      integer, intent(in) :: i               !< number of the block
+      type(ball_state_t), intent(inout) :: balls   !< the state at which the block was contracted
+      type(block_work_t), intent(inout) :: work   !< its equations are no larger than work%open
+      real(wp), intent(out) :: radius        !< rad or unit of the block; -1: no ball is proved
+      !> If present, work%v becomes the effect of these errors on the equations.
+      real(wp), intent(in), optional :: others   !< bound of the errors of earlier blocks, rad or unit of the block
       real(wp) :: eta, z1, z2, rate, centre(size(work%x))
       integer :: tries, k
 
@@ -256,7 +251,7 @@ contains
       do k = 1, size(work%x)
          centre(k) = balls%u(b%unknown(b%list(i)%first + k - 1))%value%radius
       end do
-      do tries = 1, max_tries
+      do tries = 1, max_balls
          radius = radius_of(z1, z2, eta)
          if (radius < 0.0_wp) return
          do k = 1, size(work%x)
@@ -265,6 +260,7 @@ contains
          call assemble_balls(b, numbers, i, balls, work%j, work%r, work%v)
          call find_off(work, work%off)
          if (.not. all(work%off <= max_rate)) exit
+
          rate = max(0.0_wp, maxval(work%off))
          if (present(others)) then
             call apply(size(work%r), size(work%x), work%inverse, (work%open + top(work%v))*room, work%x)
@@ -281,11 +277,11 @@ contains
       radius = -1.0_wp
    end subroutine find_ball
 
-   !> Subtracts from w%v the Jacobian times derivative number `order` (1 or 2) of the block's `own` unknowns among
-   !> `unknowns`.
+   !> Subtracts the Jacobian times the rates or accelerations of a block from its right-hand side work%v.
    pure subroutine subtract_product(order, unknowns, own, work)
-      integer, intent(in) :: order, own(:)
-      type(unknown_t), intent(in) :: unknowns(0:)
+      integer, intent(in) :: order           !< 1: rates; 2: accelerations
+      integer, intent(in) :: own(:)          !< (n) numbers of the unknowns of the block
+      type(unknown_t), intent(in) :: unknowns(0:)   !< (0:unknowns)
       type(block_work_t), intent(inout) :: work
       type(ball_t) :: x
       integer :: k
@@ -297,15 +293,17 @@ contains
       end do
    end subroutine subtract_product
 
-   !> `a` (n, rows): |A| of about the inverse A of `jacobian` (rows, n), with room for roundings; `off` (n): the row
-   !> sums of |1 - A J|. Of equations that are too many A is the inverse by least squares. `exists`: there is one.
+   !> Computes |A|, with room for roundings, where A is about the inverse of a Jacobian J. If equations are redundant,
+   !> A is the inverse by least squares.
    subroutine bound_inverse(rows, n, jacobian, a, off, exists)
-      integer, intent(in) :: rows, n
-      real(wp), intent(in) :: jacobian(rows, n)
-      real(wp), intent(out) :: a(n, rows), off(n)
-      logical, intent(out) :: exists
+      integer, intent(in) :: rows            !< number of equations
+      integer, intent(in) :: n               !< number of unknowns
+      real(wp), intent(in) :: jacobian(rows, n)   !< midpoints of J
+      real(wp), intent(out) :: a(n, rows)    !< |A|
+      real(wp), intent(out) :: off(n)        !< bounds of the row sums of |1 - A J|
+      logical, intent(out) :: exists         !< there is an inverse
       real(wp), allocatable :: factors(:, :), work(:)
-      real(wp) :: x(max(n, rows)), room
+      real(wp) :: x(max(n, rows)), enlarged
       integer :: pivots(n), k, i, info
 
       associate (dense => shape_t(rows, n))
@@ -335,34 +333,38 @@ contains
          off = off + abs(x(:n))
       end do
 
-      ! What rounding leaves open of all terms; room, too, for products that underflow.
-      room = 1.0_wp + (64 + 4*rows)*rounding
+      ! The factor covers the rounding of all terms, and products that underflow.
+      enlarged = 1.0_wp + (64 + 4*rows)*rounding
       do i = 1, rows
-         a(:, i) = abs(a(:, i))*room
+         a(:, i) = abs(a(:, i))*enlarged
          off = off + a(:, i)*((rows + 2)*rounding*sum(abs(jacobian(i, :))))
       end do
-      off = off*room**2
+      off = off*enlarged**2
    end subroutine bound_inverse
 
-   !> `product` (n): |A| `vector` (rows), rounded up.
+   !> Multiplies |A| by a vector of bounds, and rounds up.
    pure subroutine apply(rows, n, a, vector, product)
-      integer, intent(in) :: rows, n
-      real(wp), intent(in) :: a(n, rows), vector(rows)
-      real(wp), intent(out) :: product(n)
+      integer, intent(in) :: rows            !< number of equations
+      integer, intent(in) :: n               !< number of unknowns
+      real(wp), intent(in) :: a(n, rows)     !< |A|
+      real(wp), intent(in) :: vector(rows)   !< at least 0, in the units of the equations
+      real(wp), intent(out) :: product(n)    !< in the units of the unknowns
       integer :: k
 
       product = 0.0_wp
       do k = 1, rows
          product = product + a(:, k)*vector(k)
       end do
-      ! For products that underflow; what is at rest is so exactly.
+      ! The last term is for products that underflow; rest is exact.
       if (any(vector > 0.0_wp)) product = product*(1.0_wp + (16 + rows)*rounding) + tiny(1.0_wp)
    end subroutine apply
 
-   !> The radius of a ball about the centre, where |A| |F| <= `eta`, that is mapped into itself with these `z1` and
-   !> `z2`; -1: none.
+   !> Gives the radius of a ball that the map x - A F(x) maps into itself; -1 if there is none. The head of this file
+   !> has the inequality.
    pure real(wp) function radius_of(z1, z2, eta) result(r)
-      real(wp), intent(in) :: z1, z2, eta
+      real(wp), intent(in) :: z1             !< bound of |1 - A J| at the centre
+      real(wp), intent(in) :: z2             !< its change over the radius
+      real(wp), intent(in) :: eta            !< bound of |A| |F| at the centre, rad or unit of the block
       real(wp) :: root
 
       r = -1.0_wp

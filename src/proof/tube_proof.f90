@@ -1,18 +1,19 @@
 !> Proof of the motion between two positions: that over the whole interval of time each block has exactly one solution
 !> in a tube about a curve, and a regular Jacobian in all of the tube.
 !>
-!> The curve of an unknown is the cubic with its values and rates at both ends. With F(t) what the equations are on it:
+!> The curve of an unknown is the cubic with its values and rates at both ends. The equations on the curve, F(t), have
+!> the bound
 !>
 !>    |F| <= max |F_end| + h/4 max |F'_end| + h^2/16 |F'' - c|
 !>
 !> for any c, and for c = 0 at the middle of a ball that holds F'' (Peano's kernel of Hermite's interpolation, whose
 !> integral is at most 1/16). F and F' at the ends are of the size of rounding; F'' = J x'' - b by the equations of the
-!> accelerations, in balls that hold the cubics and their derivatives. How much F changes with what earlier blocks leave
-!> open is the right-hand side of the velocities, if these are balls about 0 with the radii of the tubes.
+!> accelerations, in balls that hold the cubics and their derivatives. The change of F with the errors of earlier blocks
+!> is the right-hand side of the velocities, if these are balls about 0 with the radii of the tubes.
 !>
-!> Exactly one solution for each time in a ball about the curve, with a regular Jacobian: so these are one continuous
-!> path. Tubes of adjoining intervals have balls about the same centre where they meet, so one holds the other, and
-!> their paths are one.
+!> For each time there is exactly one solution in a ball about the curve, with a regular Jacobian: all these are one
+!> continuous path. Tubes of adjoining intervals have balls about one centre where they meet. One of the balls holds the
+!> other, and therefore their paths are one.
 module tube_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
@@ -21,26 +22,26 @@ module tube_proof
    use balls, only: ball_t, rounding, room
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
       ball_accelerations
-   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product, of_time
+   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product, time_error
    implicit none
    private
    public :: tube_t, new_tube, prove_tube
 
    !> The tube, in the units of the blocks.
    type :: tube_t
-      integer :: block = 0                        !< the first that is not proved; 0: all are
+      integer :: block = 0                        !< the first that is not proved; 0: all are proved
       real(wp), allocatable :: radius(:)          !< (0:unknowns)
       type(ball_state_t) :: curve                 !< holds the curves and, of blocks that are proved, their tubes
-      !> The same, but for rates of radius(:) and of how far laws are from the drives' cubics, about 0.
+      !> As `curve`, but rates are balls about 0: with radius(:), and with the distance of laws from the drives' cubics.
       type(ball_state_t) :: balls
    end type tube_t
 
 contains
 
-   !> Room for a tube of the blocks `b` with so many `drives`.
+   !> Makes room for a tube of a structure.
    pure function new_tube(b, drives) result(tube)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives          !< number of drives
       type(tube_t) :: tube
 
       allocate (tube%radius(0:b%unknowns), source=0.0_wp)
@@ -48,13 +49,13 @@ contains
       tube%balls = tube%curve
    end function new_tube
 
-   !> Proves the motion of those of the blocks `b` that are needed, with the `numbers`, between the positions `from`
-   !> and `to`.
+   !> Proves the motion of the needed blocks between two positions. The proof ends at the first block that is not
+   !> proved.
    subroutine prove_tube(numbers, b, path, from, to, tube)
       type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
-      type(placed_t), intent(in) :: from, to
+      type(placed_t), intent(in) :: from, to   !< proved positions
       type(tube_t), intent(inout) :: tube
       logical :: unbounded(0:size(path%laws))
       type(ball_t) :: c(0:2)
@@ -63,7 +64,7 @@ contains
 
       h = to%t - from%t
       tube%radius = 0.0_wp
-      ! As in `prove_position`.
+      ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       tube%curve%u(:) = unknown_t()
       tube%balls%u(:) = unknown_t()
       call bound_drives()
@@ -82,8 +83,9 @@ contains
                   tube%balls%u(u) = tube%curve%u(u)
                end associate
             end do
+
             if (block%direct) then
-               ! The unknown is another one and a drive, and so are their cubics.
+               ! The unknown is the sum of another one and a drive, and its cubic is the sum of their cubics.
                associate (row => b%rows(block%first_row))
                   radius = (ends_open(block%first_row) + tube%radius(row%other) &
                      + tube%balls%drive(1, row%drive)%radius)*room
@@ -107,15 +109,15 @@ contains
 
    contains
 
-      !> How far the laws of the drives can be from the cubics with their values and rates at both ends: by the range of
-      !> their second derivatives, unless these are `unbounded`.
+      !> Bounds the distance of the laws of the drives from their cubics, by the range of their second derivatives. Laws
+      !> without a bound are `unbounded`.
       subroutine bound_drives()
          type(bounds_t) :: law
          type(ball_t) :: c(0:2)
          real(wp) :: late, earliest, change
          integer :: i
 
-         late = of_time*max(abs(from%t), abs(to%t))
+         late = time_error*max(abs(from%t), abs(to%t))
          ! No rounding moves a time across 0, where some powers begin.
          earliest = min(from%t, to%t)
          earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)
@@ -134,19 +136,19 @@ contains
          end do
       end subroutine bound_drives
 
-      !> Bounds what Hermite's interpolation makes of what row `row` leaves open at both ends.
+      !> Bounds the part of |F| by the residuals at both ends, by Hermite's interpolation.
       pure real(wp) function ends_open(row)
-         integer, intent(in) :: row
+         integer, intent(in) :: row          !< number of the equation
 
          ends_open = (max(from%open(0, row), to%open(0, row)) &
             + 0.25_wp*abs(h)*max(from%open(1, row), to%open(1, row)))*room
       end function ends_open
 
-      !> Finds the `radius` of the tube of block `i`, with the unknowns `own`, whose earlier blocks
-      !> are proved; -1: none is proved.
+      !> Finds the radius of the tube of a block whose earlier blocks are proved.
       subroutine prove_block(i, own, radius)
-         integer, intent(in) :: i, own(:)
-         real(wp), intent(out) :: radius
+         integer, intent(in) :: i            !< number of the block
+         integer, intent(in) :: own(:)       !< (n) numbers of its unknowns
+         real(wp), intent(out) :: radius     !< rad or unit of the block; -1: no tube is proved
          type(block_work_t) :: w
          logical :: exists
          integer :: k
@@ -163,10 +165,11 @@ contains
       end subroutine prove_block
    end subroutine prove_tube
 
-   !> Balls (0:2) that hold the cubic with the values and rates `x0` and `x1` (0:1) at both ends of an interval of the
-   !> `length`, and its first and second derivatives by time: those of the control points, which bound a polynomial.
+   !> Gives balls (0:2) that hold a cubic in an interval, and its first and second derivatives by time: the balls of the
+   !> control points, which bound a polynomial.
    pure function cubic(length, x0, x1) result(c)
-      real(wp), intent(in) :: length, x0(0:1), x1(0:1)
+      real(wp), intent(in) :: length         !< of the interval, time
+      real(wp), intent(in) :: x0(0:1), x1(0:1)   !< value and rate of the cubic at its beginning and at its end
       type(ball_t) :: c(0:2)
       real(wp) :: first(3), second(2), inexact
 
@@ -178,9 +181,11 @@ contains
       c(2) = hull(second, 2.0_wp*inexact, length**2)
    end function cubic
 
-   !> A ball that holds all `numbers` (any number), each known up to `inexact`, divided by `divisor`.
+   !> Gives a ball that holds all of some numbers, divided by a divisor.
    pure type(ball_t) function hull(numbers, inexact, divisor)
-      real(wp), intent(in) :: numbers(:), inexact, divisor
+      real(wp), intent(in) :: numbers(:)     !< (any number)
+      real(wp), intent(in) :: inexact        !< bound of their errors
+      real(wp), intent(in) :: divisor        !< not 0
 
       hull = ball_t(0.5_wp*(minval(numbers) + maxval(numbers))/divisor, (0.5_wp*(maxval(numbers) - minval(numbers)) + &
          inexact)/abs(divisor)*room)

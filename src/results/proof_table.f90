@@ -28,7 +28,7 @@ contains
       type(layout_t), intent(in) :: l
       type(proofs_t), intent(in) :: proofs
       class(set_t), intent(in) :: set
-      character(:), allocatable :: start, gap
+      character(:), allocatable :: start, closure_error
       integer :: i
 
       call put(o, '')
@@ -57,12 +57,13 @@ contains
       if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** '//phrase(text_not_proved, &
          set%polish) &
          //': '//whole(proofs%instants - proofs%proved))
-      gap = ''
-      if (proofs%gap > 0.0_wp) gap = ',  '//phrase(text_closure_error_of, set%polish)//' '//rounded_up(proofs%gap)
+      closure_error = ''
+      if (proofs%closure_error > 0.0_wp) &
+         closure_error = ',  '//phrase(text_closure_error_of, set%polish)//' '//rounded_up(proofs%closure_error)
       call put(o, ' '//phrase(text_proved, set%polish)//' '//whole(proofs%proved)//' / '//whole(proofs%instants) &
          //',  '//phrase(text_parts, set%polish)//' '//whole(sum(proofs%lines(:proofs%count)%parts)) &
          //',  '//phrase(text_tube, set%polish)//' '//rounded_up(maxval([0.0_wp, proofs%lines(:proofs%count)%tube])) &
-            //gap)
+            //closure_error)
    end subroutine write_proofs
 
    !> Tells why an instant is not proved.

@@ -11,7 +11,7 @@ program proof_bounds
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
    use balls, only: ball_t, distance
-   use ball_numbers, only: of_number
+   use ball_numbers, only: number_error
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
@@ -155,7 +155,7 @@ contains
          bound(:, 1) = distance(links(:, 1, i), q%velocity(:, i))
          bound(:, 2) = distance(links(:, 2, i), q%acceleration(:, i))
          ! The closed forms have places in the deck's coordinates, whose origin has roundings of its own.
-         bound(:2, 0) = bound(:2, 0) + 2.0_wp*of_number*norm2(plane_origin(m))
+         bound(:2, 0) = bound(:2, 0) + 2.0_wp*number_error*norm2(plane_origin(m))
          off = away(q, i, exact(at))
          below = below + count(off > bound)
          if (any(off > bound)) print '(1x,2a,f0.6,9es9.1/20x,9es9.1)', trim(m%links(i)%name), ' AT ', q%t, off, bound
