@@ -25,12 +25,12 @@ module predictor
    use block_rank, only: jacobian_of, relative_sign
    implicit none
    private
-   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, is_even, largest_change, &
-      order_weights
+   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, is_even, &
+      largest_predicted_change, order_weights
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
    !> change may end at another assembly and still look right.
-   real(wp), parameter :: largest_change = 1.0_wp
+   real(wp), parameter :: largest_predicted_change = 1.0_wp
    real(wp), parameter, public :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter, public :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
    !> An acceleration does not serve a prediction that it makes uncertain by more than this part of the change: that

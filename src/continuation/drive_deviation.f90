@@ -9,7 +9,7 @@ module drive_deviation
    use kinds, only: wp
    use mechanism, only: mechanism_t, find_instants
    use scales, only: solver_length, is_length
-   use predictor, only: largest_change
+   use predictor, only: largest_predicted_change
    use drives, only: bounds_t, bounds_of
    use drive_path, only: drive_path_t, drive_at, drive_bounds
    implicit none
@@ -27,7 +27,7 @@ module drive_deviation
       !> (drives) Of the value: 1 over the characteristic length, or 1; none where no position depends on those before.
       real(wp), allocatable :: unit(:)
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
-      real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
+      real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_predicted_change`
       real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
    end type drive_deviation_t
 
@@ -59,7 +59,7 @@ contains
          end where
       end do
       p%longest = huge(1.0_wp)
-      if (largest(1) > largest_change/huge(1.0_wp)) p%longest = largest_change/largest(1)
+      if (largest(1) > largest_predicted_change/huge(1.0_wp)) p%longest = largest_predicted_change/largest(1)
       p%curve = largest(2)
    end function new_drive_excursion
 
@@ -80,8 +80,8 @@ contains
       do while (abs((t + allowed) - t) > 0.0_wp)
          call examine(deviation, path, t, t + allowed, change, away)
          inside = is_within(deviation, path, t, t + allowed)
-         if (change > largest_change .and. .not. (inside .and. abs(allowed) <= deviation%longest)) then
-            allowed = allowed*max(min_factor, a_little_less*largest_change/change)
+         if (change > largest_predicted_change .and. .not. (inside .and. abs(allowed) <= deviation%longest)) then
+            allowed = allowed*max(min_factor, a_little_less*largest_predicted_change/change)
             if (inside) allowed = sign(max(abs(allowed), deviation%longest), substep)
          else if (away > max_deviation) then
             allowed = 0.5_wp*allowed

@@ -20,7 +20,7 @@ module following
    use block_solver, only: workspace_t, new_workspace, solve_blocks
    use block_motion, only: select_solved_blocks, assign_path
    use initial_estimate, only: guess_t, assign_guess
-   use predictor, only: history_t, new_history, predict, compare, accept, recall, largest_change
+   use predictor, only: history_t, new_history, predict, compare, accept, recall, largest_predicted_change
    use link_motion, only: move_links
    use cylinders, only: cylinders_of, cylinder_motion, stays_within
    use initial_assembly, only: solve_first
@@ -195,7 +195,7 @@ contains
             return
          end if
          call predict(following%history, t, s%u, s%change)
-         if (s%change > largest_change) then
+         if (s%change > largest_predicted_change) then
             c = nothing_gathered
             c%keeps_signs = .false.
             s%crossed = .false.

@@ -1,8 +1,8 @@
-!> Two linear equations, those of a correction by Newton's method, in each lane, by Gauss's elimination with the
-!> greatest pivot of each column: the operations of the reference DGESV, in its order. Rows are exchanged by
-!> choosing between numbers, so that all lanes do the same. A pivot of zero becomes one of rounding, which no
-!> certificate takes. What can be done in one loop over the lanes stays in the processor, and takes half the time.
-!> A single equation is the first of two: the second one has an unknown of its own, which is 0.
+!> Two linear equations in each lane, for a correction by Newton's method. Gauss's elimination takes the greatest pivot
+!> of each column: the operations of the reference DGESV, in its order. Rows are exchanged by a choice between numbers:
+!> all lanes then do the same operations. A pivot of zero becomes one of rounding, which no certificate takes. One loop
+!> over the lanes for all of it stays in the registers, and takes half the time. A single equation is the first of two:
+!> the second one has an unknown of its own, which is 0.
 module lane_elimination
    use kinds, only: wp
    use block_solver, only: closed_level, step_tolerance
@@ -11,20 +11,21 @@ module lane_elimination
    private
    public :: max_order, make_room, correct, substitute, judge_factors
 
-   !> The largest number of equations: groups of two links have two, and a group of more links four at least.
+   !> Equations at most: a group of two links has two, and a group of more links four at least.
    integer, parameter :: max_order = 2
-   !> What stands for a pivot of zero.
+   !> Replaces a pivot of zero.
    real(wp), parameter :: no_pivot = epsilon(1.0_wp)
-   !> The pivot of an equation that is none: larger than any, and a power of two, so that it changes no digit.
+   !> The pivot of an idle equation: larger than any other, and a power of two, which changes no digit.
    real(wp), parameter :: idle_pivot = 2.0_wp**100
 
 contains
 
-   !> Makes the second of two equations, with the Jacobian `a` (lanes, 4 by columns), idle: `values`, `corrections` and
-   !> `right_sides` (lanes, 2) see `correct`. It stays so in all iterations.
+   !> Makes the second of two equations idle. It stays so in all iterations.
    pure subroutine make_room(values, a, corrections, right_sides)
-      real(wp), intent(inout) :: values(width, max_order), a(width, max_order**2), corrections(width, max_order), &
-         right_sides(width, max_order)
+      real(wp), intent(inout) :: values(width, max_order)        !< of the unknowns (rad, unit of the loop)
+      real(wp), intent(inout) :: a(width, max_order**2)          !< the Jacobian (2, 2), by columns
+      real(wp), intent(inout) :: corrections(width, max_order)   !< (lanes, unknowns) of the values
+      real(wp), intent(inout) :: right_sides(width, max_order)   !< (lanes, rows) for the velocities
 
       values(:, 2) = 0.0_wp
       a(:, 2:3) = 0.0_wp
@@ -33,22 +34,23 @@ contains
       right_sides(:, 2) = 0.0_wp
    end subroutine make_room
 
-   !> The `corrections` (lanes, 2), to be subtracted from the `values` (lanes, 2), of which the largest is at least
-   !> `coarse`: none where the residuals, `corrections` before, are of rounding, which have nothing to correct. `a`
-   !> (lanes, 4 by columns): the Jacobian, and then its factors. `exchanged`: 1 where the first row was exchanged with
-   !> the second, otherwise 0. `going`: above 0 where another iteration is needed. `right_sides` (lanes, 2): other
-   !> right-hand sides, then their solutions.
+   !> Finds the corrections, to be subtracted from the values, and tells which lanes need another iteration. Residuals
+   !> of rounding have nothing to correct: their corrections are 0.
    pure subroutine correct(coarse, values, a, exchanged, corrections, right_sides, going)
-      real(wp), intent(in) :: coarse(width), values(width, max_order)
-      real(wp), intent(inout) :: a(width, max_order**2), exchanged(width), corrections(width, max_order), &
-         right_sides(width, max_order)
-      real(wp), intent(out) :: going(width)
+      real(wp), intent(in) :: coarse(width)                      !< the least size that the values count as
+      real(wp), intent(in) :: values(width, max_order)           !< of the unknowns (rad, unit of the loop)
+      real(wp), intent(inout) :: a(width, max_order**2)          !< the Jacobian (2, 2) by columns; then its factors
+      real(wp), intent(inout) :: exchanged(width)                !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(inout) :: corrections(width, max_order)   !< the residuals; then the corrections
+      real(wp), intent(inout) :: right_sides(width, max_order)   !< other right-hand sides; then their solutions
+      real(wp), intent(out) :: going(width)                      !< above 0: another iteration is needed
       real(wp) :: p1, p2, q1, q2, x, y, first, second, residual, rounding
       integer :: l
 
       do l = 1, width
          residual = max(abs(corrections(l, 1)), abs(corrections(l, 2)))
          rounding = closed_level*max(coarse(l), abs(values(l, 1)), abs(values(l, 2)))
+
          p1 = merge(a(l, 2), a(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
          p2 = merge(a(l, 4), a(l, 3), abs(a(l, 2)) > abs(a(l, 1)))
          q1 = merge(a(l, 1), a(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
@@ -58,6 +60,7 @@ contains
          first = merge(right_sides(l, 2), right_sides(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
          second = merge(right_sides(l, 1), right_sides(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
          exchanged(l) = merge(1.0_wp, 0.0_wp, abs(a(l, 2)) > abs(a(l, 1)))
+
          p1 = p1 + merge(0.0_wp, no_pivot, abs(p1) > 0.0_wp)
          q1 = q1*(1.0_wp/p1)
          q2 = q2 - q1*p2
@@ -66,11 +69,13 @@ contains
          a(l, 2) = q1
          a(l, 3) = p2
          a(l, 4) = q2
+
          x = merge(0.0_wp, x, residual <= rounding)
          y = (merge(0.0_wp, y, residual <= rounding) - x*q1)/q2
          x = (x - y*p2)/p1
          corrections(l, 1) = x
          corrections(l, 2) = y
+
          second = (second - first*q1)/q2
          right_sides(l, 2) = second
          right_sides(l, 1) = (first - second*p2)/p1
@@ -79,10 +84,11 @@ contains
       end do
    end subroutine correct
 
-   !> Solves the equations with the factors `a` for the right-hand sides `right_sides` (lanes, 2), in their place.
+   !> Solves the equations with their factors.
    pure subroutine substitute(a, exchanged, right_sides)
-      real(wp), intent(in) :: a(width, max_order**2), exchanged(width)
-      real(wp), intent(inout) :: right_sides(width, max_order)
+      real(wp), intent(in) :: a(width, max_order**2)             !< the factors, as `correct` leaves them
+      real(wp), intent(in) :: exchanged(width)                   !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(inout) :: right_sides(width, max_order)   !< the right-hand sides; then their solutions
       real(wp) :: first, second
       integer :: l
 
@@ -95,11 +101,14 @@ contains
       end do
    end subroutine substitute
 
-   !> From the factors: the smallest and the largest pivot, the sign of the determinant, and |A^-1| in the maximum norm,
-   !> the largest sum of sizes in a row of the inverse.
+   !> Finds from the factors the pivots, the sign of the determinant and the size of the inverse.
    pure subroutine judge_factors(a, exchanged, least, largest, sign_of, inverse)
-      real(wp), intent(in) :: a(width, max_order**2), exchanged(width)
-      real(wp), intent(out) :: least(width), largest(width), sign_of(width), inverse(width)
+      real(wp), intent(in) :: a(width, max_order**2)   !< the factors, as `correct` leaves them
+      real(wp), intent(in) :: exchanged(width)         !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(out) :: least(width)            !< |pivot|, the smaller one
+      real(wp), intent(out) :: largest(width)          !< |pivot|, the larger one
+      real(wp), intent(out) :: sign_of(width)          !< of the determinant: 1 or -1
+      real(wp), intent(out) :: inverse(width)          !< |A^-1|: the largest sum of |elements| of a row
       integer :: l
 
       do l = 1, width

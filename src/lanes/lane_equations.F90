@@ -19,18 +19,18 @@ module lane_equations
 
 contains
 
-   !> Cosine and sine of unknown `i`, if it is an angle.
+   !> Finds cosine and sine of an unknown, if it is an angle.
    pure subroutine set_lane_direction(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the unknown
 
       if (i <= lanes%blocks%orientations) call sines(lanes%u(i)%value, lanes%u(i)%c, lanes%u(i)%s)
    end subroutine set_lane_direction
 
-   !> Solves block `i`, a drive's own unknown.
+   !> Solves a direct block: the own unknown of a drive.
    pure subroutine find_lane_direct(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the block
 
       associate (b => lanes%blocks, first_row => lanes%blocks%list(i)%first_row)
          associate (u => b%unknown(b%list(i)%first))
@@ -41,10 +41,10 @@ contains
       end associate
    end subroutine find_lane_direct
 
-   !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   !> Finds what earlier blocks give to the loops of a block: place, velocity, acceleration.
    pure subroutine find_lane_known(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i
+      integer, intent(in) :: i   !< the number of the block
 
       associate (b => lanes%blocks, block => lanes%blocks%list(i))
          call find_known(block%first_loop, block%last_loop, b%loops, lanes%numbers, b%body_vectors, lanes%d, lanes%u, &
@@ -52,12 +52,14 @@ contains
       end associate
    end subroutine find_lane_known
 
-   !> Jacobian `a` (lanes, n*n by columns) and residual `residuals` (lanes, n) of block `i`, and the right-hand side
-   !> `right_side` (lanes, n) for the velocities.
+   !> Assembles the equations of a block: its Jacobian, its residuals and its right-hand sides for the velocities.
    pure subroutine assemble_lanes(lanes, i, n, a, residuals, right_side)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i, n
-      real(wp), intent(inout) :: a(width, n*n), residuals(width, n), right_side(width, n)
+      integer, intent(in) :: i                        !< the number of the block
+      integer, intent(in) :: n                        !< its unknowns, as many as its rows
+      real(wp), intent(inout) :: a(width, n*n)        !< the Jacobian, by columns
+      real(wp), intent(inout) :: residuals(width, n)  !< (lanes, rows) in rad or the unit of the loop
+      real(wp), intent(inout) :: right_side(width, n) !< (lanes, rows) the residuals' unit per unit of time
 
       associate (b => lanes%blocks)
          call assemble(b%list(i), lanes%block(i)%has_right_sides, b%loops, lanes%numbers, b%body_vectors, lanes%d, &
@@ -66,12 +68,13 @@ contains
       end associate
    end subroutine assemble_lanes
 
-   !> Right-hand side `right_side` (lanes, n) for the accelerations of block `i`, once the velocities are known, with
-   !> the vectors of the last `assemble_lanes`.
+   !> Finds the right-hand sides for the accelerations of a block from its velocities. The rotated vectors are those of
+   !> the last `assemble_lanes`.
    pure subroutine lane_accelerations(lanes, i, n, right_side)
       type(lanes_t), intent(in) :: lanes
-      integer, intent(in) :: i, n
-      real(wp), intent(inout) :: right_side(width, n)
+      integer, intent(in) :: i                        !< the number of the block
+      integer, intent(in) :: n                        !< its unknowns, as many as its rows
+      real(wp), intent(inout) :: right_side(width, n) !< (lanes, rows) rad or unit of the loop, per time squared
       integer :: m
 
       associate (b => lanes%blocks)

@@ -1,7 +1,7 @@
-!> Several variants of a set, whose rows alone are asked for, solved together. Each begins by the ordinary engine;
-!> lanes take over after three instants, and go on as long as they can certify each step. The ordinary engine comes in
-!> again where a lane is refused; and where a number of EXTREMES may have an extreme, it looks for that between the
-!> instants that the lane has found. What happens in one lane depends on that lane alone.
+!> Several variants of a set, of which only rows are requested, solved together. Each variant begins by the ordinary
+!> analysis. Lanes take over after three instants, and go on as long as they can certify each step. The ordinary
+!> analysis comes in again if a lane is refused. If EXTREMES may have an extreme between instants that a lane has
+!> found, the ordinary analysis searches for it. What happens in one lane depends on this lane only.
 module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
@@ -23,12 +23,13 @@ module lane_runs
    private
    public :: lane_run_t, begin_run, run_lanes, width
 
-   !> Instants that the ordinary engine solves from where a lane is refused, at first: three, which a prediction takes;
-   !> twice as many each time.
+   !> Instants that the ordinary analysis solves after a lane is refused for the first time: a prediction takes three.
+   !> Each further time they are twice as many.
    integer, parameter :: first_patience = 3
-   !> What steps may differ by, at the bounds of what drives allow.
-   real(wp), parameter :: slack = 1.0e-6_wp
-   !> Steps are short where the prediction from three motions is off by less, in rad or the unit of length.
+   !> Steps of one set differ by this part at most: the bounds of the drives are asked for a step that is so much
+   !> longer.
+   real(wp), parameter :: step_margin = 1.0e-6_wp
+   !> A step is short if the prediction from three motions is off by less, in rad or the unit of length.
    real(wp), parameter :: fine_prediction = 1.0e-7_wp
 
    !> A variant, and how far it has come.
@@ -37,18 +38,18 @@ module lane_runs
       type(counts_t) :: counts
       type(answers_t) :: asked
       type(set_analysis_t) :: s
-      integer :: at = -1                    !< the last instant solved
-      integer :: last = -1                  !< the last that there is
-      integer :: patience = first_patience
-      logical :: in_simd_lane = .false.         !< a lane has it
+      integer :: at = -1                    !< the number of the last instant solved
+      integer :: last = -1                  !< the number of the last instant of the set
+      integer :: patience = first_patience  !< instants that the ordinary analysis solves, before a lane is tried again
+      logical :: in_simd_lane = .false.     !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
 
 contains
 
-   !> Makes `run`, whose analysis r%s has the variant r%m, ready for its first instant.
+   !> Makes a run ready for its first instant.
    subroutine begin_run(run)
-      type(lane_run_t), intent(inout) :: run
+      type(lane_run_t), intent(inout) :: run   !< its analysis run%s has the variant run%m
 
       call new_answers(run%s, .false., run%asked)
       run%at = -1
@@ -59,11 +60,11 @@ contains
       run%counts = counts_t()
    end subroutine begin_run
 
-   !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
+   !> Solves the runs that are not over to their ends, or to a signal.
    subroutine run_lanes(runs, lanes)
-      type(lane_run_t), intent(inout) :: runs(:)
+      type(lane_run_t), intent(inout) :: runs(:)   !< at most as many as there are lanes; run i has lane i
       type(lanes_t), intent(inout) :: lanes
-      type(step_check_t) :: j
+      type(step_check_t) :: check
       real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
       logical :: in_simd_lane, searches
@@ -71,7 +72,8 @@ contains
       do i = 1, size(runs)
          call hand_to_lane(runs(i), lanes, i)
       end do
-      ! Lanes that no variant has do what one of them does: their numbers must be numbers.
+
+      ! Lanes without a variant do what one of the others does: their numbers must be numbers.
       if (any(runs%in_simd_lane)) then
          k = findloc(runs%in_simd_lane, .true., dim=1)
          do i = 1, width
@@ -80,9 +82,9 @@ contains
             if (.not. in_simd_lane) call load_run(runs(k), lanes, i, in_simd_lane)
          end do
       end if
+
       do while (any(runs%in_simd_lane) .and. signal_received() == 0)
-         ! Step k ends at t0 + span (at + k)/all_steps, as `instant` has it. Lanes without a variant stay where they
-         ! are.
+         ! Step k ends at t0 + span (at + k)/all_steps, as in `instant`. Lanes without a variant stay where they are.
          steps = huge(steps)
          t0 = lanes%t(:, lanes%slot(0))
          span = 0.0_wp
@@ -100,18 +102,20 @@ contains
                steps = min(steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%wants_extremes))
             end associate
          end do
+
          do k = 1, steps
             t = t0 + span*(at + k)/all_steps
-            call solve_lanes(lanes, t, j)
-            if (k == steps .or. dot_product(j%refused, goes_on) > 0.5_wp .or. signal_received() > 0) exit
+            call solve_lanes(lanes, t, check)
+            if (k == steps .or. dot_product(check%refused, goes_on) > 0.5_wp .or. signal_received() > 0) exit
             call accept_lanes(lanes, t)
          end do
          do i = 1, size(runs)
             if (.not. runs(i)%in_simd_lane) cycle
             call count_instants(runs(i), k - 1)
-            call look_at_step(runs(i), lanes, i, j, t(i))
+            call look_at_step(runs(i), lanes, i, check, t(i))
          end do
          call accept_lanes(lanes, t)
+
          do i = 1, size(runs)
             associate (r => runs(i), x => runs(i)%asked%extremes)
                if (r%in_simd_lane .and. r%asked%wants_extremes) then
@@ -125,15 +129,17 @@ contains
       end do
    end subroutine run_lanes
 
-   !> Takes the step of `run` to the time `t` that lane `i` has made, unless the engine must make it. That is so if it
-   !> is refused; at the last instant if others follow it, those of AT; with EXTREMES also in long steps, and at the
-   !> last instant, of which they take more.
+   !> Takes the step of a run that its lane has made, unless the ordinary analysis must make the step. This is the case
+   !>
+   !> - if the lane is refused,
+   !> - at the last instant if others, those of AT, follow it,
+   !> - with EXTREMES also in long steps and at the last instant, of which they take more.
    subroutine look_at_step(run, lanes, i, check, t)
       type(lane_run_t), intent(inout) :: run
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i               !< its number
-      type(step_check_t), intent(in) :: check
-      real(wp), intent(inout) :: t           !< time
+      integer, intent(in) :: i               !< the number of the lane
+      type(step_check_t), intent(in) :: check   !< of the step
+      real(wp), intent(inout) :: t           !< time of the step's end; then of the run's last instant
       logical :: is_refused, counts
 
       is_refused = check%refused(i) > 0.5_wp
@@ -152,15 +158,15 @@ contains
 
       call give_back(run, lanes, i)
       run%in_simd_lane = .false.
-      call by_engine(run, run%at + merge(run%patience, 1, is_refused))
+      call advance_run(run, run%at + merge(run%patience, 1, is_refused))
       call keep_lane(lanes, i)
       t = lanes%t(i, lanes%slot(0))
    end subroutine look_at_step
 
-   !> The next `n` instants of `run` are solved and regular.
+   !> Counts instants of a run that are solved and regular.
    pure subroutine count_instants(run, n)
       type(lane_run_t), intent(inout) :: run
-      integer, intent(in) :: n               !< at least 0
+      integer, intent(in) :: n               !< how many instants are new, at least 0
 
       run%at = run%at + n
       run%counts%solved = run%counts%solved + n
@@ -168,27 +174,28 @@ contains
       run%in_simd_lane = .not. run%is_over
    end subroutine count_instants
 
-   !> Lane `i` takes over `run`, unless it has it or `run` is over, as soon as it can; until then the engine solves it.
+   !> Hands a run to a lane as soon as the lane can take it; until then the ordinary analysis solves it. A run that is
+   !> over or has its lane stays as it is.
    subroutine hand_to_lane(run, lanes, i)
       type(lane_run_t), intent(inout) :: run
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i               !< its number
+      integer, intent(in) :: i               !< the number of the lane
 
       do while (.not. (run%is_over .or. run%in_simd_lane) .and. signal_received() == 0)
          call load_run(run, lanes, i, run%in_simd_lane)
          if (run%in_simd_lane) return
          if (run%at >= 2) run%patience = 2*run%patience
-         call by_engine(run, run%at + run%patience)
+         call advance_run(run, run%at + run%patience)
       end do
    end subroutine hand_to_lane
 
-   !> Loads lane `i` with the motions of `run`, if they are such as lanes need: `is_done`. They are those of one
-   !> mechanism by METHOD NEWTON, whose last instant has all of its motion.
+   !> Loads a lane with the motions of a run, if lanes can take them. Lanes take one mechanism by METHOD NEWTON, if its
+   !> last instant has all of its motion.
    subroutine load_run(run, lanes, i, is_done)
       type(lane_run_t), intent(inout) :: run
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i               !< its number
-      logical, intent(out) :: is_done        !< the lane has them
+      integer, intent(in) :: i               !< the number of the lane
+      logical, intent(out) :: is_done        !< the lane has the motions
       real(wp) :: step, away
 
       is_done = .false.
@@ -198,7 +205,7 @@ contains
       associate (a => run%s%list(1))
          call come_back(a)
          if (.not. a%follows .or. any(a%limits%known) .or. run%s%now%motions(1)%rests) return
-         call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
+         call judge_step(a%drives, (1.0_wp + step_margin)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
          if (.not. is_covered(a%following_t)) return
@@ -209,10 +216,10 @@ contains
       end associate
    end subroutine load_run
 
-   !> Solves the next instants of `run` by the engine, up to number `last` or the last that there is.
-   subroutine by_engine(run, last)
+   !> Solves the next instants of a run by the ordinary analysis, or fewer at a signal.
+   subroutine advance_run(run, last)
       type(lane_run_t), intent(inout) :: run
-      integer, intent(in) :: last            !< the number of an instant
+      integer, intent(in) :: last            !< the number of the last instant to be solved, if there is one
       type(finished_row_t) :: no_rows(0)
       integer :: k
 
@@ -224,15 +231,15 @@ contains
          if (signal_received() > 0) return
       end do
       run%is_over = run%at == run%last
-   end subroutine by_engine
+   end subroutine advance_run
 
-   !> Gives the EXTREMES of `run` the motion at the time `t` that lane `i` has found. `is_done`: its numbers are in
-   !> range, and none of their digits is in doubt.
+   !> Gives the EXTREMES of a run the motion that its lane has found. They do not take it if a number is out of range or
+   !> a digit is in doubt.
    subroutine watch_lane(run, lanes, i, t, is_done)
       type(lane_run_t), intent(inout) :: run
       type(lanes_t), intent(in) :: lanes
-      integer, intent(in) :: i               !< its number
-      real(wp), intent(in) :: t              !< time
+      integer, intent(in) :: i               !< the number of the lane
+      real(wp), intent(in) :: t              !< time of the motion
       logical, intent(out) :: is_done        !< the motion is taken
       integer :: u, k
 
@@ -255,11 +262,11 @@ contains
       if (is_done) call find_next(run%asked%extremes, run%s, 1, t, .false.)
    end subroutine watch_lane
 
-   !> Gives the engine of `run` the motions of lane `i`, for the next instants or for times between.
+   !> Gives the analysis of a run the motions of its lane, for the next instants or for times between instants.
    subroutine give_back(run, lanes, i)
       type(lane_run_t), intent(inout) :: run
       type(lanes_t), intent(in) :: lanes
-      integer, intent(in) :: i               !< its number
+      integer, intent(in) :: i               !< the number of the lane
 
       associate (a => run%s%list(1))
          call come_back(a)

@@ -1,23 +1,24 @@
 !> Sine and cosine of as many angles as there are lanes, all at once: the processor's vectors hold one number of each
 !> lane.
 !>
-!> The angle less a multiple n of pi/2 is known to twice the digits of a double: n pi/2 is subtracted in three parts,
-!> of which the first two have 33 digits, so that their products with n are exact (Cody and Waite, Software Manual for
-!> the Elementary Functions, 1980). The polynomials on [-pi/4, pi/4] are those of fdlibm (Sun Microsystems, 1993). The
-!> error is below 0.8 of the last digit; a test measures it.
+!> The angle less a multiple n of pi/2 is known to twice the digits of a double. n pi/2 is subtracted in three parts, of
+!> which the first two have 33 digits: their products with n are exact (Cody and Waite, Software Manual for the
+!> Elementary Functions, 1980). The polynomials on [-pi/4, pi/4] are those of fdlibm (Sun Microsystems, 1993). The error
+!> is below 0.8 of the last digit; a test measures it.
 module lane_sines
    use kinds, only: wp
    implicit none
    private
    public :: width, sines, max_angle
 
-   !> Lanes. With half as many, what is done once for all of them takes a tenth of a step more.
+   !> Lanes. With half as many, the work that is done once for all lanes takes a tenth of a step more.
    integer, parameter :: width = 16
-   !> Angles up to here have an n of at most 20 digits.
+   !> rad: n has at most 20 digits for an angle up to this one.
    real(wp), parameter :: max_angle = 1.0e6_wp
-   !> Whole numbers of the size of a real, whose first bit, at the place `sign_at`, is its sign.
+   !> Whole numbers of the size of a real, whose first bit, at `sign_at`, is its sign.
    integer, parameter :: sign_at = storage_size(1.0_wp) - 1, bits = (sign_at + 1)/8
-   !> Added, it makes the last bits those of the nearest whole number; subtracted again, it leaves that.
+   !> Added to a real, it makes the last bits those of the nearest whole number; subtracted again, it leaves that
+   !> number.
    real(wp), parameter :: whole = 1.5_wp/epsilon(1.0_wp)
    !> pi/2 in three parts.
    real(wp), parameter :: part_1 = 1.57079632673412561417E+00_wp, part_2 = 6.07710050630396597660E-11_wp, &
@@ -31,11 +32,11 @@ module lane_sines
 
 contains
 
-   !> Cosine `cosine_of` and sine `sine_of` of the `angles`, in rad, all at most `max_angle`. Other kinds of reals than
-   !> double take the run-time library's.
+   !> Finds cosine and sine of angles. Other kinds of reals than double take the run-time library's.
    pure subroutine sines(angles, cosine_of, sine_of)
-      real(wp), intent(in) :: angles(width)
-      real(wp), intent(out) :: cosine_of(width), sine_of(width)
+      real(wp), intent(in) :: angles(width)      !< rad, at most `max_angle`
+      real(wp), intent(out) :: cosine_of(width)  !< of each angle
+      real(wp), intent(out) :: sine_of(width)    !< of each angle
       real(wp) :: n, t, u, r, rest, z, half, sine, cosine
       integer(bits) :: quadrant, of_sine, of_cosine, exchanged
       integer :: l
@@ -51,18 +52,21 @@ contains
          n = n - whole
          t = angles(l) - n*part_1
          u = n*part_2
+
          r = t - u
-         ! What rounding has left out of r.
+         ! The part of r that rounding has left out.
          z = r - t
          rest = (t - (r - z)) - (u + z) - n*part_3
          t = r
          r = t + rest
          rest = (t - r) + rest
          z = r*r
+
          sine = r + (z*r*(s1 + z*(s2 + z*(s3 + z*(s4 + z*(s5 + z*s6))))) + rest*(1.0_wp - 0.5_wp*z))
          half = 0.5_wp*z
          u = 1.0_wp - half
          cosine = u + (((1.0_wp - u) - half) + (z*(z*(c1 + z*(c2 + z*(c3 + z*(c4 + z*(c5 + z*c6)))))) - r*rest))
+
          of_sine = transfer(sine, of_sine)
          of_cosine = transfer(cosine, of_cosine)
          exchanged = iand(ieor(of_sine, of_cosine), -iand(quadrant, 1_bits))

@@ -1,6 +1,6 @@
-!> The motions of several mechanisms of one structure, each in a lane: what `state_t` and `history_t` have of one, as
-!> arrays whose first index is the lane. A lane takes over from a mechanism whose last three motions are at equal steps,
-!> and gives back to it the motion of its last instant.
+!> The motions of several mechanisms of one structure, each in a lane: `state_t` and `history_t` as arrays whose first
+!> index is the lane. A lane takes over from a mechanism whose last three motions are at equal steps. It gives back the
+!> motion of its last instant.
 #define NUMBER real(wp), dimension(width)
 #define IS(value)
 module lane_state
@@ -19,7 +19,7 @@ module lane_state
    ! What equations are made of, one number a lane.
 #include "number_types.inc"
 
-   !> Motions that a lane has room for: the last three, which are needed to predict, and the next.
+   !> Motions that a lane has room for: the last three, for a prediction, and the next.
    integer, parameter :: depth = 4
 
    !> A block.
@@ -29,8 +29,8 @@ module lane_state
       real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `jacobian_t`, by slots
    end type lane_block_t
 
-   !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own engine. Of `blocks` all that
-   !> is no number of kind `wp` counts.
+   !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own analysis. Numbers of the
+   !> kind `wp` in `blocks` do not count.
    type :: lanes_t
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)
@@ -41,7 +41,7 @@ module lane_state
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
-      integer :: slot(0:depth - 1) = [0, 1, 2, 3]          !< of the motions, the latest first
+      integer :: slot(0:depth - 1) = [0, 1, 2, 3]       !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
       !> (lanes, value and rate and acceleration, slots, unknowns) that are remembered
       real(wp), allocatable :: past(:, :, :, :)
@@ -56,14 +56,14 @@ module lane_state
 
 contains
 
-   !> The lanes can take over from `following`: its blocks are of at most `max_order` unknowns, as many as equations,
-   !> and it follows three motions at equal steps.
+   !> Tells whether the lanes can take over from a mechanism. Its blocks have at most `max_order` unknowns, as many as
+   !> equations, and it follows three motions at equal steps.
    pure logical function is_covered(following)
       type(following_t), intent(in) :: following
       integer :: k
 
-      is_covered = digits(1.0_wp) == 53 .and. following%blocks%redundant == &
-         0 .and. size(following%history%predicted) > 0
+      is_covered = digits(1.0_wp) == 53 .and. following%blocks%redundant == 0 &
+         .and. size(following%history%predicted) > 0
       if (.not. is_covered) return
       is_covered = following%history%filled == 3 .and. following%history%order == own_predictor &
          .and. .not. following%geometry%tolerance > 0.0_wp
@@ -74,10 +74,10 @@ contains
       end do
    end function is_covered
 
-   !> Makes lanes for mechanisms with the structure of `following`.
+   !> Makes lanes for mechanisms of one structure.
    subroutine make_lanes(lanes, following)
       type(lanes_t), intent(out) :: lanes
-      type(following_t), intent(in) :: following
+      type(following_t), intent(in) :: following   !< one of the mechanisms
 
       lanes%blocks = following%blocks
       lanes%moving = following%blocks%moving
@@ -98,22 +98,22 @@ contains
       end associate
    end subroutine make_lanes
 
-   !> Fills `lane` with the mechanism and the motions of `following`, a variant of that for which `lanes` was made;
-   !> `is_alike` is false if its numbers put other body vectors or slides into the equations. What follows from the time
-   !> step is the caller's.
+   !> Fills a lane with the mechanism and the motions of a variant. What follows from the time step is the caller's. If
+   !> the variant's numbers put other body vectors or slides into the equations, the lane stays as it was.
    subroutine load_lane(lanes, lane, following, is_alike)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: lane
-      type(following_t), intent(in) :: following
-      logical, intent(out) :: is_alike
+      integer, intent(in) :: lane            !< the number of the lane
+      type(following_t), intent(in) :: following   !< a variant of the mechanism for which the lanes were made
+      logical, intent(out) :: is_alike       !< the equations have the lanes' body vectors and slides
       integer :: i, k
 
       associate (a => lanes%blocks%equations, b => following%blocks%equations)
-         ! What cannot be solved has none.
+         ! Equations that cannot be solved have no vectors.
          is_alike = a%count == b%count
          if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
       end associate
       if (.not. is_alike) return
+
       lanes%path(lane) = following%path
       lanes%is_polynomial = .true.
       do i = 1, size(following%path%laws)
@@ -127,6 +127,7 @@ contains
          lanes%block%lipschitz(lane) = x%blocks%lipschitz
          lanes%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
          lanes%block%has_right_sides = lanes%block%has_right_sides .or. x%blocks%has_right_sides
+
          lanes%rows%constant(lane) = x%rows%constant
          lanes%d%x(lane) = x%d%x
          lanes%d%y(lane) = x%d%y
@@ -159,10 +160,10 @@ contains
       lanes%block%inverse(lane, lanes%slot(0)) = following%history%jacobian%inverse
    end subroutine load_lane
 
-   !> Gives `following` the latest motion of `lane`: as the one that it follows.
+   !> Gives a mechanism the last three motions of a lane, as the ones that it follows.
    subroutine unload_lane(lanes, lane, following)
       type(lanes_t), intent(in) :: lanes
-      integer, intent(in) :: lane
+      integer, intent(in) :: lane            !< the number of the lane
       type(following_t), intent(inout) :: following
       integer :: k, i, u
 

@@ -1,10 +1,10 @@
-!> One instant in all lanes: predicted, solved, certified as `block_solver` and `following` do it. Whatever these would
-!> look at more closely (a long substep, small pivots, another sign of a determinant, a Kantorovich ratio above the
-!> largest, more than a few iterations, numbers out of range) is no matter for lanes: such a lane is refused, and the
-!> engine from which it came solves that instant. Lanes never look at one another.
+!> One instant in all lanes: predicted, solved and certified as `block_solver` and `following` do it. These look more
+!> closely at some steps: a long substep, small pivots, a determinant of another sign, a Kantorovich ratio above the
+!> largest, more than a few iterations, numbers out of range. Lanes do not: such a lane is refused, and the analysis
+!> from which it came solves the instant. No lane depends on another.
 module lane_steps
    use kinds, only: wp
-   use predictor, only: largest_change, weight, weight2
+   use predictor, only: largest_predicted_change, weight, weight2
    use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
    use following, only: largest_correction
@@ -17,22 +17,22 @@ module lane_steps
    private
    public :: step_check_t, solve_lanes, accept_lanes, keep_lane
 
-   !> What takes more iterations is refused.
-   integer, parameter :: max_iterations = 5
-   !> What each lane's motion is worth.
+   !> A lane that needs more iterations is refused.
+   integer, parameter :: max_lane_iterations = 5
+   !> What is certified of each lane's step.
    type :: step_check_t
-      real(wp) :: refused(width) = 0.0_wp      !< above 0: it is no continuation that lanes can certify
-      real(wp) :: correction(width) = 0.0_wp   !< the largest change of a predicted value, rad or unit of length
+      real(wp) :: refused(width) = 0.0_wp      !< above 0: lanes cannot certify that it continues the motion
+      real(wp) :: correction(width) = 0.0_wp   !< the largest correction of a predicted value, rad or unit of length
       real(wp) :: ratio(width) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
-      real(wp) :: growth(width) = 0.0_wp       !< of that ratio with them
+      real(wp) :: growth(width) = 0.0_wp       !< of that ratio per excursion of the drives
    end type step_check_t
 
 contains
 
-   !> Solves all lanes at the times `t`, each a step after its latest motion.
+   !> Solves all lanes at new times. A lane whose motion is not certified is refused.
    subroutine solve_lanes(lanes, t, check)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)
+      real(wp), intent(in) :: t(width)       !< times, each a step after the latest motion of its lane
       type(step_check_t), intent(out) :: check
       integer :: k, i
 
@@ -46,15 +46,15 @@ contains
             call solve_block(lanes, i, lanes%blocks%list(i)%shape%n, check)
          end if
       end do
-      ! Comparisons that are false where something is no number.
+      ! These comparisons are false if something is no number.
       check%refused = check%refused + merge(0.0_wp, 1.0_wp, check%correction <= largest_correction) &
          + merge(0.0_wp, 1.0_wp, check%ratio + check%growth*lanes%excursion <= max_kantorovich_ratio)
    end subroutine solve_lanes
 
-   !> Value, rate and acceleration of the drives.
+   !> Finds value, rate and acceleration of the drives.
    subroutine set_drives(lanes, t)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)
+      real(wp), intent(in) :: t(width)       !< times
       integer :: i, lane
 
       do i = 1, size(lanes%unit, 2)
@@ -72,10 +72,10 @@ contains
       end do
    end subroutine set_drives
 
-   !> The values expected at `t` of all unknowns that are iterated: see `predictor`.
+   !> Predicts all unknowns that are iterated, from the last three motions, with the weights of `predictor`.
    subroutine predict_lanes(lanes, t, check)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)
+      real(wp), intent(in) :: t(width)       !< times
       type(step_check_t), intent(inout) :: check
       real(wp) :: step(width)
       integer :: k, u
@@ -83,17 +83,20 @@ contains
       step = t - lanes%t(:, lanes%slot(0))
       do k = 1, size(lanes%predicted)
          u = lanes%predicted(k)
-         call predict_one(step, lanes%past(1, 1, lanes%slot(0), u), lanes%past(1, 1, lanes%slot(1), u), lanes%past(1, &
-            1, lanes%slot(2), u), lanes%u(u)%value, check%refused)
+         call predict_one(step, lanes%past(1, 1, lanes%slot(0), u), lanes%past(1, 1, lanes%slot(1), u), &
+            lanes%past(1, 1, lanes%slot(2), u), lanes%u(u)%value, check%refused)
          call set_lane_direction(lanes, lanes%predicted(k))
       end do
    end subroutine predict_lanes
 
-   !> The value `values`, from the motions `latest` (latest), `second` and `third`; too large a change is refused, and
-   !> too large a value.
+   !> Predicts an unknown from its last three motions. Too large a change is refused, and too large a value.
    pure subroutine predict_one(step, latest, second, third, values, refused)
-      real(wp), intent(in) :: step(width), latest(width, 3), second(width, 3), third(width, 3)
-      real(wp), intent(inout) :: values(width), refused(width)
+      real(wp), intent(in) :: step(width)       !< time from the latest motion
+      real(wp), intent(in) :: latest(width, 3)  !< value, rate, acceleration (rad or unit of length, unit of time)
+      real(wp), intent(in) :: second(width, 3)  !< of the motion before
+      real(wp), intent(in) :: third(width, 3)   !< of the motion before `second`
+      real(wp), intent(inout) :: values(width)  !< the prediction, in rad or the unit of length
+      real(wp), intent(inout) :: refused(width) !< above 0: the lane is refused
       real(wp) :: d
       integer :: l
 
@@ -101,17 +104,18 @@ contains
          d = step(l)*(weight(0)*latest(l, 2) + weight(1)*second(l, 2) + weight(2)*third(l, 2) &
             + step(l)*(weight2(0)*latest(l, 3) + weight2(1)*second(l, 3) + weight2(2)*third(l, 3)))
          values(l) = latest(l, 1) + d
-         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change) &
+         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_predicted_change) &
             + merge(0.0_wp, 1.0_wp, abs(latest(l, 1) + d) <= max_angle)
       end do
    end subroutine predict_one
 
-   !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
+   !> Solves a block: position, velocities, accelerations.
    subroutine solve_block(lanes, i, n, check)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i, n
+      integer, intent(in) :: i   !< the number of the block
+      integer, intent(in) :: n   !< its unknowns
       type(step_check_t), intent(inout) :: check
-      ! Of fixed size: what has to be made for each block takes longer than its elimination.
+      ! Of fixed size: arrays that are made for each block take longer than its elimination.
       real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width), &
          start(width, max_order), change(width)
       integer :: k
@@ -122,6 +126,7 @@ contains
       call find_lane_known(lanes, i)
       call iterate(lanes, i, n, start, a, d, v, exchanged, check)
       change = 0.0_wp
+
       do k = 1, n
          associate (u => lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))
             call turn(u <= lanes%blocks%orientations, d(1, k), v(1, k), start(1, k), lanes%u(u), change)
@@ -135,22 +140,24 @@ contains
       end do
    end subroutine solve_block
 
-   !> Newton's method in all lanes, from the values `start`. Those that are done keep their values, so that what comes
-   !> after their last iteration is the same however long the others take: `a`: the factors, `corrections`: the last
-   !> corrections, not applied yet, `right_sides`: the velocities.
+   !> Iterates in all lanes by Newton's method. Lanes that are done keep their values: their results do not depend on
+   !> how long the others take. A lane that needs too many iterations is refused.
    subroutine iterate(lanes, i, n, start, a, corrections, right_sides, exchanged, check)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i, n
-      real(wp), intent(in) :: start(width, n)
-      real(wp), intent(inout) :: a(width, max_order**2), corrections(width, max_order), right_sides(width, &
-         max_order), exchanged(width)
+      integer, intent(in) :: i                                   !< the number of the block
+      integer, intent(in) :: n                                   !< its unknowns
+      real(wp), intent(in) :: start(width, n)                    !< the predicted values, rad or unit of length
+      real(wp), intent(inout) :: a(width, max_order**2)          !< the factors of the last Jacobian
+      real(wp), intent(inout) :: corrections(width, max_order)   !< the last ones, not applied yet
+      real(wp), intent(inout) :: right_sides(width, max_order)   !< the velocities
+      real(wp), intent(inout) :: exchanged(width)                !< 1: the two rows were exchanged; otherwise 0
       type(step_check_t), intent(inout) :: check
       real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
 
       u(:, :n) = start
       if (n == 1) call make_room(u, a, corrections, right_sides)
-      do iteration = 1, max_iterations
+      do iteration = 1, max_lane_iterations
          do k = 1, merge(0, n, iteration == 1)
             associate (unknown => lanes%blocks%unknown(lanes%blocks%list(i)%first + k - 1))
                u(:, k) = u(:, k) - merge(corrections(:, k), 0.0_wp, going > 0.5_wp)
@@ -167,13 +174,14 @@ contains
       check%refused = check%refused + going
    end subroutine iterate
 
-   !> Applies the last `correction` of an unknown, an angle or not, and its `rate`; `change`: the largest from its
-   !> `start`.
+   !> Applies the last correction of an unknown and its rate. The direction of an angle turns by the correction.
    pure subroutine turn(is_angle, correction, rate, start, unknown, change)
-      logical, intent(in) :: is_angle
-      real(wp), intent(in) :: correction(width), rate(width), start(width)
+      logical, intent(in) :: is_angle            !< the unknown is an angle
+      real(wp), intent(in) :: correction(width)  !< to be subtracted, rad or unit of length
+      real(wp), intent(in) :: rate(width)        !< rad or unit of length, per unit of time
+      real(wp), intent(in) :: start(width)       !< the predicted value, rad or unit of length
       type(unknown_t), intent(inout) :: unknown
-      real(wp), intent(inout) :: change(width)
+      real(wp), intent(inout) :: change(width)   !< the largest |correction| of a prediction in the block so far
       real(wp) :: x
       integer :: l
 
@@ -191,12 +199,15 @@ contains
       end do
    end subroutine turn
 
-   !> Refuses lanes that have too small a pivot, compared with the largest, or a determinant of another sign than
-   !> before, as `judge` of `block_solver` and the continuation refuse an instant. `change`: of the values of `block`,
-   !> from the motion in the slot `before` to that in the slot `next`.
+   !> Refuses a lane if a pivot is too small compared with the largest, or if the determinant has another sign than
+   !> before: as `block_solver` and the continuation refuse an instant. Adds the block to what is certified of the step.
    pure subroutine judge(n, a, exchanged, change, before, next, block, check)
-      integer, intent(in) :: n, before, next
-      real(wp), intent(in) :: a(width, max_order**2), exchanged(width), change(width)
+      integer, intent(in) :: n                          !< unknowns of the block
+      integer, intent(in) :: before                     !< the slot of the latest motion
+      integer, intent(in) :: next                       !< the slot of the motion that is judged
+      real(wp), intent(in) :: a(width, max_order**2)    !< the factors of its Jacobian
+      real(wp), intent(in) :: exchanged(width)          !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(in) :: change(width)             !< the largest |correction| of a prediction in the block
       type(lane_block_t), intent(inout) :: block
       type(step_check_t), intent(inout) :: check
       real(wp) :: largest(width), sign_of(width)
@@ -210,15 +221,15 @@ contains
             + merge(0.0_wp, 1.0_wp, block%pivot(l, next) >= suspicious_pivot*max(largest(l), 1.0_wp))
          check%correction(l) = max(check%correction(l), change(l))
          check%ratio(l) = max(check%ratio(l), change(l)*block%lipschitz(l)*block%inverse(l, next))
-         check%growth(l) = max(check%growth(l), block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, &
-            before))**2)
+         check%growth(l) = max(check%growth(l), &
+            block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, before))**2)
       end do
    end subroutine judge
 
-   !> The motions found last, at `t`, are now the latest of their lanes.
+   !> Makes the motions found last the latest of their lanes.
    subroutine accept_lanes(lanes, t)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)
+      real(wp), intent(in) :: t(width)       !< their times
       integer :: k, u
 
       lanes%slot = [lanes%slot(depth - 1), lanes%slot(:depth - 2)]
@@ -231,10 +242,10 @@ contains
       end do
    end subroutine accept_lanes
 
-   !> Puts `lane` back to its latest motion, as if that had been found last.
+   !> Puts a lane back to its latest motion, as if this had been found last.
    subroutine keep_lane(lanes, lane)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: lane
+      integer, intent(in) :: lane            !< the number of the lane
       integer :: k, u
 
       do k = 1, size(lanes%predicted)
