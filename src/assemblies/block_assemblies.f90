@@ -1,5 +1,5 @@
-!> All real positions of one block, for given positions of the earlier ones: in closed form where its equations leave
-!> one unknown in each group, otherwise as the ends of paths. Each is corrected by the block's own Newton method.
+!> All real positions of one block, for given positions of the earlier ones. If its equations leave one unknown in each
+!> group, they are found in closed form, otherwise as the ends of paths. The block's own Newton method corrects each.
 module block_assemblies
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
@@ -18,22 +18,27 @@ module block_assemblies
 
    !> Unknowns of a group at most: C(12, 6) = 924 paths.
    integer, parameter :: max_group = 6
-   !> Real solutions have conjugate groups to this part; Newton's method moves them by no more (rad, block's lengths).
-   real(dp), parameter :: real_level = 8.0_dp*sqrt(rounding), near = sqrt(real_level)
-   !> The same of singular solutions, of which rounding leaves fewer digits.
-   real(dp), parameter :: singular_level = sqrt(real_level), singular_near = 10.0_dp*singular_level
-   !> Positions that differ by less are one.
-   real(dp), parameter :: alike = real_level, singular_alike = singular_near
+   !> The two groups of a real solution are conjugate within this part.
+   real(dp), parameter :: conjugate_tolerance = 8.0_dp*sqrt(rounding)
+   !> Newton's method moves a real solution by no more (rad, unit of the loop).
+   real(dp), parameter :: max_newton_move = sqrt(conjugate_tolerance)
+   !> Both for singular solutions, of which rounding leaves fewer digits.
+   real(dp), parameter :: singular_conjugate_tolerance = sqrt(conjugate_tolerance)
+   real(dp), parameter :: max_singular_move = 10.0_dp*singular_conjugate_tolerance
+   !> Positions that differ by less are one (rad, unit of the loop), regular and singular ones.
+   real(dp), parameter :: same_position_tolerance = conjugate_tolerance
+   real(dp), parameter :: same_singular_tolerance = max_singular_move
+   !> Steps of Gauss and Newton towards a singular solution.
    integer, parameter :: singular_steps = 6
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
-   real(dp), parameter :: solved_level = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
-   !> Within a closing tolerance the paths end at solutions of some of the equations, and Newton's method moves them by
-   !> so many times that tolerance.
-   real(dp), parameter :: moved = 100.0_dp
+   real(dp), parameter :: surplus_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
+   !> Within a closing tolerance the paths end at solutions of some of the equations. Newton's method moves them by so
+   !> many times that tolerance.
+   real(dp), parameter :: moves_per_closing = 100.0_dp
    !> Newton's method starts from multiples of 1/grid: ends of paths are known better.
    real(wp), parameter :: grid = 2.0_wp**26
 
-   !> What was found of one block: the positions of the last search, and the counts and findings of all searches.
+   !> Positions of one block: those of the last search, and the counts and findings of all searches.
    !> paths = finite + infinite + failed + partial.
    type :: block_positions_t
       real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
@@ -42,25 +47,24 @@ module block_assemblies
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0
       integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
       integer :: real = 0                       !< positions
-      logical :: is_wide = .false.              !< too wide: not solved
+      logical :: is_wide = .false.              !< a group has too many unknowns: not solved
       logical :: is_open = .false.              !< rates are open in some position
       logical :: moves = .false.                !< some positions are not separate: it can move with its drives held
    end type block_positions_t
 
 contains
 
-   !> Finds all positions of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
-   !> change. `found`: of this search and those before. `largest_group`: more
-   !> unknowns of a group are not solved, see `max_group`; `start`: of the paths, see `follow_paths`.
+   !> Finds all positions of a block for given values of earlier blocks and drives. If the block is too wide or lacks
+   !> equations, none is found, and the findings say why.
    subroutine find_positions(b, x, i, w, s, largest_group, start, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      integer, intent(in) :: largest_group
-      type(path_start_t), allocatable, intent(inout) :: start
-      type(block_positions_t), intent(inout) :: found
+      type(state_t), intent(inout) :: s      !< with the values of earlier blocks and drives; the block's own change
+      integer, intent(in) :: largest_group   !< unknowns of a group at most, up to `max_group`
+      type(path_start_t), allocatable, intent(inout) :: start   !< of the paths: see `follow_paths`
+      type(block_positions_t), intent(inout) :: found   !< of the searches before; then also of this one
       type(convergence_t) :: c
       type(block_form_t) :: f
       type(ends_t) :: ends
@@ -82,8 +86,9 @@ contains
       found%is_wide = found%is_wide .or. f%system%p > largest_group
       found%moves = found%moves .or. f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
+
       moves = .false.
-      level = max(solved_level, sqrt(real(x%closing, dp)))
+      level = max(surplus_tolerance, sqrt(real(x%closing, dp)))
       if (f%system%p == 0) then
          ends%paths = 1
          allocate (ends%list(1))
@@ -94,6 +99,7 @@ contains
       else
          call follow_paths(f%system, start, ends)
       end if
+
       found%moves = found%moves .or. moves
       found%paths = found%paths + ends%paths
       found%infinite = found%infinite + ends%infinite
@@ -114,15 +120,16 @@ contains
 
    contains
 
-      !> Adds the position of block `i` at the solution `ending` to those `found`, if it is real and new.
+      !> Adds the position of the block at a solution, if it is real and new.
       subroutine add_position(ending)
-         type(path_end_t), intent(in) :: ending
+         type(path_end_t), intent(in) :: ending   !< the solution
          type(convergence_t) :: c
          real(wp) :: place(size(f%turns)), residual
          logical :: is_real
          integer :: k
 
-         call real_values(f, ending, merge(singular_level, real_level, ending%is_singular), place, is_real)
+         call real_values(f, ending, merge(singular_conjugate_tolerance, conjugate_tolerance, ending%is_singular), &
+            place, is_real)
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
          if (.not. is_real) found%moves = found%moves .or. ending%is_singular
          if (.not. is_real) return
@@ -137,19 +144,22 @@ contains
          do k = 1, merge(singular_steps, 0, ending%is_singular)
             call gauss_newton_step(b, x, i, s, residual)
          end do
+
          call solve_block(b, x, i, .true., w, s, c)
          if (c%ended == ended_inconsistent) then
             call leave_out(found%partial)
             return
          end if
-         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > merge(singular_near, near, ending%is_singular) &
-            + moved*x%closing) then
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > &
+            merge(max_singular_move, max_newton_move, ending%is_singular) + moves_per_closing*x%closing) then
             call leave_out(found%failed)
             return
          end if
+
          place = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(place, found%x(:, k)) <= merge(singular_alike, alike, ending%is_singular .or. c%singular)) return
+            if (apart(place, found%x(:, k)) <= merge(same_singular_tolerance, same_position_tolerance, &
+               ending%is_singular .or. c%singular)) return
          end do
          found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
@@ -157,17 +167,18 @@ contains
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))
       end subroutine add_position
 
-      !> The last of the finite ends belongs to those that `number` counts.
+      !> Counts the last of the finite ends with others instead.
       subroutine leave_out(number)
-         integer, intent(inout) :: number
+         integer, intent(inout) :: number   !< of the ends with which it counts
 
          number = number + 1
          found%finite = found%finite - 1
       end subroutine leave_out
 
-      !> The largest difference of the values `first` and `second` of block `i`, of angles without whole turns.
+      !> Gives the largest difference of two positions of the block, in rad or the unit of the loop; angles without
+      !> whole turns.
       pure real(wp) function apart(first, second)
-         real(wp), intent(in) :: first(:), second(:)
+         real(wp), intent(in) :: first(:), second(:)   !< (unknowns of the block) rad or unit of the loop
 
          apart = maxval(merge(abs(wrap_angle(first - second)), abs(first - second), &
             own_unknowns(b, i) <= b%orientations))

@@ -15,11 +15,12 @@ module block_bilinear
    private
    public :: block_form_t, make_form, real_values
 
-   !> The system of a block, from whose solutions its unknowns follow.
+   !> The system of a block. The block's unknowns follow from its solutions.
    type :: block_form_t
-      integer, allocatable :: turns(:)                !< (n) of a slide its direction, 0: a known one; of a direction -1
+      !> (n) -1 of a direction; of a slide the number of its direction in the block, 0: a known direction.
+      integer, allocatable :: turns(:)
       complex(dp), allocatable :: basis(:, :)         !< (0:n, 0:p) of directions and slides from the system's unknowns
-      logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
+      logical :: is_lacking = .false.                 !< fewer equations than unknowns, at the values of earlier blocks
       logical :: is_impossible = .false.              !< its linear equations contradict one another
       type(bilinear_t) :: system
       complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) equations that are too many
@@ -27,25 +28,25 @@ module block_bilinear
 
    complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
    !> Coefficients below this part of the largest are rounding.
-   real(wp), parameter :: zero_level = 4096.0_wp*epsilon(1.0_wp)
-   !> Of equations that are too many those that differ by less agree: the numbers of the deck have 11 digits, of which
-   !> the elimination may lose two. Newton's method then decides with the exact equations.
-   real(wp), parameter :: surplus_level = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
-   !> Within a closing tolerance they differ by so many times that.
-   real(wp), parameter :: lost_by_elimination = 10.0_wp
+   real(wp), parameter :: rounding_part = 4096.0_wp*epsilon(1.0_wp)
+   !> Equations that are too many agree if they differ by less than this part of their terms. The numbers of the deck
+   !> have 11 digits, and the elimination may lose two. Newton's method then decides with the exact equations.
+   real(wp), parameter :: surplus_part = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
+   !> Within a closing tolerance they agree if they differ by less than so many times that tolerance.
+   real(wp), parameter :: surplus_per_closing = 10.0_wp
 
-   !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
+   !> An equation Re(l conj(factor w)) = value, with w a direction.
    type :: projection_t
       complex(wp), allocatable :: l(:)                !< (n + 1) a linear form, its constant part first
       real(wp) :: size_of = 0.0_wp                    !< the sum of the sizes of its terms, in the unit of the loop
       complex(wp) :: factor = 1.0_wp
-      integer :: at = 0
+      integer :: at = 0                               !< the number of w in the block; 0: w = 1
       real(wp) :: value = 0.0_wp
    end type projection_t
 
-   !> Equations in the making.
+   !> The equations of a system before the elimination.
    type :: draft_t
-      integer :: linear = 0, bilinear = 0
+      integer :: linear = 0, bilinear = 0             !< how many there are of each kind
       complex(wp), allocatable :: a(:, :)             !< (0:n, linear): sum over k of a_k x_k = 0
       complex(wp), allocatable :: c(:, :, :)          !< (0:n, 0:n, bilinear)
       real(wp), allocatable :: size_of(:)             !< (bilinear) of the terms of each: see projection_t
@@ -54,12 +55,12 @@ module block_bilinear
 
 contains
 
-   !> The form of block `i` of `b`, for the values that `s` has of earlier blocks and drives.
+   !> Makes the system of a block, for given values of earlier blocks and drives.
    subroutine make_form(b, x, i, s, form)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(inout) :: s      !< with the values of earlier blocks and drives; the known parts change
       type(block_form_t), intent(out) :: form
       type(draft_t) :: d
       integer :: m
@@ -70,6 +71,7 @@ contains
          do m = b%loops(block%first_loop)%first_slide, b%loops(block%last_loop)%last_slide
             if (b%slides(m)%column > 0) form%turns(b%slides(m)%column) = b%slides(m)%orientation_column
          end do
+
          allocate (d%projections(0))
          allocate (d%a(0:n, rows), d%c(0:n, 0:n, rows + n), source=(0.0_wp, 0.0_wp))
          allocate (d%size_of(rows + n), source=1.0_wp)
@@ -82,15 +84,16 @@ contains
          end do
          call add_projections(d)
          call add_pairs(form, d)
-         call reduce(form, d, merge(max(surplus_level, lost_by_elimination*x%closing), zero_level, rows > n))
+         call reduce(form, d, merge(max(surplus_part, surplus_per_closing*x%closing), rounding_part, rows > n))
       end associate
    end subroutine make_form
 
-   !> Adds what `loop` of block `i` asks of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
+   !> Adds the equation of a loop of two angles, w = exp(i phi) w_less, or of a slide, z = s w.
    pure subroutine add_angles(b, x, i, loop, s, form, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, loop
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: loop            !< the number of the loop
       type(state_t), intent(in) :: s
       type(block_form_t), intent(in) :: form
       type(draft_t), intent(inout) :: draft
@@ -113,11 +116,13 @@ contains
       end associate
    end subroutine add_angles
 
-   !> Adds the equations of `loop` of block `i`, of `n` unknowns: each a projection of the loop.
+   !> Adds the equations of a vector loop: each a projection of the loop.
    subroutine add_loop(b, x, i, loop, s, n, draft)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, loop, n
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: loop            !< the number of the loop
+      integer, intent(in) :: n               !< unknowns of the block
       type(state_t), intent(in) :: s
       type(draft_t), intent(inout) :: draft
       type(projection_t) :: one
@@ -137,34 +142,33 @@ contains
 
    contains
 
-      !> Adds the projection for row number `row` of the block.
+      !> Adds the projection for a row.
       subroutine add(row)
-         integer, intent(in) :: row
+         integer, intent(in) :: row          !< its number in the block
 
          one%value = given(b, x, i, row, s)
          draft%projections = [draft%projections, one]
       end subroutine add
    end subroutine add_loop
 
-   !> The factor of `unknown`, in `column` of its block: 1 for a direction of the block, otherwise the known
-   !> direction.
+   !> Gives the factor of an unknown: 1 for a direction of the block, otherwise the known direction.
    pure complex(wp) function direction_factor(column, unknown, s) result(factor)
-      integer, intent(in) :: column, unknown
+      integer, intent(in) :: column          !< of the unknown in its block; 0: it is known
+      integer, intent(in) :: unknown         !< the number of the unknown
       type(state_t), intent(in) :: s
 
       factor = 1.0_wp
       if (column == 0) factor = cmplx(s%u(unknown)%c, s%u(unknown)%s, wp)
    end function direction_factor
 
-   !> Finds the linear form `line` (0:n) of `loop` in 1 and the n unknowns of a group. `size_of`: the sum of the sizes
-   !> of its terms that are known or of known length, in the loop's unit; rounding of the loop is measured by it.
+   !> Finds the linear form of a loop in 1 and the unknowns of a group, and the size by which rounding is measured.
    pure subroutine find_form(b, x, loop, s, line, size_of)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: loop
+      integer, intent(in) :: loop            !< the number of the loop
       type(state_t), intent(in) :: s
-      complex(wp), intent(out) :: line(0:)
-      real(wp), intent(out) :: size_of
+      complex(wp), intent(out) :: line(0:)   !< (0:n) coefficients, in the unit of the loop
+      real(wp), intent(out) :: size_of       !< the sum of |terms| of known length, in the unit of the loop
       complex(wp) :: factor
       real(wp) :: slide
       integer :: k
@@ -181,10 +185,10 @@ contains
                   *cmplx(x%d(k)%x, x%d(k)%y, wp)
             end associate
          end do
+
          do k = g%first_slide, g%last_slide
             associate (e => b%slides(k))
-               factor = direction_factor(e%orientation_column, e%orientation, s) &
-                  *cmplx(x%e(k)%x, x%e(k)%y, wp)
+               factor = direction_factor(e%orientation_column, e%orientation, s)*cmplx(x%e(k)%x, x%e(k)%y, wp)
                slide = 1.0_wp
                if (e%column > 0) then
                   line(e%column) = line(e%column) + factor
@@ -198,8 +202,9 @@ contains
       end associate
    end subroutine find_form
 
-   !> Two projections of one loop, in whatever unit, on different directions that turn together are one linear equation:
-   !> the components of a closed loop, or a slide that is driven and its guide. The others are bilinear.
+   !> Adds the projections of the draft as equations. Two projections of one loop, in any units, on different directions
+   !> that turn together are one linear equation: the components of a closed loop, or a driven slide and its guide. The
+   !> others are bilinear.
    subroutine add_projections(draft)
       type(draft_t), intent(inout) :: draft
       logical :: is_done(size(draft%projections))
@@ -212,11 +217,11 @@ contains
             do k = j + 1, size(is_done)
                associate (other => draft%projections(k))
                   turn = aimag(conjg(one%factor)*other%factor)
-                  if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(zero_level)) cycle
+                  if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(rounding_part)) cycle
                   if (maxval(abs(one%l)) <= 0.0_wp .or. maxval(abs(other%l)) <= 0.0_wp) cycle
                   m = maxloc(abs(one%l), 1)
                   ratio = real(other%l(m)/one%l(m))
-                  if (maxval(abs(other%l - ratio*one%l)) > zero_level*maxval(abs(other%l))) cycle
+                  if (maxval(abs(other%l - ratio*one%l)) > rounding_part*maxval(abs(other%l))) cycle
                   ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
                   draft%linear = draft%linear + 1
                   draft%a(:, draft%linear) = one%l
@@ -238,7 +243,7 @@ contains
       end do
    end subroutine add_projections
 
-   !> Adds w w' = 1 and z w' = z' w, and puts 1 for w w' in the other equations.
+   !> Adds w w' = 1 and z w' = z' w for all unknowns, and puts 1 for w w' in the other equations.
    subroutine add_pairs(form, draft)
       type(block_form_t), intent(in) :: form
       type(draft_t), intent(inout) :: draft
@@ -264,12 +269,12 @@ contains
       end do
    end subroutine add_pairs
 
-   !> Eliminates the linear equations. Equations that follow from others to `level` are left out; of more independent
-   !> ones than unknowns combinations are taken.
+   !> Eliminates the linear equations. Equations that follow from others are left out. Of more independent equations
+   !> than unknowns, combinations are taken.
    subroutine reduce(form, draft, level)
       type(block_form_t), intent(inout) :: form
       type(draft_t), intent(in) :: draft
-      real(wp), intent(in) :: level          !< part of the terms, 0 to 1
+      real(wp), intent(in) :: level          !< a smaller part of the terms is rounding: the equation follows
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: size_of
       integer :: p, j, k, count_of
@@ -298,10 +303,12 @@ contains
          end associate
          count_of = count_of + 1
       end do
+
       form%system%p = p
       form%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
       form%is_lacking = count_of < 2*p
       if (form%is_impossible .or. form%is_lacking) return
+
       allocate (form%system%c(0:p, 0:p, 2*p), form%system%plane(0:p))
       form%system%plane(:) = form%basis(0, :)
       form%more = c(:, :, 2*p + 1:count_of)
@@ -313,14 +320,13 @@ contains
       end do
    end subroutine reduce
 
-   !> (n) The unknowns of the block at the solution `ending`. `is_real`: x and y are conjugate, as far as rounding can
-   !> tell.
+   !> Finds the unknowns of the block at a solution, and tells whether they are real.
    subroutine real_values(form, ending, level, values, is_real)
       type(block_form_t), intent(in) :: form
-      type(path_end_t), intent(in) :: ending
-      real(dp), intent(in) :: level
-      real(wp), intent(out) :: values(:)
-      logical, intent(out) :: is_real
+      type(path_end_t), intent(in) :: ending   !< the solution
+      real(dp), intent(in) :: level          !< part of the largest unknown by which the groups may fail to be conjugate
+      real(wp), intent(out) :: values(:)     !< (n) rad or unit of the loop
+      logical, intent(out) :: is_real        !< the two groups are conjugate
       complex(dp) :: w(0:size(form%turns)), v(0:size(form%turns))
       integer :: k
 

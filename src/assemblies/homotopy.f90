@@ -1,12 +1,12 @@
-!> All solutions of a bilinear system f(x, y) = 0 by continuation: from the solutions of g = 0, of which each equation
-!> is the product of a linear form in x and one in y, along
+!> All solutions of a bilinear system f(x, y) = 0 by continuation. The paths come from the solutions of g = 0, in which
+!> each equation is the product of a linear form in x and one in y, along
 !>
 !>    h(x, y, t) = (1 - t) f(x, y) + t g(x, y),   t from 1 to 0.
 !>
-!> With complex forms by chance no two paths meet before t = 0; each solution that stands alone is the end of a path,
-!> and each set of others has the end of one (Morgan and Sommese, Appl. Math. Comput. 24 (1987) 101-113;
-!> Sommese and Wampler, The Numerical Solution of Systems of Polynomials, 2005). The chance is always the same.
-!> Coordinates are homogeneous, x . u = 1 and y . v = 1 with u and v by chance: paths to infinity have ends as others.
+!> With random complex forms no two paths meet before t = 0. Each isolated solution is the end of a path, and each set
+!> of others has the end of one (Morgan and Sommese, Appl. Math. Comput. 24 (1987) 101-113; Sommese and Wampler, The
+!> Numerical Solution of Systems of Polynomials, 2005). The random numbers are always the same. Coordinates are
+!> homogeneous, x . u = 1 and y . v = 1 with random u and v: paths to infinity have ends like other paths.
 module homotopy
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use plane_vectors, only: pi
@@ -17,41 +17,46 @@ module homotopy
    public :: follow_paths
 
    !> The paths of h = f + t more from the solutions of g = f + more. z: x and y without their first coordinates, which
-   !> are those of the start's chart.
+   !> the start's chart gives.
    type :: paths_t
-      integer :: p = 0
+      integer :: p = 0                                      !< unknowns of each group
       complex(dp), allocatable :: f(:, :, :), more(:, :, :) !< (0:p, 0:p, 2p)
-      real(dp) :: t = -1.0_dp                               !< the last
-      complex(dp), allocatable :: h(:, :, :)                !< there
+      real(dp) :: t = -1.0_dp                               !< the last one for which h was found
+      complex(dp), allocatable :: h(:, :, :)                !< (0:p, 0:p, 2p) at this t
    end type paths_t
 
-   !> The correction of a prediction that is aimed at, and the largest, in parts of z: paths that are further apart are
-   !> not mistaken for one another.
-   real(dp), parameter :: aim = 1.0e-5_dp, largest = 1.0e-3_dp
-   !> Corrections below this part of z are rounding. On the way to an end one below its root is the last, since Newton's
-   !> method leaves the square: near a singular end rounding keeps corrections above a smaller part.
-   real(dp), parameter :: converged = 1.0e-11_dp
+   !> The correction of a prediction at which steps aim, in parts of z.
+   real(dp), parameter :: aimed_correction = 1.0e-5_dp
+   !> The largest correction of a prediction, in parts of z: paths that are further apart are not mistaken for one
+   !> another.
+   real(dp), parameter :: max_prediction_error = 1.0e-3_dp
+   !> Corrections below this part of z are rounding. On the way to an end, a correction below its root is the last,
+   !> since Newton's method leaves the square: near a singular end rounding keeps corrections above a smaller part.
+   real(dp), parameter :: rounding_correction = 1.0e-11_dp
    integer, parameter :: max_corrections = 4
-   !> From here on t falls by tenths, and from each of them the end is tried in a few steps: a path that does not reach
-   !> it so has a singular end, unless its neighbour is nearer to it than about the root of the last of them.
-   real(dp), parameter :: near_end = 0.1_dp, tenth = 0.1_dp
-   !> The first step and the least, parts of the way: to `near_end`, by a tenth, and to the end.
-   real(dp), parameter :: to_near_end(2) = [0.05_dp, 1.0e-5_dp], by_tenth(2) = [0.3_dp, 1.0e-5_dp], to_end(2) = 0.3_dp
+   !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
+   !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
+   real(dp), parameter :: t_near_end = 0.1_dp, tenth = 0.1_dp
+   !> The first step and the least, parts of the way: to `t_near_end`, by a tenth, and to the end.
+   real(dp), parameter :: steps_near_end(2) = [0.05_dp, 1.0e-5_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
+   real(dp), parameter :: steps_to_end(2) = 0.3_dp
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
    real(dp), parameter :: least_power = 0.04_dp
-   !> Powers of ten that t must fall before a failed path is sorted; fewer near infinity, if it falls so fast.
+   !> Powers of ten that t must fall before a failed path is sorted.
    integer, parameter :: least_tenths = 4
-   real(dp), parameter :: far = 1.0e-3_dp, sure_power = 0.5_dp
+   !> They may be fewer nearer to infinity than this (see `finiteness`), if x . u falls with this power or more.
+   real(dp), parameter :: near_infinity = 1.0e-3_dp, sure_power = 0.5_dp
    !> Ends that differ by less, in parts of z, are one.
-   real(dp), parameter :: alike = sqrt(epsilon(1.0_dp))
+   real(dp), parameter :: same_end_tolerance = sqrt(epsilon(1.0_dp))
 
 contains
 
-   !> The `ends` of all paths of `bilinear`, p from 1. `start`: where the paths begin, if it is for that p; otherwise
-   !> afterwards points of all these paths, from which those of a similar system are short.
+   !> Finds the ends of all paths of a system. Paths from a given start are tried first; if one of them fails, all begin
+   !> at random forms, and leave a start from which the paths of a similar system are short.
    subroutine follow_paths(bilinear, start, ends)
-      type(bilinear_t), intent(in) :: bilinear
+      type(bilinear_t), intent(in) :: bilinear   !< p from 1
+      !> Of the paths. If it is none for that p, or fails: then points on all paths, if all come so far.
       type(path_start_t), allocatable, intent(inout) :: start
       type(ends_t), intent(out) :: ends
       type(path_start_t) :: own
@@ -66,45 +71,49 @@ contains
       call follow_all(bilinear, own, ends, start)
    end subroutine follow_paths
 
-   !> The start for `path`. Its solution number k is where the forms in x of p equations are zero, the k-th choice of
-   !> them, and those in y of the others.
-   subroutine make_start(path, start)
-      integer, intent(in) :: path
+   !> Makes the start of the paths. In its solution number k, the k-th choice of half of the equations have a form in x
+   !> that is zero, and the others a form in y.
+   subroutine make_start(group_size, start)
+      integer, intent(in) :: group_size      !< p, unknowns of each group
       type(path_start_t), intent(out) :: start
-      complex(dp) :: a(0:path, 2*path), b(0:path, 2*path)
-      integer :: seed, chosen(path), paths, j, k
+      complex(dp) :: a(0:group_size, 2*group_size), b(0:group_size, 2*group_size)
+      integer :: seed, chosen(group_size), paths, j, k
 
-      start%p = path
+      start%p = group_size
       paths = 1
-      do k = 1, path
-         paths = paths*(path + k)/k
+      do k = 1, group_size
+         paths = paths*(group_size + k)/k
       end do
-      allocate (start%chart(path, 2), start%c(0:path, 0:path, 2*path), start%z(2*path, paths))
+      allocate (start%chart(group_size, 2), start%c(0:group_size, 0:group_size, 2*group_size), &
+         start%z(2*group_size, paths))
+
       seed = 1987
-      do j = 1, 2*path
-         do k = 0, path
+      do j = 1, 2*group_size
+         do k = 0, group_size
             a(k, j) = on_circle(seed)
             b(k, j) = on_circle(seed)
          end do
-         do k = 0, path
+         do k = 0, group_size
             start%c(:, k, j) = a(:, j)*b(k, j)
          end do
       end do
-      do k = 1, path
+      do k = 1, group_size
          start%chart(k, 1) = on_circle(seed)
          start%chart(k, 2) = on_circle(seed)
       end do
-      chosen = [(k, k=1, path)]
+
+      chosen = [(k, k=1, group_size)]
       do k = 1, size(start%z, 2)
-         start%z(:path, k) = common_zero(a(:, chosen))
-         start%z(path + 1:, k) = common_zero(b(:, pack([(j, j=1, 2*path)], [(all(chosen /= j), j=1, 2*path)])))
-         call choose_next(chosen, 2*path)
+         start%z(:group_size, k) = common_zero(a(:, chosen))
+         start%z(group_size + 1:, k) = common_zero(b(:, pack([(j, j=1, 2*group_size)], &
+            [(all(chosen /= j), j=1, 2*group_size)])))
+         call choose_next(chosen, 2*group_size)
       end do
    end subroutine make_start
 
-   !> A complex number of size 1, by chance (Park and Miller, Comm. ACM 31 (1988) 1192-1201).
+   !> Gives a random complex number of size 1 (Park and Miller, Comm. ACM 31 (1988) 1192-1201).
    complex(dp) function on_circle(seed) result(z)
-      integer, intent(inout) :: seed
+      integer, intent(inout) :: seed   !< 1 to 2^31 - 2; then the next one
 
       ! Schrage's way: 16807 seed modulo 2^31 - 1 in the range of integers.
       seed = 16807*mod(seed, 127773) - 2836*(seed/127773)
@@ -112,9 +121,9 @@ contains
       z = exp(cmplx(0.0_dp, 2.0_dp*real(pi, dp)*(real(seed, dp)/real(huge(seed), dp)), dp))
    end function on_circle
 
-   !> (p) Where all the `forms` (0:p, p), each a constant and p coefficients, are zero.
+   !> Finds the point (p) at which p linear forms in p unknowns are zero.
    function common_zero(forms) result(z)
-      complex(dp), intent(in) :: forms(0:, :)
+      complex(dp), intent(in) :: forms(0:, :)   !< (0:p, p) of each form the constant and the coefficients
       complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2))
       integer :: pivots(size(forms, 2)), info
 
@@ -123,10 +132,10 @@ contains
       call zgesv(size(z), 1, a, size(z), pivots, z, size(z), info)
    end function common_zero
 
-   !> The next of all choices of size(chosen) numbers up to `n`, in increasing order.
+   !> Goes to the next of all choices of numbers from 1 to n, in increasing order. The last choice stays.
    subroutine choose_next(chosen, n)
-      integer, intent(inout) :: chosen(:)
-      integer, intent(in) :: n
+      integer, intent(inout) :: chosen(:)   !< (any number) different numbers in increasing order
+      integer, intent(in) :: n              !< the largest number
       integer :: k, j
 
       do k = size(chosen), 1, -1
@@ -136,12 +145,13 @@ contains
       end do
    end subroutine choose_next
 
-   !> Follows every path of `bilinear` from the `start`; `near`: their points at t = near_end, if all come so far. Two
-   !> paths that come to one regular end have jumped on the way: they have failed.
+   !> Follows every path of a system from a start. Two paths that come to one regular end have jumped on the way: the
+   !> second one counts as failed.
    subroutine follow_all(bilinear, start, ends, near)
       type(bilinear_t), intent(in) :: bilinear
-      type(path_start_t), intent(in) :: start
+      type(path_start_t), intent(in) :: start   !< for the system's p
       type(ends_t), intent(out) :: ends
+      !> The points of the paths at t = t_near_end, if all come so far.
       type(path_start_t), allocatable, intent(inout), optional :: near
       type(paths_t) :: h
       complex(dp) :: z(2*bilinear%p, size(start%z, 2))
@@ -167,7 +177,7 @@ contains
       count_of = 0
       do k = 1, size(list)
          associate (e => list(count_of + 1))
-            call follow(h, 1.0_dp, near_end, to_near_end, z(:, k), is_done)
+            call follow(h, 1.0_dp, t_near_end, steps_near_end, z(:, k), is_done)
             is_whole = is_whole .and. is_done
             if (is_done) call follow_to_end(bilinear, h, start%chart, z(:, k), e, is_infinite, is_done)
          end associate
@@ -175,47 +185,51 @@ contains
          if (is_done .and. is_infinite) ends%infinite = ends%infinite + 1
          if (is_done .and. .not. is_infinite) count_of = count_of + 1
       end do
-      if (present(near) .and. is_whole) near = path_start_t(bilinear%p, start%chart, h%f + near_end*h%more, z)
+      if (present(near) .and. is_whole) near = path_start_t(bilinear%p, start%chart, h%f + t_near_end*h%more, z)
 
       is_twin = .false.
       do k = 2, count_of
          do j = 1, k - 1
             if (list(k)%is_singular .or. list(j)%is_singular .or. is_twin(j)) cycle
-            is_twin(k) = is_twin(k) .or. all(abs(list(k)%x - list(j)%x) <= alike*maxval(abs(list(k)%x))) &
-               .and. all(abs(list(k)%y - list(j)%y) <= alike*maxval(abs(list(k)%y)))
+            is_twin(k) = is_twin(k) .or. all(abs(list(k)%x - list(j)%x) <= same_end_tolerance*maxval(abs(list(k)%x))) &
+               .and. all(abs(list(k)%y - list(j)%y) <= same_end_tolerance*maxval(abs(list(k)%y)))
          end do
       end do
       ends%failed = ends%failed + count(is_twin)
       ends%list = pack(list(:count_of), .not. is_twin(:count_of))
    end subroutine follow_all
 
-   !> Follows a path of `bilinear` from `start` at t = near_end. `ending`: its end; `is_done`: it was found.
+   !> Follows a path from t = t_near_end to its end. If a finite end is not found, `ending` is the last point.
    subroutine follow_to_end(bilinear, paths, chart, start, ending, is_infinite, is_done)
       type(bilinear_t), intent(in) :: bilinear
-      type(paths_t), intent(inout) :: paths
-      complex(dp), intent(in) :: chart(:, :), start(:)
+      type(paths_t), intent(inout) :: paths     !< of the system
+      complex(dp), intent(in) :: chart(:, :)    !< (p, 2) of the start
+      complex(dp), intent(in) :: start(:)       !< (2p) z at t = t_near_end
       type(path_end_t), intent(inout) :: ending
-      logical, intent(out) :: is_infinite, is_done
+      logical, intent(out) :: is_infinite       !< it is at infinity
+      logical, intent(out) :: is_done           !< it was found
       complex(dp), dimension(size(start)) :: z, last
       real(dp) :: t, finite(0:max_tenths)
       integer :: k
 
+
       is_infinite = .false.
-      t = near_end
+      t = t_near_end
       z = start
       do k = 0, max_tenths
          call record_end(z)
          finite(k) = finiteness(bilinear, ending%x, ending%y)
          last = z
-         call follow(paths, t, 0.0_dp, to_end, last, is_done)
+         call follow(paths, t, 0.0_dp, steps_to_end, last, is_done)
          if (is_done) exit
          if (k == max_tenths) exit
          last = z
-         call follow(paths, t, tenth*t, by_tenth, last, is_done)
+         call follow(paths, t, tenth*t, steps_by_tenth, last, is_done)
          if (.not. is_done) exit
          z = last
          t = tenth*t
       end do
+
       ending%is_singular = .not. is_done .or. k >= max_tenths
       if (is_done) then
          call record_end(last)
@@ -229,18 +243,18 @@ contains
 
    contains
 
-      !> Puts the homogeneous coordinates of `root` into `ending`.
+      !> Puts the homogeneous coordinates of a point into the end.
       subroutine record_end(root)
-         complex(dp), intent(in) :: root(:)
+         complex(dp), intent(in) :: root(:)   !< (2p) z
 
          ending%x = [1.0_dp + sum(chart(:, 1)*root(:paths%p)), root(:paths%p)]
          ending%y = [1.0_dp + sum(chart(:, 2)*root(paths%p + 1:)), root(paths%p + 1:)]
       end subroutine record_end
    end subroutine follow_to_end
 
-   !> The values, one for each tenth of t, end at infinity, as a power of t. Few of them show it only if they fall fast.
+   !> Tells whether a path goes to infinity, as a power of t. A few values show it only if they fall fast.
    pure logical function falls(finite)
-      real(dp), intent(in) :: finite(:)
+      real(dp), intent(in) :: finite(:)      !< (any number) its `finiteness`, one for each tenth of t
       real(dp) :: power
 
       associate (k => size(finite))
@@ -248,18 +262,18 @@ contains
          if (k < 3) return
          power = 0.5_dp*log10(finite(k - 2)/finite(k))
          falls = finite(k) <= infinity_level .or. (k > least_tenths .and. power >= least_power) &
-            .or. (finite(k) <= far .and. power >= sure_power)
+            .or. (finite(k) <= near_infinity .and. power >= sure_power)
       end associate
    end function falls
 
-   !> Follows the path from `point` at `from` `to`: the tangent by Runge and Kutta, Newton's correction; steps are
-   !> divided down to the least.
+   !> Follows a path between two values of t: the tangent by Runge and Kutta's rule, then Newton's correction. Steps are
+   !> divided down to the least. If this fails, the point is the last one found.
    subroutine follow(paths, from, to, steps, point, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to       !< values of t
       real(dp), intent(in) :: steps(2)       !< the first and the least, parts of the way
-      complex(dp), intent(inout) :: point(:)
-      logical, intent(out) :: is_done
+      complex(dp), intent(inout) :: point(:) !< (2p) z at the first t; then at the second
+      logical, intent(out) :: is_done        !< the second t is reached
       complex(dp) :: next(size(point))
       real(dp) :: s, step, correction, t, rate
 
@@ -275,7 +289,7 @@ contains
             s = s + step
             if (s >= 1.0_dp - epsilon(1.0_dp)) return
             ! The error of a step goes with its fifth power.
-            step = step*min(3.0_dp, max(0.5_dp, (aim/max(correction, epsilon(1.0_dp)))**0.2_dp))
+            step = step*min(3.0_dp, max(0.5_dp, (aimed_correction/max(correction, epsilon(1.0_dp)))**0.2_dp))
          else
             step = 0.4_dp*step
          end if
@@ -284,66 +298,67 @@ contains
       is_done = .false.
    end subroutine follow
 
-   !> Finds `t` at the part `covered` of the way between two of its values, and its `rate` by s. In a tenth it falls by
-   !> equal factors, since z goes with a power of t near a singular end.
+   !> Finds t on the way between two of its values. In a tenth it falls by equal factors, since z goes with a power of t
+   !> near a singular end.
    pure subroutine find_t(from, to, covered, t, rate)
       real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(in) :: covered              !< 0 to 1
-      real(dp), intent(out) :: t, rate
+      real(dp), intent(in) :: covered        !< part of the way, 0 to 1
+      real(dp), intent(out) :: t             !< the value there
+      real(dp), intent(out) :: rate          !< its derivative by the part of the way
 
       rate = to - from
       t = from + covered*rate
-      if (from > near_end .or. .not. to > 0.0_dp) return
+      if (from > t_near_end .or. .not. to > 0.0_dp) return
       t = from*(to/from)**covered
       rate = t*log(to/from)
    end subroutine find_t
 
-   !> Predicts z after a `step` along the tangent from the part `covered` of the way, by Runge and Kutta's rule of
-   !> fourth order.
+   !> Predicts z after a step along the tangent, by Runge and Kutta's rule of fourth order. It fails if a tangent does
+   !> not exist or the step is longer than the point is large.
    subroutine predict(paths, from, to, covered, step, point, next, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(in) :: covered, step        !< parts of the way
-      complex(dp), intent(in) :: point(:)
-      complex(dp), intent(out) :: next(:)
-      logical, intent(out) :: is_done
-      real(dp), parameter :: part(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
-      real(dp), parameter :: weight(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
+      real(dp), intent(in) :: covered        !< part of the way before the step
+      real(dp), intent(in) :: step           !< part of the way
+      complex(dp), intent(in) :: point(:)    !< (2p) z before the step
+      complex(dp), intent(out) :: next(:)    !< (2p) z after it
+      logical, intent(out) :: is_done        !< `next` was found
+      real(dp), parameter :: stage_places(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
+      real(dp), parameter :: stage_weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
       complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), tangent(size(point))
       real(dp) :: t, rate
       integer :: pivots(size(point)), info, k
 
       next = point
       tangent = 0.0_dp
-      do k = 1, size(part)
-         x = point + part(k)*step*tangent
+      do k = 1, size(stage_places)
+         x = point + stage_places(k)*step*tangent
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
-         call find_t(from, to, covered + part(k)*step, t, rate)
+         call find_t(from, to, covered + stage_places(k)*step, t, rate)
          call assemble(paths, t, x, a, r, tangent)
          call zgesv(size(point), 1, a, size(point), pivots, tangent, size(point), info)
          is_done = info == 0
          if (.not. is_done) return
          tangent = rate*tangent
-         next = next + weight(k)*step*tangent
+         next = next + stage_weights(k)*step*tangent
       end do
       is_done = size_of(next - point) <= size_of(point)
    end subroutine predict
 
-   !> Newton's method at `t`; `correction`: the first one, in parts of `point`. `is_done`: it was small, the others
-   !> smaller.
+   !> Corrects a point by Newton's method. It fails if the first correction is not small, or a later one not smaller.
    subroutine correct(paths, t, point, correction, is_done)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: t
-      complex(dp), intent(inout) :: point(:)
-      real(dp), intent(out) :: correction
-      logical, intent(out) :: is_done
+      real(dp), intent(in) :: t              !< of the homotopy
+      complex(dp), intent(inout) :: point(:) !< (2p) z
+      real(dp), intent(out) :: correction    !< the first one, relative to the point
+      logical, intent(out) :: is_done        !< z is found
       complex(dp) :: a(size(point), size(point)), r(size(point))
       integer :: pivots(size(point)), info, k
       real(dp) :: now, before
 
       is_done = .false.
-      before = 2.0_dp*largest
+      before = 2.0_dp*max_prediction_error
       do k = 1, max_corrections
          call assemble(paths, t, point, a, r)
          call zgesv(size(point), 1, a, size(point), pivots, r, size(point), info)
@@ -352,15 +367,15 @@ contains
          if (k == 1) correction = now
          if (.not. now <= 0.5_dp*before) return
          point = point - r
-         is_done = now <= merge(sqrt(converged), converged, t > 0.0_dp)
+         is_done = now <= merge(sqrt(rounding_correction), rounding_correction, t > 0.0_dp)
          if (is_done) return
          before = now
       end do
    end subroutine correct
 
-   !> The largest real or imaginary part of `point`.
+   !> Gives the largest real or imaginary part of a point.
    pure real(dp) function size_of(point)
-      complex(dp), intent(in) :: point(:)
+      complex(dp), intent(in) :: point(:)    !< (2p) z
       integer :: k
 
       size_of = 0.0_dp
@@ -369,14 +384,14 @@ contains
       end do
    end function size_of
 
-   !> The `residual` of the homotopy, its derivatives `a` by `point`, and by t with the opposite sign. Most calls are at
-   !> the t of the call before.
+   !> Finds the residual of the homotopy and its derivatives. Most calls are at the t of the call before.
    subroutine assemble(paths, t, point, a, residual, slope)
       type(paths_t), intent(inout) :: paths
-      real(dp), intent(in) :: t
-      complex(dp), intent(in) :: point(:)
-      complex(dp), intent(out) :: a(:, :), residual(:)
-      complex(dp), intent(out), optional :: slope(:)
+      real(dp), intent(in) :: t              !< of the homotopy
+      complex(dp), intent(in) :: point(:)    !< (2p) z
+      complex(dp), intent(out) :: a(:, :)    !< (2p, 2p) the Jacobian by z
+      complex(dp), intent(out) :: residual(:)   !< (2p)
+      complex(dp), intent(out), optional :: slope(:)   !< (2p) minus the derivative by t
       complex(dp) :: x(0:paths%p), y(0:paths%p)
       integer :: j, k
 

@@ -1,9 +1,9 @@
 !> The first instant: the assembly that is nearest to the initial guess, by the distance that card ASSEMBLY prints.
 !> Newton's method starts from the guess, block by block in solving order. Its assembly is kept if the bound of Newton
 !> and Kantorovich leaves no other one as near. Otherwise a search goes through the positions of the blocks, depth first
-!> and the nearest first. It leaves out what is further already than the nearest assembly so far.
+!> and the nearest first. It leaves out all that is further than the nearest assembly so far.
 !>
-!> All blocks are assembled, also those that no table needs: what is printed chooses no assembly. If a block has no
+!> All blocks are assembled, also those that no table needs: the rows on paper choose no assembly. If a block has no
 !> position with any of the blocks below it, the others are assembled without it.
 module initial_assembly
    use kinds, only: wp
@@ -20,57 +20,60 @@ module initial_assembly
    use block_assemblies, only: block_positions_t, find_positions
    implicit none
    private
-   public :: solve_first, places_of, squared_distances, is_nearer, alike
+   public :: solve_first, places_of, squared_distances, is_nearer, same_assembly_tolerance
 
-   !> More than any distance; its square is in range.
-   real(wp), parameter :: unbounded = 0.5_wp*sqrt(huge(1.0_wp))
+   !> The distance of no assembly: more than any distance, and its square is in range.
+   real(wp), parameter :: no_distance = 0.5_wp*sqrt(huge(1.0_wp))
 
    !> Positions of one block, nearest to the guess first.
    type :: candidates_t
       real(wp), allocatable :: x(:, :)                  !< (unknowns of the block, positions)
-      real(wp), allocatable :: distance(:)              !< (positions) see `squared_distances`
-      real(wp) :: beyond = unbounded                    !< the distance of positions not looked for, at least
+      real(wp), allocatable :: distance(:)              !< (positions) from the guess: see `squared_distances`
+      real(wp) :: beyond = no_distance                  !< the distance of positions not looked for, at least
       logical :: are_all = .true.                       !< no nearer one can be missing
-      integer :: chosen = 0                             !< the number of that in use; 0: none
+      integer :: chosen = 0                             !< the number of the position in use; 0: none
       type(convergence_t) :: ending                     !< how the search for a position ended
    end type candidates_t
 
-   !> All positions are enumerated of blocks of so many unknowns in each of both groups: eight in all, 70 paths.
-   integer, parameter :: max_group = 4
-   !> Places count as off by no more than this part of the characteristic length: a deck may give angles alone.
+   !> Unknowns of a group of which all positions are enumerated, at most: eight in both groups, 70 paths.
+   integer, parameter :: max_first_group = 4
+   !> Places count as off by no more than this part of the characteristic length: a deck may give only angles.
    real(wp), parameter :: far_place = 0.25_wp
-   !> Positions that differ by less (rad, characteristic lengths) are one; of singular ones half of all digits is known.
-   real(wp), parameter :: alike = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp))), singular_alike = sqrt(alike)
-   !> Distances of which one is this part of the other or more are about equal.
+   !> Positions that differ by less are one (rad, characteristic lengths).
+   real(wp), parameter :: same_assembly_tolerance = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
+   !> So are singular positions, of which half of all digits is known.
+   real(wp), parameter :: same_singular_assembly_tolerance = sqrt(same_assembly_tolerance)
+   !> Two distances are about equal if one is at least this part of the other.
    real(wp), parameter :: about_equal = 0.8_wp
-   !> The largest number of blocks assembled.
+   !> Blocks that are assembled at most.
    integer, parameter :: max_solves = 3000
    !> Distances that differ by less than this part are equal: rounding shall not choose.
-   real(wp), parameter :: rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
+   real(wp), parameter :: equal_distance_part = 64.0_wp*sqrt(epsilon(1.0_wp))
 
 contains
 
-   !> Solves for the first motion, at the drive values that `s` has. `convergence`: how that ended.
+   !> Solves for the first motion. If there is no assembly, the blocks that need no missing one are solved.
    subroutine solve_first(b, x, guess, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(inout) :: guess
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(out) :: convergence
+      type(state_t), intent(inout) :: s      !< with the values of the drives; then the first motion
+      type(convergence_t), intent(out) :: convergence   !< how the search ended
       type(candidates_t), dimension(size(b%list)) :: found, by_deck
       type(convergence_t) :: rest
       real(wp) :: implied(3, size(guess%links, 2)), turn(0:b%orientations), nearest
       logical :: is_complete, is_implied(size(implied, 2))
       integer :: places(2, size(implied, 2)), k, i
 
-      ! Whole turns that a drive asks for close nothing, and would have to be travelled.
+      ! Whole turns of a drive close nothing, and the links would have to travel them.
       s%u%value = guess%values
       do k = 1, size(b%needed)
          if (.not. b%list(b%needed(k))%direct) call add_turns(b, x, b%needed(k), s)
       end do
       guess%values(:) = s%u%value
       guess%choice = choice_t()
+
       call solve_blocks(b, x, b%needed, w, s, convergence)
       rest = nothing_gathered
       if (is_solved(convergence)) call solve_blocks(b, x, pack([(i, i=1, size(found))], &
@@ -85,15 +88,15 @@ contains
          do k = size(class), 1, -1
             if (class(k) > 0) turn(class(k)) = wrap_angle(guess%values(class(k)) + offset(k) - guess%links(3, k))
          end do
-         is_implied = abs(turn(class)) > alike
+         is_implied = abs(turn(class)) > same_assembly_tolerance
          implied = guess%links
          implied(3, :) = implied(3, :) + turn(class)
       end associate
       if (is_complete .and. .not. any(is_implied)) then
-         if (is_alone(b, x, s, places, implied)) return
+         if (is_surely_nearest(b, x, s, places, implied)) return
       end if
 
-      nearest = unbounded
+      nearest = no_distance
       if (any(is_implied)) call find_nearest(b, x, guess, w, s, places, guess%links, is_complete, by_deck, &
          nearest)
       call find_nearest(b, x, guess, w, s, places, implied, is_complete, found)
@@ -105,6 +108,7 @@ contains
                choice%is_close = one%distance(1) > about_equal*one%distance(2)
          end associate
       end do
+
       if (is_nearer(nearest, distance_of(x, s, places, guess%links))) &
          guess%choice(pack(places(1, :), is_implied))%is_incomplete = .true.
       k = findloc(found(b%needed)%chosen, 0, dim=1)
@@ -116,58 +120,62 @@ contains
       end if
    end subroutine solve_first
 
-   !> Whether no other assembly can be about as near to `goal` as that of `s`: this is at the guess itself, or
-   !> in the first block that differs an angle is off by the separation of its positions, at least.
-   logical function is_alone(b, x, s, places, goal) result(is)
+   !> Tells whether no other assembly can be about as near to the goal as the one in `s`. This is so if it is at the
+   !> guess itself, or if in the first block that differs an angle is off by the separation of its positions, at least.
+   logical function is_surely_nearest(b, x, s, places, goal) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      type(state_t), intent(in) :: s                    !< with an assembly
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
-      real(wp) :: square(2, size(goal, 2)), behind
+      real(wp) :: square(2, size(goal, 2)), later
       integer :: i
 
       square = squares_of(x, s, goal)
-      is = sqrt(sum(square)) <= alike
+      is = sqrt(sum(square)) <= same_assembly_tolerance
       if (is) return
-      behind = 0.0_wp
+      later = 0.0_wp
       is = .true.
       do i = size(b%list), 1, -1
-         behind = behind + sum(square, mask=places == i)
+         later = later + sum(square, mask=places == i)
          if (.not. b%list(i)%direct) is = about_equal*(separation_of(b, x, i, s) &
-            - sqrt(sum(square(1, :), mask=places(1, :) == i))) >= sqrt(behind)
+            - sqrt(sum(square(1, :), mask=places(1, :) == i))) >= sqrt(later)
          if (.not. is) return
       end do
-   end function is_alone
+   end function is_surely_nearest
 
-   !> Puts the assembly that is nearest to `goal` into the values of `s`; if there is none, the positions of the blocks
-   !> that have one.
+   !> Puts the assembly that is nearest to the goal into the values of `s`. If there is none, it puts the positions of
+   !> the blocks that have one.
    subroutine find_nearest(b, x, guess, w, s, places, goal, is_complete, found, distance)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(inout) :: guess
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       logical, intent(in) :: is_complete                !< `s` has an assembly: further ones do not count
       type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions
-      real(wp), intent(out), optional :: distance       !< of the assembly; `unbounded`: there is none
+      real(wp), intent(out), optional :: distance       !< of the assembly, as `squared_distances`; or `no_distance`
       type(candidates_t) :: nearest(size(found))        !< with the nearest assembly so far
-      real(wp) :: values(0:b%unknowns)           !< of the nearest assembly
-      real(wp) :: limit                                 !< the distance from which on assemblies do not count
+      real(wp) :: values(0:b%unknowns)                  !< of the nearest assembly
+      real(wp) :: limit                                 !< assemblies at this distance or more do not count
       real(wp) :: spent(0:size(found))                  !< the square of the distance of all blocks up to this one
       integer :: latest(size(found))                    !< the last block below that iterates; 0: none
       integer :: seen(size(found))                      !< the number of the choice after which its positions were found
-      integer, dimension(0:b%unknowns) :: changed, open, last !< number of the choice; 1: not found; see `latest`
-      logical :: is_given_up(size(found)), is_found     !< no other positions help it; an assembly is found
+      integer, dimension(0:b%unknowns) :: changed       !< the number of the choice
+      integer, dimension(0:b%unknowns) :: open          !< 1: not found
+      integer, dimension(0:b%unknowns) :: last          !< as `latest`, for each unknown
+      logical :: is_given_up(size(found))               !< no other positions help it
+      logical :: is_found                               !< an assembly is found
       integer, allocatable :: below(:)
       integer :: i, k, solves, choices
 
       values = s%u%value
-      limit = unbounded
+      limit = no_distance
       if (is_complete) limit = distance_of(x, s, places, goal)
-      if (is_complete) limit = limit + alike*max(1.0_wp, limit)
+      if (is_complete) limit = limit + same_assembly_tolerance*max(1.0_wp, limit)
+
       last = 0
       do i = 1, size(found)
          associate (own => own_unknowns(b, i))
@@ -186,6 +194,7 @@ contains
       choices = 0
       solves = 0
       i = 1
+
       do
          if (i > size(found)) then
             ! An assembly, or all that can be assembled.
@@ -197,6 +206,7 @@ contains
             i = last_promising([(k, k=1, size(found))])
             if (i == 0) exit
             found(i + 1:)%chosen = 0
+
          else
             associate (own => own_unknowns(b, i))
                open(own) = 0
@@ -212,13 +222,13 @@ contains
                      cycle
                   end if
 
-                  ! Back to the last block that has another position, of those below where that alone helps.
+                  ! Back to the last block that has another position; of the blocks below, if only these help.
                   below = [(k, k=1, i)]
-                  if (size(found(i)%distance) == 0 .or. .not. limit < unbounded) below = blocks_below(b, i)
+                  if (size(found(i)%distance) == 0 .or. .not. limit < no_distance) below = blocks_below(b, i)
                   below = below(:size(below) - 1)
                   k = 0
                   if (solves < max_solves .and. .not. is_given_up(i)) k = last_promising(below)
-                  if (k == 0 .and. limit < unbounded) exit
+                  if (k == 0 .and. limit < no_distance) exit
                   if (k > 0 .or. (.not. is_given_up(i) .and. any(found(below)%chosen > 1))) then
                      is_given_up(i) = k == 0
                      i = max(1, k)
@@ -226,6 +236,7 @@ contains
                      cycle
                   end if
                end if
+
                found(i)%chosen = 0
                spent(i) = spent(i - 1)
                open(own) = 1
@@ -234,17 +245,18 @@ contains
             end associate
          end if
       end do
+
       if (is_found) found = nearest
       if (.not. is_found) found%chosen = 1
       do i = 1, size(found)
          if (solves >= max_solves .and. size(found(i)%distance) > 1) found(i)%are_all = .false.
          call set_values(b, i, values(own_unknowns(b, i)), s)
       end do
-      if (present(distance)) distance = merge(limit, unbounded, is_found .and. all(found%chosen > 0))
+      if (present(distance)) distance = merge(limit, no_distance, is_found .and. all(found%chosen > 0))
 
    contains
 
-      !> Finds the positions of block `i`, unless those that are known still hold.
+      !> Finds the positions of the block, unless those that are known still hold.
       subroutine look_for_positions()
          real(wp) :: budget
 
@@ -255,10 +267,10 @@ contains
          solves = solves + 1
       end subroutine look_for_positions
 
-      !> The last of the blocks of `list` that has another position, with which an assembly can be nearer than the
-      !> limit; 0: none. Later blocks that build on none from this one on are as near as they were, at best.
+      !> Finds the last block of a list that has another position, with which an assembly can be nearer than the limit;
+      !> 0: none has. Later blocks that do not build on this one or a later one are as near as they were, at best.
       integer function last_promising(list) result(k)
-         integer, intent(in) :: list(:)
+         integer, intent(in) :: list(:)      !< (any number) numbers of blocks, in increasing order
          real(wp) :: square
          integer :: m, j
 
@@ -276,17 +288,19 @@ contains
       end function last_promising
    end subroutine find_nearest
 
-   !> Finds the positions `found` of block `i`, for the values that `s` has of earlier blocks. Others than that of
-   !> Newton's method are not looked for if all of them are further from `goal` than the distance `budget`. `places`,
-   !> `goal`: see `find_nearest`. If there is no position, found%ending has the closure error that remains.
+   !> Finds the positions of a block, for given values of earlier blocks. First comes the position of Newton's method.
+   !> If all others are further from the goal than the budget, they are not looked for. If there is no position,
+   !> found%ending has the closure error that remains.
    subroutine find_candidates(b, x, guess, w, s, i, places, goal, budget, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(inout) :: guess
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      integer, intent(in) :: i, places(:, :)
-      real(wp), intent(in) :: goal(:, :), budget
+      type(state_t), intent(inout) :: s                 !< with the values of earlier blocks; the block's own change
+      integer, intent(in) :: i                          !< the number of the block
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
+      real(wp), intent(in) :: budget                    !< a distance, as `squared_distances`
       type(candidates_t), intent(out) :: found
       type(block_positions_t) :: every
       real(wp), dimension(b%list(i)%shape%n) :: start, least
@@ -304,17 +318,18 @@ contains
       if (size(found%distance) > 0) then
          found%beyond = separation_of(b, x, i, s) - angles
          if (about_equal*found%beyond >= budget) return
-         found%beyond = unbounded
+         found%beyond = no_distance
       end if
 
-      call find_positions(b, x, i, w, s, max_group, guess%starts(i)%paths, every)
+      call find_positions(b, x, i, w, s, max_first_group, guess%starts(i)%paths, every)
       do k = 1, size(every%sign_of)
          call record_position(every%x(:, k), every%sign_of(k) == 0)
       end do
-      ! There is one more if that of Newton's method is none of them.
+      ! There is one more if Newton's method has found none of them.
       found%are_all = .not. (every%moves .or. every%is_wide .or. every%failed > 0) &
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
+
       call set_values(b, i, start, s)
       call levenberg_marquardt_solve(b, x, i, s)
       least = values_of(b, i, s)
@@ -332,13 +347,13 @@ contains
 
    contains
 
-      !> Puts the position `unknowns` in its place among those found, unless it is there already. Its angles are brought
-      !> within half a turn of the guess; drives between two angles then add whole turns. Of two that are as near, that
-      !> with the greater first value: rounding shall not choose. A position with a cylinder whose length is not above 0
-      !> is none.
+      !> Puts a position in its place among those found, unless it is there already. Its angles are brought within half
+      !> a turn of the guess; drives between two angles then add whole turns. Of two positions that are as near, the one
+      !> with the greater first value comes first: rounding shall not choose. A position with a cylinder whose length is
+      !> not above 0 is none.
       subroutine record_position(unknowns, is_singular)
-         real(wp), intent(in) :: unknowns(:)
-         logical, intent(in) :: is_singular
+         real(wp), intent(in) :: unknowns(:)   !< (unknowns of the block) rad or unit of the loop
+         logical, intent(in) :: is_singular    !< the position is singular
          real(wp) :: y(size(unknowns)), square(2, size(places, 2)), distance
          integer :: k, first
 
@@ -346,10 +361,11 @@ contains
             do k = 1, size(found%distance)
                y = found%x(:, k)
                if (all(merge(abs(wrap_angle(unknowns - y)), abs(unknowns - y)/max(1.0_wp, abs(unknowns)), is_angle) &
-                  <= merge(singular_alike, alike, is_singular))) return
+                  <= merge(same_singular_assembly_tolerance, same_assembly_tolerance, is_singular))) return
             end do
             y = merge(start + wrap_angle(unknowns - start), unknowns, is_angle)
          end associate
+
          call set_values(b, i, y, s)
          call add_turns(b, x, i, s)
          if (without_length(x, s, cylinders_here) > 0) return
@@ -357,10 +373,11 @@ contains
          square = squares_of(x, s, goal)
          angles = sqrt(sum(square(1, :), mask=places(1, :) == i))
          distance = sqrt(sum(square, mask=places == i))
+
          do k = 1, size(found%distance)
             if (is_nearer(distance, found%distance(k))) exit
             if (is_nearer(found%distance(k), distance)) cycle
-            first = findloc(abs(y - found%x(:, k)) > alike, .true., dim=1)
+            first = findloc(abs(y - found%x(:, k)) > same_assembly_tolerance, .true., dim=1)
             if (first == 0) cycle
             if (y(first) > found%x(first, k)) exit
          end do
@@ -369,21 +386,20 @@ contains
       end subroutine record_position
    end subroutine find_candidates
 
-   !> (cylinders) The block after which the length of each cylinder is known; 0: ground alone.
+   !> Gives the block (cylinders) after which the length of each cylinder is known; 0: only ground moves it.
    pure function last_places(x, places) result(last)
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: places(:, :)               !< (2, links) see `places_of`
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
       integer :: last(size(x%cylinders)), k
 
       last = [(maxval(places(:, [x%cylinders(k)%i, x%cylinders(k)%j])), k=1, size(last))]
    end function last_places
 
-   !> Finds the pair of the first cylinder in a list of their numbers that has no length above 0 at the values of `s`;
-   !> 0: all have.
+   !> Finds the pair of the first cylinder in a list that has no length above 0; 0: all have.
    function without_length(x, s, list) result(pair)
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      integer, intent(in) :: list(:)
+      integer, intent(in) :: list(:)                    !< (any number) numbers of cylinders
       integer :: pair
       type(motion_t) :: q
       logical :: finite
@@ -402,7 +418,7 @@ contains
       end do
    end function without_length
 
-   !> (2, links) The block that finds the angle of each link, and the block after which its place is known; 0:
+   !> Gives the block that finds the angle of each link, and the block after which its place is known (2, links); 0:
    !> none.
    pure function places_of(b, x) result(places)
       type(blocks_t), intent(in) :: b
@@ -422,19 +438,19 @@ contains
       end do
    end function places_of
 
-   !> Whether the distance `one` is less than the distance `other` by more than rounding, which leaves half of all
-   !> digits of positions that are about singular.
+   !> Tells whether a distance is less than another one by more than rounding. Rounding leaves half of all digits of
+   !> positions that are about singular.
    elemental logical function is_nearer(one, other) result(is)
-      real(wp), intent(in) :: one, other
+      real(wp), intent(in) :: one, other                !< distances, as `squared_distances`
 
-      is = one < other - rounding*max(other, far_place)
+      is = one < other - equal_distance_part*max(other, far_place)
    end function is_nearer
 
-   !> (2, links) See `squared_distances`: how far the links are from `goal` (3, links), at the values of `s`.
+   !> Measures how far the links are from the goal (2, links): the squares of `squared_distances`.
    function squares_of(x, s, goal) result(square)
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      real(wp), intent(in) :: goal(:, :)
+      real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       real(wp) :: square(2, size(goal, 2))
       type(motion_t) :: q
       logical :: finite
@@ -444,33 +460,36 @@ contains
       square = squared_distances(q%position, goal, x%span)
    end function squares_of
 
-   !> The distance from `goal` (3, links) of the assembly that `s` has, of all links that a block moves: `places`.
+   !> Gives the distance of the assembly in `s` from the goal, over all links that a block moves.
    real(wp) function distance_of(x, s, places, goal) result(distance)
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      integer, intent(in) :: places(:, :)
-      real(wp), intent(in) :: goal(:, :)
+      integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
+      real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
 
       distance = sqrt(sum(squares_of(x, s, goal), mask=places > 0))
    end function distance_of
 
-   !> (2, links) How far each link at `position` (3, links) is from that of `guess` (3, links): the square of the angle,
-   !> in rad, and of the distance, in lengths of `span`.
+   !> Measures how far each link is from its guess (2, links): the square of the angle, in rad, and of the distance, in
+   !> lengths of `span`.
    pure function squared_distances(position, guess, span) result(square)
-      real(wp), intent(in) :: position(:, :), guess(:, :), span
+      real(wp), intent(in) :: position(:, :)            !< (3, links) x, y, from the origin of `guess`, and rad
+      real(wp), intent(in) :: guess(:, :)               !< (3, links) x, y and rad
+      real(wp), intent(in) :: span                      !< characteristic length, in the unit of x and y
       real(wp) :: square(2, size(position, 2))
 
       square(1, :) = wrap_angle(position(3, :) - guess(3, :))**2
       square(2, :) = min(sum(((position(:2, :) - guess(:2, :))/span)**2, dim=1), far_place**2)
    end function squared_distances
 
-   !> How far the angles of another position of block `i` are from those of the position in `s`: one of
-   !> them by so many rad, at least, with the Jacobian J and its Lipschitz constant L by 2/(|J^-1| L). Of more than two
-   !> unknowns |J^-1| may be estimated, too small by a part of their number; the slides make L larger.
+   !> Bounds from below how far another position of a block is from the one in `s`: one of its angles is off by so many
+   !> rad. With the Jacobian J and its Lipschitz constant L the bound is 2/(|J^-1| L), by Newton and Kantorovich; 0 at a
+   !> singular position. Of more than two unknowns |J^-1| may be estimated, too small by a part of their number. The
+   !> slides make L larger.
    pure real(wp) function separation_of(b, x, i, s) result(separation)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i                          !< the number of the block
       type(state_t), intent(in) :: s
       real(wp) :: bound
       integer :: m, k

@@ -11,7 +11,7 @@ module assemblies
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_drive_values
    use following, only: following_t, begin_following, solve_at
-   use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => alike
+   use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => same_assembly_tolerance
    use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
    use link_motion, only: move_links
