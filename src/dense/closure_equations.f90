@@ -1,8 +1,8 @@
 !> The closure equations (14) of a mechanism: residual, Jacobian and acceleration remainder.
 !>
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
-!> paper's own iteration: where the configuration is frozen, its slopes are the coefficients of (16) and the matrix is
-!> A of (20). The one file that knows the kinds of pairs and of drives.
+!> paper's own iteration: if the configuration is frozen, its slopes are the coefficients of (16) and the matrix is
+!> A of (20).
 !>
 !> Revolute pair of links i and j: the joint is point P of link i and point Q of link j. With the body vectors
 !> u = R(phi_i) (xi_P, eta_P) and w = R(phi_j) (xi_Q, eta_Q) from each link's own origin:
@@ -17,12 +17,12 @@
 !> With d = P - Q:
 !>    d . n = h                 (9), in which the print has sin phi_j for one sin phi_i; (6) and (16) are right
 !>    phi_j - phi_i = beta      (10)
-!> and the slide of (3), (4) is x_w = -d . e. Both are projections d . f on a vector f that turns with link i: the pair
-!> has f = n, the SLIDE drive f = -e.
+!> and the slide of (3), (4) is x_w = -d . e. Both are projections d . f on a vector f that turns with link i: f = n for
+!> the pair, f = -e for the SLIDE drive.
 !>    (d . f)'  = d' . f + phi_i' d . f',                f' = (-f_y, f_x)
 !>    (d . f)'' = d'' . f + phi_i'' d . f' + 2 phi_i' d' . f' - phi_i'^2 d . f
-!> where d' = v + slope_u phi_i' and so on. Rejected: the closure with the slide as a further unknown, (3) and (4);
-!> it costs one equation and one unknown a pair and prints nothing that the projection does not.
+!> with d' = v + slope_u phi_i' and so on. Rejected: the closure with the slide as a further unknown, (3) and (4);
+!> it costs one equation and one unknown a pair, and gives no row that the projection does not give.
 module closure_equations
    use kinds, only: wp
    use plane_vectors, only: pi, rotated, quarter_turn, cross
@@ -48,8 +48,8 @@ contains
             d = closure_error(system, configuration, k)
             if (.not. has_guide(pair%kind)) cycle
             d = [dot_product(d, normal(system, configuration, k)) - pair%offset, &
-               configuration%q(3, system%link_of(pair%point_j)) - configuration%q(3, &
-                  system%link_of(pair%point_i)) - pair%beta]
+               configuration%q(3, system%link_of(pair%point_j)) &
+               - configuration%q(3, system%link_of(pair%point_i)) - pair%beta]
          end associate
       end do
 
@@ -81,14 +81,14 @@ contains
 
       a = 0.0_wp
       do k = 1, size(system%pairs)
-         associate (u => configuration%slope(:, system%pairs(k)%point_i), w => configuration%slope(:, &
-            system%pairs(k)%point_j))
+         associate (u => configuration%slope(:, system%pairs(k)%point_i), &
+            w => configuration%slope(:, system%pairs(k)%point_j))
             if (.not. has_guide(system%pairs(k)%kind)) then
                call place_both(system, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
                call place_both(system, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
             else
-               call place_both(system, a, 2*k - 1, k, projection_row(system, configuration, k, normal(system, &
-                  configuration, k), normal_angle(system, configuration, k), &
+               call place_both(system, a, 2*k - 1, k, projection_row(system, configuration, k, &
+                  normal(system, configuration, k), normal_angle(system, configuration, k), &
                   configuration%guide_zeros(:, k)))
                call place_both(system, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
             end if
@@ -112,10 +112,9 @@ contains
                call place(system, a, row, subject, -coefficients)
 
             case (drive_slide)
-               call place_both(system, a, row, subject, projection_row(system, configuration, subject, along(system, &
-                  configuration, subject), &
-                  normal_angle(system, configuration, subject) + pi/2.0_wp, configuration%guide_zeros([2, 1], &
-                     subject) + pi/2.0_wp))
+               call place_both(system, a, row, subject, projection_row(system, configuration, subject, &
+                  along(system, configuration, subject), normal_angle(system, configuration, subject) + pi/2.0_wp, &
+                  configuration%guide_zeros([2, 1], subject) + pi/2.0_wp))
             end select
          end associate
       end do
@@ -142,8 +141,8 @@ contains
             kind => system%drives(k)%kind)
             if (any(kind == [drive_x, drive_y])) &
                row = -rates(3, system%link_of(subject))**2*configuration%body_vector(axis_of(kind), subject)
-            if (kind == drive_slide) row = projection_remainder(system, configuration, rates, subject, along(system, &
-               configuration, subject))
+            if (kind == drive_slide) row = projection_remainder(system, configuration, rates, subject, &
+               along(system, configuration, subject))
          end associate
       end do
    end subroutine remainder
@@ -250,8 +249,8 @@ contains
          g = [direction(1), 0.0_wp, d(2)*secant(2)]
          if (abs(direction(2)) > abs(direction(1))) g = [0.0_wp, direction(2), d(1)*secant(1)]
       end if
-      associate (u => configuration%slope(:, system%pairs(k)%point_i), w => configuration%slope(:, &
-         system%pairs(k)%point_j))
+      associate (u => configuration%slope(:, system%pairs(k)%point_i), &
+         w => configuration%slope(:, system%pairs(k)%point_j))
          row = [g(1), g(2), g(3) + dot_product(g(:2), u), -g(1), -g(2), -dot_product(g(:2), w)]
       end associate
    end function projection_row
@@ -271,8 +270,8 @@ contains
             w => configuration%body_vector(:, b))
             velocity = rates(:2, i) - rates(:2, j) + rates(3, i)*quarter_turn(u) - rates(3, j)*quarter_turn(w)
             gamma = dot_product(turning_part(system, configuration, rates, k), direction) &
-               + rates(3, i)*(2.0_wp*cross(direction, velocity) - rates(3, i)*dot_product(closure_error(system, &
-                  configuration, k), direction))
+               + rates(3, i)*(2.0_wp*cross(direction, velocity) &
+               - rates(3, i)*dot_product(closure_error(system, configuration, k), direction))
          end associate
       end associate
    end function projection_remainder
@@ -287,8 +286,8 @@ contains
       real(wp) :: gamma(2)
 
       associate (a => system%pairs(k)%point_i, b => system%pairs(k)%point_j)
-         gamma = rates(3, system%link_of(b))**2*configuration%body_vector(:, b) - rates(3, &
-            system%link_of(a))**2*configuration%body_vector(:, a)
+         gamma = rates(3, system%link_of(b))**2*configuration%body_vector(:, b) &
+            - rates(3, system%link_of(a))**2*configuration%body_vector(:, a)
       end associate
    end function turning_part
 end module closure_equations

@@ -1,7 +1,7 @@
 !> A mechanism made ready for its closure equations, and a position of all its links.
 !>
 !> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
-!> characteristic length, which loses no digit and makes all that follows the same in any unit.
+!> characteristic length. This loses no digit, and makes the results the same in any unit.
 !>
 !> A configuration can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi.
 !> Here h, the angle that multiplies them, is counted from the nearest zero of the cosine or sine itself, for each row
@@ -36,10 +36,10 @@ module configuration
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
       real(wp), allocatable :: body_vector(:, :)  !< (2, points) from the link's origin to the point
-      real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of that by phi, or its frozen form
+      real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the body vector by phi, or frozen
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
-      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows; SLIDE rows are a quarter turn on
+      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the rows of slots; rows of SLIDE: a quarter turn on
    end type configuration_t
 
 contains
@@ -97,8 +97,8 @@ contains
       do i = 1, size(system%link_of)
          configuration%body_vector(:, i) = rotated(system%offset(:, i), configuration%direction(:, system%link_of(i)))
          if (configuration%frozen) then
-            configuration%slope(:, i) = norm2(system%offset(:, i))*secants(body_vector_angle(system, configuration, &
-               i), configuration%zeros(:, i))
+            configuration%slope(:, i) = norm2(system%offset(:, i)) &
+               *secants(body_vector_angle(system, configuration, i), configuration%zeros(:, i))
          else
             configuration%slope(:, i) = quarter_turn(configuration%body_vector(:, i))
          end if

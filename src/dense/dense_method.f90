@@ -1,10 +1,10 @@
-!> METHOD DENSE and METHOD MATRIX: one instant by all closure equations at once, x, y, phi of every link its unknowns:
-!> the form of the paper, by Newton's method or by the iteration of 1987. Positions, velocities and accelerations are
-!> solutions of the full systems (16), (21) and (22). The blocks tell where the iteration begins, and if the position
-!> where it ends is theirs; no number of theirs is in its rows.
+!> METHOD DENSE and METHOD MATRIX: one instant by all closure equations at once, with x, y, phi of every link as
+!> unknowns. This is the form of the paper, by Newton's method or by the iteration of 1987. Positions, velocities and
+!> accelerations are solutions of the full systems (16), (21) and (22). The blocks give the start of the iteration, and
+!> tell whether its end is their position; no number of theirs is in its rows.
 !>
-!> An iteration that fails, or ends elsewhere, begins again eight times nearer: so much nearer is the prediction of half
-!> a step. Where the Jacobian has no inverse, links that drives alone move have the rates of these.
+!> An iteration that fails, or ends elsewhere, begins again eight times nearer: the prediction of half a step is so much
+!> nearer. If the Jacobian has no inverse, links that only drives move have the rates of the drives.
 module dense_method
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_matrix, own_predictor, with_all_links
@@ -25,12 +25,13 @@ module dense_method
    public :: dense_t, make_dense, for_blocks, solve_all_links
 
    !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
-   real(wp), parameter :: certain = 0.5_wp
-   !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
-   real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
+   real(wp), parameter :: certain_part = 0.5_wp
+   !> A position without an inverse Jacobian is known to the root of eps; a root this near, in rad or characteristic
+   !> lengths, is that position.
+   real(wp), parameter :: same_singular_position = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
    !> Starts that are tried, each so many times nearer than the one before.
    integer, parameter :: max_starts = 4
-   real(wp), parameter :: nearer = 8.0_wp
+   real(wp), parameter :: nearer_each_start = 8.0_wp
    !> The predictor of the paper: the state before, with its velocities and accelerations.
    integer, parameter :: order_of_paper = 2
 
@@ -41,16 +42,16 @@ module dense_method
       integer :: order = order_of_paper           !< of the predictor, 0 to 2
       real(wp) :: tolerance = 0.0_wp              !< relative; 0: the limit of rounding
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
-      type(configuration_t) :: configuration                        !< the position that is searched for
+      type(configuration_t) :: configuration      !< the position that is searched for
       type(factors_t) :: factors
    end type dense_t
 
 contains
 
-   !> Ready for the instants of `m`, whose equations are as many as its unknowns.
+   !> Makes the closure equations ready for the instants of a mechanism.
    subroutine make_dense(dense, m)
       type(dense_t), intent(out) :: dense
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m          !< with as many equations as unknowns
 
       dense%system = new_system(m)
       dense%method = m%method
@@ -61,7 +62,7 @@ contains
       allocate (dense%drive_values(3, size(m%drives)))
    end subroutine make_dense
 
-   !> Makes of `m` what the blocks solve beside it: all its links, to the limit of rounding.
+   !> Makes the mechanism that the blocks solve for such a method: all its links, to the limit of rounding.
    pure function for_blocks(m) result(own)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t) :: own
@@ -71,19 +72,19 @@ contains
       own%tolerance = 0.0_wp
    end function for_blocks
 
-   !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks `b` have found one,
-   !> `s`, after the motions `history`. `convergence`: how the last try ended, or the first if none found the position
-   !> of the blocks; iterations are those of all tries. convergence%singular: the position has no velocities but of
-   !> links that drives alone move.
+   !> Solves for the motion of all links at a time at which the blocks have found one. If no try finds the position of
+   !> the blocks, the motion is not complete.
    subroutine solve_all_links(dense, b, x, path, estimated, history, s, found, convergence)
       type(dense_t), intent(inout) :: dense
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) see `recall`
-      type(history_t), intent(in) :: history
-      type(state_t), intent(in) :: s
-      type(motion_t), intent(inout) :: found
+      real(wp), intent(in) :: estimated(0:)       !< (0:unknowns) of the deck, rad or unit of the loop
+      type(history_t), intent(in) :: history      !< the motions before
+      type(state_t), intent(in) :: s              !< the motion that the blocks have found
+      type(motion_t), intent(inout) :: found      !< at the time found%t, in the deck's units
+      !> How the last try ended; the first one if all failed. Iterations are those of all tries. If it is singular, only
+      !> links that drives alone move have velocities.
       type(convergence_t), intent(out) :: convergence
       type(convergence_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
@@ -93,14 +94,15 @@ contains
       logical :: finite
       integer :: k, iterations
 
+
       iterations = 0
       call find_drive_values(dense%system, path, found%t, dense%drive_values)
       call move_links(x%chain, x%chain%wanted, s, found, finite)
       there = found%position
       there(:2, :) = there(:2, :)/dense%system%length
 
-      ! It begins at the position that the blocks follow, corrected through its velocities and accelerations; at first
-      ! at the deck's estimate.
+      ! It begins at the position that the blocks follow, predicted with its velocities and accelerations; at first at
+      ! the deck's estimate.
       latest = s
       call recall(b, x, path, history, estimated, latest)
       before = new_motion(size(there, 2))
@@ -113,12 +115,10 @@ contains
       do k = 1, max_starts
          dense%configuration%q = start
          call solve_position(dense%system, dense%drive_values(1, :), dense%tolerance, dense%method == method_matrix, &
-            dense%configuration, &
-            dense%factors, convergence)
+            dense%configuration, dense%factors, convergence)
          if (is_solved(convergence) .and. .not. convergence%singular) then
-            call pivot_range(shape_t(dense%system%n, dense%system%n), dense%factors%a, dense%factors%pivots, least, &
-               largest, &
-               convergence%determinant)
+            call pivot_range(shape_t(dense%system%n, dense%system%n), dense%factors%a, dense%factors%pivots, &
+               least, largest, convergence%determinant)
             convergence%min_pivot = least/max(largest, least)
          end if
          iterations = iterations + convergence%iterations
@@ -127,7 +127,7 @@ contains
          end if
          if (is_solved(convergence)) exit
          if (k == 1) first = convergence
-         start = there + (start - there)/nearer
+         start = there + (start - there)/nearer_each_start
       end do
       if (.not. is_solved(convergence)) convergence = first
       convergence%iterations = iterations
@@ -138,15 +138,15 @@ contains
       if (.not. convergence%singular) then
          ! J v = f' (21), with the dependence of A' on the unknown velocities moved to the left, and
          ! J a = f'' - gamma(q, v) (22), gamma the acceleration remainder; f' and f'' are zero in the rows of pairs.
-         associate (all => dense%system, first => dense%system%n - size(dense%drive_values, 2) + 1)
+         associate (all => dense%system, first_drive => dense%system%n - size(dense%drive_values, 2) + 1)
             v = 0.0_wp
-            v(first:) = dense%drive_values(2, :)
+            v(first_drive:) = dense%drive_values(2, :)
             call solve_factored(dense%factors, v)
             found%velocity = 0.0_wp
             call add_to_links(all, v, found%velocity)
             call remainder(all, dense%configuration, found%velocity, v)
             v = -v
-            v(first:) = v(first:) + dense%drive_values(3, :)
+            v(first_drive:) = v(first_drive:) + dense%drive_values(3, :)
             call solve_factored(dense%factors, v)
             found%acceleration = 0.0_wp
             call add_to_links(all, v, found%acceleration)
@@ -157,14 +157,14 @@ contains
       found%position(:2, :) = dense%system%length*found%position(:2, :)
    end subroutine solve_all_links
 
-   !> The position of `dense` is the one that the blocks have found, `s`, where all links are `there` (3, links), in the
-   !> unit of the system: no other is as near to that (Newton and Kantorovich).
+   !> Tells whether the position of the dense method is the one that the blocks have found: no other root is as near to
+   !> it (Newton and Kantorovich).
    pure logical function is_found_by_blocks(dense, b, x, s, there) result(is)
       type(dense_t), intent(in) :: dense
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: there(:, :)
+      type(state_t), intent(in) :: s              !< that the blocks have found
+      real(wp), intent(in) :: there(:, :)         !< (3, links) its x, y, phi, in the system's unit of length and rad
       real(wp) :: off(3, size(there, 2)), largest
       integer :: k
 
@@ -175,9 +175,9 @@ contains
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
             if (s%is_singular(i)) then
-               is = is .and. largest <= same_place
+               is = is .and. largest <= same_singular_position
             else
-               is = is .and. largest*x%blocks(i)%lipschitz*s%jacobian(i)%inverse <= certain
+               is = is .and. largest*x%blocks(i)%lipschitz*s%jacobian(i)%inverse <= certain_part
             end if
          end associate
       end do

@@ -18,22 +18,22 @@ module position_iteration
    use linear_solver, only: factors_t, factor, solve
    use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged
    use block_solver, only: rounding_level, angle_limit
-   use predictor, only: largest_change
+   use predictor, only: largest_predicted_change
    use configuration, only: system_t, configuration_t, set_configuration, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    implicit none
    private
    public :: solve_position
 
-   !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding: it has diverged.
-   real(wp), parameter :: max_angle_change = largest_change
+   !> An iteration that goes further than this, in rad, wanders, and its end is up to rounding: it has diverged.
+   real(wp), parameter :: max_angle_change = largest_predicted_change
    !> Near a singular position Newton's method only halves the step: 53 bits take 53 iterations.
    integer, parameter :: newton_iterations = 60
    !> At a rate of 0.9 a bit takes 6.6 iterations, and the rounding level of 53 bits 340.
    integer, parameter :: matrix_iterations = nint(7.55*digits(1.0_wp))
    !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
    real(wp), parameter :: dense_step_tolerance = 16.0_wp*epsilon(1.0_wp)
-   !> Even where the Jacobian has no inverse a residual at the rounding level leaves no more to correct than this.
+   !> Even if the Jacobian has no inverse, a residual at the rounding level leaves no more to correct than this.
    real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> An iteration does not return from a step of this size; it is well below overflow.
    real(wp), parameter :: max_correction = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
@@ -85,8 +85,8 @@ contains
          stays = all(abs(r) <= max_correction)
          if (stays) then
             call add_to_links(system, -r, configuration%q)
-            stays = all(abs(configuration%q(3, :)) <= angle_limit) .and. all(abs(configuration%q(3, :) - start) <= &
-               max_angle_change)
+            stays = all(abs(configuration%q(3, :)) <= angle_limit) .and. &
+               all(abs(configuration%q(3, :) - start) <= max_angle_change)
          end if
          if (.not. stays) then
             convergence%ended = ended_diverged
@@ -94,8 +94,8 @@ contains
          end if
 
          call set_configuration(system, configuration)
-         if (convergence%residual <= max(rounding_level, tolerance) .and. convergence%step <= &
-            max(dense_step_tolerance, tolerance)) then
+         if (convergence%residual <= max(rounding_level, tolerance) .and. &
+            convergence%step <= max(dense_step_tolerance, tolerance)) then
             convergence%ended = ended_converged
             exit
          end if

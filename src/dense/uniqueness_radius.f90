@@ -15,7 +15,7 @@
 !> Along one direction t J^-1 J changes by D a unit of length: D is the largest of the sums over the coordinates e_m of
 !> |g . J^-1 J'[t] e_m|. Forces at the joints of one link cancel in it: D is K |t| at most, and often a tenth of it.
 !>
-!> W is |x_i - x_j| where that is above 1: then K does not grow as a slide goes to infinity.
+!> W is the larger of |x_i - x_j| and 1: then K does not grow as a slide goes to infinity.
 module uniqueness_radius
    use kinds, only: wp
    use mechanism, only: has_guide, drive_x, drive_y, drive_slide
@@ -95,8 +95,8 @@ contains
       type(configuration_t), intent(in) :: configuration
       integer, intent(in) :: k   !< the number of the pair
 
-      slide_length = norm2(configuration%q(:2, system%link_of(system%pairs(k)%point_i)) - configuration%q(:2, &
-         system%link_of(system%pairs(k)%point_j)))
+      slide_length = norm2(configuration%q(:2, system%link_of(system%pairs(k)%point_i)) &
+         - configuration%q(:2, system%link_of(system%pairs(k)%point_j)))
    end function slide_length
 
    !> Gives the largest coordinate of the difference of two positions, in rad or in W.
@@ -135,8 +135,8 @@ contains
       end associate
    end function forms_by_inverse
 
-   !> Bounds the part of the rows beyond their linear part at a configuration: L_k of above (rows). The two rows of a
-   !> revolute pair have one bound, that of their vector.
+   !> Bounds the part of the rows beyond their linear part at a configuration: L_k of the head of this file (rows). The
+   !> two rows of a revolute pair have one bound, for their vector.
    pure function jacobian_lipschitz(system, coordinates, configuration) result(bound)
       type(system_t), intent(in) :: system
       type(coordinates_t), intent(in) :: coordinates
@@ -145,12 +145,12 @@ contains
       real(wp) :: body(size(system%link_of))
       integer :: k, row
 
-      ! The length of the body vector of each point; 0 where the link does not turn.
+      ! The length of the body vector of each point; 0 if the link does not turn.
       body = merge(norm2(system%offset, dim=1), 0.0_wp, coordinates%angle_of(system%link_of) > 0)
       bound = 0.0_wp
       do k = 1, size(system%pairs)
-         associate (i => system%pairs(k)%point_i, j => system%pairs(k)%point_j, slide => slide_length(system, &
-            configuration, k))
+         associate (i => system%pairs(k)%point_i, j => system%pairs(k)%point_j, &
+            slide => slide_length(system, configuration, k))
             if (.not. has_guide(system%pairs(k)%kind)) then
                bound(2*k - 1:2*k) = body(i) + body(j)
             else if (coordinates%angle_of(system%link_of(i)) > 0) then
