@@ -1,11 +1,11 @@
-"""KINMAT in Python: kinematics of planar linkages, by its library libkinmat.so.2.
+"""KINMAT in Python: kinematics of planar linkages, with the library libkinmat.so.2.
 
    names, rows = kinmat.run(text)     the table of a deck: the names of its columns, and a row for each instant
-   k = kinmat.Kinmat(text)            one set of a deck; k.columns, k.instants
-   row = k.advance(t)                 its row at a time; k.flagged: a number may not exist, and is NaN
+   k = kinmat.Kinmat(text)            one set of a deck, with k.columns and k.instants
+   row = k.advance(t)                 the row at the time t; a number that does not exist is NaN, see k.flagged
 
-Rows are numpy arrays if numpy is installed, otherwise lists. Rejected has the message of the command. LIBKINMAT names
-the library, if it is neither installed nor near this file."""
+Rows are numpy arrays if numpy is installed, otherwise lists. The exception Rejected holds the message of the command.
+The environment variable LIBKINMAT names the library, if it is neither installed nor near this file."""
 import ctypes
 import os
 
@@ -38,11 +38,11 @@ _rejected, _system = 1, 3
 
 
 class Rejected(ValueError):
-    """The deck has a fault, or a time is before the one before."""
+    """The deck has a fault, or a time is less than the previous time."""
 
 
 class Kinmat:
-    """One set of a deck, and where it is in its motion."""
+    """One set of a deck with its place in the motion."""
 
     def __init__(self, text, set=1):
         """Reads set number `set` (from 1) of the deck `text`. Raises Rejected."""
@@ -50,7 +50,7 @@ class Kinmat:
         if isinstance(text, str):
             text = text.encode('utf-8', 'replace')
         status = _int()
-        # A text of C ends at a null; another character that no card may have leads to the message.
+        # A text of C ends at a null. Another character that no card may have takes its place, and is rejected.
         self._k = _lib.kinmat_read(text.replace(b'\0', b'\1'), set, ctypes.byref(status))
         if status.value == _system:
             raise MemoryError(_lib.kinmat_message(self._k).decode())
@@ -66,10 +66,10 @@ class Kinmat:
         self._view = numpy.frombuffer(self._row) if numpy else self._row
 
     def advance(self, t):
-        """Gives the row at the time `t`, by continuity from the call before. Raises Rejected if `t` is before it."""
+        """Gives the row at the time `t`, by continuity from the previous call. Raises Rejected if `t` is less."""
         status = _lib.kinmat_advance(self._k, t, self._row)
         if status == _rejected:
-            raise Rejected('TIME %r: IT IS NOT FINITE, OR BEFORE THE TIME OF THE CALL BEFORE' % t)
+            raise Rejected('TIME %r IS NOT FINITE, OR BEFORE THE PREVIOUS TIME' % t)
         if status == _system:
             raise MemoryError('NOT ENOUGH MEMORY')
         self.flagged = status != 0
@@ -88,5 +88,5 @@ def run(text, set=1):
 
 
 def version():
-    """Gives KINMAT and its version."""
+    """Gives the name and the version of the library."""
     return _lib.kinmat_version().decode()
