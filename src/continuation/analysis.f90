@@ -554,7 +554,7 @@ contains
       real(wp), intent(in) :: t              !< time
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t) :: limit
-      real(wp) :: lengths(0:2, size(analysis%geometry%cylinders)), f(3), left, nearest
+      real(wp) :: lengths(0:2, size(analysis%geometry%cylinders)), f(3), way, left, nearest
       integer :: d, k, side
 
       lengths = lengths_followed(analysis%following_t)
@@ -562,15 +562,14 @@ contains
       do k = 1, size(analysis%geometry%cylinders)
          associate (bounds => analysis%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
             do side = 1, 2
-               left = huge(left)
-               if (abs(rate) > 0.0_wp .and. bounds(side) < huge(1.0_wp)) left = (bounds(side) - length)/rate
                ! It may begin out of its stroke.
-               if ((length - bounds(1))*(length - bounds(2)) >= 0.0_wp .and. left < huge(left)) left = 0.0_wp
-               if (left*sign(1.0_wp, t - analysis%t) < 0.0_wp .or. abs(left) > nearest) cycle
+               way = merge(0.0_wp, bounds(side) - length, length <= bounds(1) .or. length >= bounds(2))
+               if (bounds(side) >= huge(way) .or. .not. abs(rate) > 0.0_wp .or. abs(way) > nearest*abs(rate)) cycle
+               left = way/rate
+               if (left*sign(1.0_wp, t - analysis%t) < 0.0_wp) cycle
                nearest = abs(left)
-               limit = diagnostic_t(kind=diagnostic_limit, pair=analysis%geometry%cylinders(k)%pair, t=analysis%t + &
-                  left, &
-                  value=bounds(side), other=bounds(side) > 0.0_wp)
+               limit = diagnostic_t(kind=diagnostic_limit, pair=analysis%geometry%cylinders(k)%pair, &
+                  t=analysis%t + left, value=bounds(side), other=bounds(side) > 0.0_wp)
             end do
          end associate
       end do

@@ -79,7 +79,7 @@ module cards
       form_t('l--', 3, .false., 'TOLER   LINK                    OF R1           OF R2           OF R3'), &
       form_t('Wl-', 2, .true.,  'TIME    STEPS   TURNS           T0              T1/TURNS'), &
       form_t('---', 3, .false., 'AT                              T               T               T'), &
-      form_t('L--', 2, .true.,  'METHOD  METHOD                  TOLERANCE       CLOSING'), &
+      form_t('l--', 2, .true.,  'METHOD  METHOD                  TOLERANCE       CLOSING'), &
       form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
       form_t('LLl', 0, .false., 'COLUMN  KIND    NAME    QUANTITY'), &
       form_t('Ll-', 2, .false., 'EXTREMESKIND    NAME            DWELL LENGTH    DWELL ANGLE'), &

@@ -186,8 +186,9 @@ contains
    !> drives must rest; a drive of another kind or law is an error.
    subroutine set_turns(set)
       type(card_set_t), intent(inout) :: set
-      integer :: k
+      integer :: k, card
 
+      card = findloc(set%cards(:set%count)%form, form_time, dim=1)
       associate (m => set%mechanism)
          if (.not. m%turns > 0.0_wp .or. set%errors%count > 0) return
          k = findloc(abs(m%drives%polynomial(2)) > 0.0_wp, .true., dim=1)
@@ -196,11 +197,13 @@ contains
                if (any(drive%kind == [drive_angle, drive_relangle]) .and. size(drive%terms) == 0 .and. &
                    .not. abs(drive%polynomial(3)) > 0.0_wp) then
                   m%t1 = m%t0 + 2.0_wp*pi*m%turns/abs(drive%polynomial(2))
+                  if (.not. m%t1 > m%t0) &
+                     call add_card_error(set, number_range, card, real_1, 'A TIME THAT THE TURNS CHANGE')
                   return
                end if
             end associate
          end if
-         call add_card_error(set, turns_drive, findloc(set%cards(:set%count)%form, form_time, dim=1), label_b)
+         call add_card_error(set, turns_drive, card, label_b)
       end associate
    end subroutine set_turns
 

@@ -77,7 +77,8 @@ contains
 
             case (form_method)
                if (.not. card%valid) cycle
-               call match_word(set, k, method_words, place)
+               place = 0
+               if (label(label_a) /= '') call match_word(set, k, method_words, place)
                if (place > 0) m%method = place
                m%tolerance = card%real(1)
                if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &

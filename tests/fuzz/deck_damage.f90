@@ -6,6 +6,7 @@ module deck_damage
    use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
       drop_line, find_cards, add_note
    use deck_changes, only: pick, is_degrees
+   use drawn_decks, only: drawn_deck
    use deck_mutations, only: prepare, change_gently, max_steps
    use deck_questions, only: ask, lengthen_names, write_in_polish
    implicit none
@@ -19,10 +20,9 @@ module deck_damage
       '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
       '1.5-3']
    character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'SLOT', 'LENGTH', 'JOINT', &
-      'DRIVE', 'ADD', &
-      'RISE', 'TIME', 'AT', 'METHOD']
+      'CYLINDER', 'DRIVE', 'ADD', 'RISE', 'TIME', 'AT', 'METHOD', 'TOLER', 'VARY']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', &
-      'SLOT', 'LENGTH', 'JOINT', 'DRIVE']
+      'SLOT', 'LENGTH', 'JOINT', 'CYLINDER', 'DRIVE', 'TIME', 'TOLER', 'VARY']
    !> Radians, or lengths: so far drives go in all; where extremes are searched, which takes longer.
    real(wp), parameter :: longest_way = 2000.0_wp, longest_search = 60.0_wp
    character(*), &
@@ -30,8 +30,8 @@ module deck_damage
 
 contains
 
-   !> The deck of seed number `seed`, made from one of `sets`. Of ten decks seven are changed gently, two go to the
-   !> limits, one is damaged, by a mixture of everything.
+   !> The deck of seed number `seed`, made from one of `sets`, or a drawing of its own. Of ten decks seven are changed
+   !> gently, two go to the limits, one is damaged, by a mixture of everything.
    function deck_of_seed(sets, seed) result(d)
       type(draft_t), intent(in) :: sets(:)
       integer, intent(in) :: seed
@@ -41,6 +41,7 @@ contains
 
       r = new_dice(seed)
       d = sets(throw(r, size(sets)))
+      if (chance(r, 0.3_wp)) d = drawn_deck(r)
       call prepare(d, r)
       manner = throw(r, 10)
       n = merge(throw(r, 2), throw(r, 8), chance(r, 0.6_wp))
@@ -95,6 +96,13 @@ contains
 
       longest = merge(longest_search, longest_way, size(find_cards(d, ['EXTREMES'])) > 0)
       cards = find_cards(d, ['TIME    ', 'AT      '])
+      ! A turn is a way of 2 pi, whatever the rate.
+      do i = size(cards), 1, -1
+         if (label(d%line(cards(i)), 2) /= 'TURNS') cycle
+         if (real_field(d, cards(i), 2) > longest/6.3_wp) call set_real(d, cards(i), 2, longest/6.3_wp)
+      end do
+      cards = find_cards(d, ['TIME    ', 'AT      '])
+      cards = pack(cards, [(label(d%line(cards(i)), 2) /= 'TURNS', i=1, size(cards))])
       t = 0.0_wp
       do i = 1, size(cards)
          do k = 1, merge(2, 3, name_of(d%line(cards(i))) == 'TIME')

@@ -29,7 +29,7 @@ contains
       do i = 1, size(cards)
          read (d%line(cards(i))(9:16), *) before
          n = throw(r, merge(4, 10, chance(r, 0.7_wp)))
-         if (chance(r, 0.5_wp)) call set_real(d, cards(i), 2, real_field(d, cards(i), 1) &
+         if (chance(r, 0.5_wp) .and. label(d%line(cards(i)), 2) == '') call set_real(d, cards(i), 2, real_field(d, cards(i), 1) &
             + (real_field(d, cards(i), 2) - real_field(d, cards(i), 1))*n/before)
          write (d%line(cards(i))(9:16), '(i0)') n
       end do
@@ -51,13 +51,13 @@ contains
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
 
-      select case (throw(r, 38))
+      select case (throw(r, 41))
       case (1:5)
          call change_length(d, r)
       case (6:7)
          call change_rough(d, r)
       case (8)
-         call change_real(d, r, ['GROUND  ', 'PRISM   ', 'SLOT    '])
+         call change_real(d, r, ['GROUND  ', 'PRISM   ', 'SLOT    ', 'CYLINDER'])
       case (9:11)
          call change_drive(d, r)
       case (12:13)
@@ -94,6 +94,10 @@ contains
          call give_length(d, r)
       case (37)
          call give_bar(d, r)
+      case (38:39)
+         call give_stroke(d, r)
+      case (40)
+         call count_turns(d, r)
       case default
          call change_at(d, r)
       end select
@@ -161,6 +165,10 @@ contains
             call set_full(d, i, 2, factor*real_field(d, i, 2))
          case ('PRISM')
             call set_full(d, i, 2, factor*real_field(d, i, 2))
+         case ('CYLINDER')
+            do k = 1, 2
+               if (abs(real_field(d, i, k)) > 0.0_wp) call set_full(d, i, k, factor*real_field(d, i, k))
+            end do
          case ('DRIVE')
             driven = all(label(d%line(i), 1) /= ['ANGLE   ', 'RELANGLE'])
             if (.not. driven) cycle
@@ -212,7 +220,7 @@ contains
       integer, allocatable :: cards(:)
       integer :: i, j
 
-      cards = find_cards(d, ['LINK    ', 'POINT   ', 'REVOLUTE', 'PRISM   ', 'JOINT   '])
+      cards = find_cards(d, ['LINK    ', 'POINT   ', 'REVOLUTE', 'PRISM   ', 'JOINT   ', 'LENGTH  ', 'SLOT    ', 'CYLINDER'])
       i = pick(r, cards)
       if (i == 0) return
       j = pick(r, find_cards(d, [name_of(d%line(i))]))
@@ -228,7 +236,7 @@ contains
       integer :: i
       character(8) :: first
 
-      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ']))
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'SLOT    ', 'CYLINDER', 'LENGTH  ']))
       if (i == 0) return
       first = label(d%line(i), 1)
       call set_label(d%line(i), 1, label(d%line(i), 2))
@@ -268,6 +276,43 @@ contains
       call insert_line(d, size(d%line), card)
       call add_note(d, 'SLOT '//d%line(i)(9:32))
    end subroutine make_slot
+
+   !> A cylinder gets a stroke, in which its drawing mostly is.
+   subroutine give_stroke(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      real(wp) :: ends(2, 2), length
+      integer, allocatable :: joints(:)
+      integer :: i, k, j
+
+      i = pick(r, find_cards(d, ['CYLINDER']))
+      if (i == 0) return
+      joints = find_cards(d, ['JOINT   ', 'POINT   '])
+      ends = 0.0_wp
+      do k = 1, 2
+         do j = 1, size(joints)
+            if (label(d%line(joints(j)), 1) == label(d%line(i), k)) &
+               ends(:, k) = [real_field(d, joints(j), 1), real_field(d, joints(j), 2)]
+         end do
+      end do
+      length = norm2(ends(:, 2) - ends(:, 1))
+      if (chance(r, 0.7_wp)) call put_real(d, r, i, 1, length*between(r, 0.3_wp, 1.1_wp))
+      if (chance(r, 0.7_wp)) call put_real(d, r, i, 2, length*between(r, 0.9_wp, 2.0_wp))
+      call add_note(d, 'STROKE OF '//label(d%line(i), 3))
+   end subroutine give_stroke
+
+   !> The run ends after so many turns of its drive.
+   subroutine count_turns(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i
+
+      i = pick(r, find_cards(d, ['TIME    ']))
+      if (i == 0) return
+      call set_label(d%line(i), 2, 'TURNS')
+      call put_real(d, r, i, 2, between(r, 0.01_wp, 3.0_wp))
+      call add_note(d, 'TURNS')
+   end subroutine count_turns
 
    !> Two joints of one link get a length, mostly about that of the drawing.
    subroutine give_length(d, r)

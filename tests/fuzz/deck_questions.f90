@@ -11,7 +11,7 @@ module deck_questions
    public :: ask, lengthen_names, write_in_polish
 
    character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'SLOT', 'JOINT', 'LENGTH', &
-      'DRIVE']
+      'DRIVE', 'CYLINDER', 'TIME']
    !> Circuits are asked of so many links at most.
    integer, parameter :: most_links = 5
 
@@ -126,7 +126,7 @@ contains
       integer :: i
 
       name = ''
-      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'SLOT    ', 'JOINT   ']))
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'SLOT    ', 'CYLINDER', 'JOINT   ']))
       if (i > 0) name = label(d%line(i), merge(1, 3, name_of(d%line(i)) == 'JOINT'))
    end function any_pair
 
@@ -199,7 +199,7 @@ contains
          is_name = k == 1
       case ('POINT', 'POLE', 'CURVE')
          is_name = k <= 2
-      case ('LINK', 'REVOLUTE', 'PRISM', 'SLOT', 'LENGTH', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
+      case ('LINK', 'REVOLUTE', 'PRISM', 'SLOT', 'CYLINDER', 'LENGTH', 'JOINT', 'DISTANCE', 'LINE', 'ANGLE', 'XI', 'ETA', 'SUM')
          is_name = .true.
       case ('DRIVE')
          is_name = k >= 2 .and. label(line, k) /= 'RPM'

@@ -56,7 +56,7 @@ contains
 
       i = 0
       if (chance(r, 0.5_wp)) i = pick(r, find_cards(d, ['PRISM   ']))
-      if (i == 0) i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ']))
+      if (i == 0) i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ', 'SLOT    ', 'CYLINDER']))
       if (i == 0) return
       at = line_after(d, i)
       name = new_name(d)
@@ -103,9 +103,9 @@ contains
       integer :: i, one
 
       i = pick(r, find_cards(d, ['DRIVE   ']))
-      one = pick(r, find_cards(d, ['LINK    ', 'PRISM   ']))
+      one = pick(r, find_cards(d, ['LINK    ', 'PRISM   ', 'SLOT    ', 'CYLINDER']))
       if (i == 0 .or. one == 0) return
-      if (name_of(d%line(one)) == 'PRISM') then
+      if (name_of(d%line(one)) /= 'LINK') then
          call insert_line(d, i, 'DRIVE   SLIDE   '//label(d%line(one), 3))
       else
          call insert_line(d, i, 'DRIVE   ANGLE   '//label(d%line(one), 1))

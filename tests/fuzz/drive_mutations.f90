@@ -116,6 +116,7 @@ contains
       if (name_of(d%line(i)) /= 'METHOD') call insert_line(d, i, 'METHOD')
       call set_label(d%line(i), 1, trim(merge('MATRIX', 'NEWTON', chance(r, 0.7_wp))))
       if (chance(r, 0.4_wp)) call set_real(d, i, 1, 10.0_wp**between(r, -14.9_wp, -2.1_wp))
+      if (chance(r, 0.4_wp)) call set_real(d, i, 2, 10.0_wp**between(r, -10.5_wp, -1.5_wp))
       call add_note(d, d%line(i)(1:16))
    end subroutine change_method
 
@@ -144,11 +145,11 @@ contains
          call set_label(d%line(i), 3, label(d%line(other), 1))
          if (chance(r, 0.6_wp)) call put_real(d, r, i, 1, real_field(d, other, 3) - real_field(d, one, 3))
       case default
-         one = pick(r, find_cards(d, ['PRISM   ']))
+         one = pick(r, find_cards(d, ['PRISM   ', 'SLOT    ', 'CYLINDER']))
          if (one == 0) return
          call set_label(d%line(i), 1, 'SLIDE')
       end select
-      call set_label(d%line(i), 2, label(d%line(one), merge(3, 1, name_of(d%line(one)) == 'PRISM')))
+      call set_label(d%line(i), 2, label(d%line(one), merge(3, 1, label(d%line(i), 1) == 'SLIDE')))
       call add_note(d, d%line(i)(1:32))
    end subroutine exchange_drive
 end module drive_mutations

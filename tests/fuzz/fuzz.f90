@@ -3,6 +3,7 @@
 !>
 !>    fuzz FIRST LAST DIRECTORY DECK...     seeds FIRST to LAST, a line for each that fails, then a line of sums
 !>    fuzz --deck SEED FILE DECK...         writes the deck of a seed
+!>    fuzz --drawn SEED FILE                writes a drawing of a seed, unchanged
 !>
 !> DIRECTORY/seed holds the seed that is being run and the sums before it, for a run that does not come back.
 program fuzz
@@ -19,6 +20,8 @@ program fuzz
    use job, only: run_job
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
    use deck_damage, only: deck_of_seed
+   use dice, only: dice_t, new_dice
+   use drawn_decks, only: drawn_deck
    use csv_closure, only: verdict_t, check_csv
    use listing_check, only: check_listing, check_protocol
    implicit none
@@ -53,6 +56,7 @@ program fuzz
 
    type(draft_t), allocatable :: sets(:)
    type(c_funptr) :: before
+   type(dice_t) :: r
    integer :: i
 
    call ieee_set_halting_mode(ieee_usual, .false.)
@@ -64,6 +68,9 @@ program fuzz
    end do
    if (argument(1) == '--deck') then
       call write_draft(deck_of_seed(sets, number(argument(2))), argument(3))
+   else if (argument(1) == '--drawn') then
+      r = new_dice(number(argument(2)))
+      call write_draft(drawn_deck(r), argument(3))
    else
       call run_seeds(number(argument(1)), number(argument(2)), argument(3))
    end if

@@ -26,12 +26,13 @@ module listing_check
       'JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI', &
       'CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE', &
       'DEAD POINT: NO FINITE VELOCITIES', 'PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI', &
-      'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
+      'OUT OF STROKE', 'POZA SKOKIEM', 'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
       'REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE', &
       'REDUNDANT EQUATIONS ARE INCONSISTENT: FOR ROUNDED NUMBERS GIVE METHOD, REAL-2, A CLOSING TOLERANCE', &
       'ROWNANIA NADLICZBOWE SA SPRZECZNE: DLA LICZB ZAOKRAGLONYCH PODAJ METHOD, REAL-2, TOLERANCJE ZAMKNIECIA']
    !> What a remark holds, after three stars or three dashes.
    character(60), parameter :: diagnostics(*) = [character(60) :: 'CLOSURE ERROR', 'BLAD ZAMKNIECIA', &
+      ': LENGTH ', ': DLUGOSC ', ': ONLY LENGTHS BELOW 0', ': TYLKO DLUGOSCI PONIZEJ 0', &
       'IN THE STEP TO T =', 'W KROKU DO CHWILI T =', 'WHOLE TURNS ARE UNCERTAIN', 'LICZBA OBROTOW NIEPEWNA', &
       'AT THE LIMIT', 'NA KRESIE RUCHU', &
       'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
@@ -74,7 +75,7 @@ contains
       integer, intent(out) :: flagged
       character(width) :: line, before
       integer :: unit, status, ends, i
-      logical :: tables, goes_on, is_wrong
+      logical :: tables, goes_on, is_wrong, was_long
       integer :: names
 
       wrong = ''
@@ -82,6 +83,7 @@ contains
       ends = 0
       tables = .false.
       goes_on = .false.
+      was_long = .false.
       before = ''
       names = one_name
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
@@ -107,6 +109,9 @@ contains
             names = one_name
          end if
          is_wrong = line_is_wrong(line, tables, names)
+         ! The last words of a long sentence.
+         if (is_wrong .and. was_long .and. is_sentence(line)) cycle
+         was_long = is_sentence(line) .and. len_trim(line) > longest - longest_word
          if (is_wrong .and. is_sentence(line) .and. .not. goes_on .and. (len_trim(line) > longest - longest_word &
             .or. index(trim(line), ':', back=.true.) == len_trim(line))) then
             ! It may be a part of a long sentence, which goes on in the next line.

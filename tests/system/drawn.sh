@@ -62,6 +62,9 @@ sed 's/^\(LINK    CRANK-3  *\)2\.0/\12.0/; s/^\(POINT   C       COUPLER         
 equal 'a coupler that does not fit by 1.0' '2  END OF SET 1:  INSTANTS SOLVED 0, FLAGGED 25' \
    "$("$kinmat" "$w/deck" > "$w/listing"; echo "$? $(grep END "$w/listing")")"
 
+with parallel_cranks "$(card METHOD '' '' '' '' 1.0E-3)" > "$w/deck"
+equal 'a closing tolerance, and NEWTON by default' 0 "$("$kinmat" "$w/deck" > "$w/listing"; echo $?)"
+
 # What is out of range, and methods that take no redundant equations.
 for value in 0.02 -1.0E-3 1.0E-11; do
    with parallel_cranks "$(card METHOD NEWTON '' '' '' $value)" > "$w/deck"
@@ -86,6 +89,9 @@ equal 'one and a half turns: times and angles' '2 -170;3.5 -305;5 -440;6.5 -575;
    "$("$kinmat" --no-listing --csv - "$w/deck" | awk -F, '$4 == "LINK" && $5 == "CRANK" { printf "%.12g %.12g;", $3, $8 }')"
 turns 2 0.25 0.0 -90.0 "$other" | sed '/^DRIVE   ANGLE   CRANK/a VARY    R2      LIST            -90.0           45.0            0.0' > "$w/deck"
 equal 'turns of a rate that varies' 'E077' "$("$kinmat" --summary - --no-listing "$w/deck" 2>&1 | grep -o 'E077' | sort -u)"
+turns 2 0.25 1.0E60 -90.0 "$other" > "$w/deck"
+equal 'turns lost to rounding beside the first time' 'REAL-1: "1.0E60" IS OUT OF RANGE; ALLOWED: A TIME THAT THE TURNS CHANGE' \
+   "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/.*E036 .*FIELD //p' | head -n 1)"
 for wrong in "$(card DRIVE ANGLE OTHER '' 5.0 1.0)" "$other
 $(card ADD HARMONIC '' '' 1.0 1.0)"; do
    turns 4 1.5 0.0 90.0 "$wrong" > "$w/deck"
