@@ -58,18 +58,16 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all help run pictures shared example kinds install install-kinds clean
+.PHONY: all help run shared kinds install install-kinds clean always
 
 #: all              build the command: build/kinmat
 all: $(BUILD)/kinmat
 
 #: help             list the targets
-# Lists the targets: the lines that begin with #: here and in tests/tests.mk.
 help:
-	@sed -n 's/^#: /make /p' Makefile tests/tests.mk
+	@sed -n 's/^#: /make /p' Makefile docs/tools/docs.mk tests/tests.mk
 
 #: run              print the paper's example at two instants
-# The paper's example at two instants.
 run: $(BUILD)/kinmat
 	@$(BUILD)/kinmat docs/first.deck
 	@echo ' THE WHOLE MOTION: $(BUILD)/kinmat input/yoke.deck   ITS PICTURE: $(BUILD)/kinmat --no-listing --svg yoke.svg input/yoke.deck'
@@ -84,9 +82,9 @@ timed    := $(RELEASE)
 builds   := release debug fuzz timed
 define build_in
 $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
-	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(extra) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
-	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) $$(addprefix -I,$$(sort $$(dir $$(included)))) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(extra) $$(KIND_MACROS) $$(addprefix -I,$$(sort $$(dir $$(included)))) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/document_texts.o: $(BUILD)/document_texts.f90 | $(BUILD)/$(1)
 	$$(call say,FC,document_texts.f90,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/command_line.o: $(BUILD)/$(1)/document_texts.o
@@ -100,11 +98,6 @@ $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/
 $(BUILD)/$(1):
 	$$(quiet)mkdir -p $$@
 endef
-
-# What the documents say of messages, cards and options, for --explain, --ruler and --help. The file is left alone if nothing has changed in it.
-$(BUILD)/document_texts.f90: docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md
-	@mkdir -p $(BUILD)
-	@awk -f docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: Makefile $(sources) $(helpers) $(suites) tests/depends.awk
@@ -121,28 +114,18 @@ modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1)))
 hot  := $(filter-out picture% animation canvas drawing svg circuit% set_circuits ranges dwells,\
    $(call modules_in,base linear mechanism blocks continuation perturbed proof rows answers $(if $(filter single,$(KIND)),,results)))
 warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
-less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O% -fPIC,$(RELEASE))))
-$(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
-$(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)
+cold := $(filter-out $(hot) $(warm),$(modules) $(command))
+in_both = $(foreach build,release timed,$(patsubst %,$(BUILD)/$(build)/%.o,$(1)))
+$(call in_both,$(cold)) $(patsubst %,$(BUILD)/release/%.o,$(notdir $(basename $(helpers)))): private extra = $(no_lto) -O$(if $(filter double,$(KIND)),1,0)
+$(call in_both,$(warm)): private extra += $(no_lto)
 # Loops over lanes are of few turns: without counting them, and without calls to copy so little, a step takes a tenth less.
-lane_flags := -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -fno-tree-loop-distribute-patterns
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
-$(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
-$(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
+$(call in_both,$(lanes)): private extra += -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -fno-tree-loop-distribute-patterns
 # Procedures of a step, and of a row of the listing, are called a few times each: they are put into one another at any length.
-step_flags := --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
 step := $(if $(filter double,$(KIND)),$(call modules_in,blocks continuation) number_format masked_numbers listing_tables listing)
-$(patsubst %,$(BUILD)/release/%.o,$(step)): private release += $(step_flags)
-$(patsubst %,$(BUILD)/timed/%.o,$(step)): private timed += $(step_flags)
-$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)
-$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) $(command))): private timed := $(less)
+$(call in_both,$(step)): private extra += --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	$(quiet)cp $< $@
-
-#: pictures         draw docs/pictures again
-# The pictures of the documents, drawn anew.
-pictures: $(BUILD)/kinmat
-	docs/tools/pictures.sh $< docs/pictures
 
 #: shared           build the library for C and Python: build/libkinmat.so.2
 # The library for C and Python: the eight functions of contrib/kinmat.map, and no other symbol. To optimize it at link
@@ -151,29 +134,15 @@ shared: $(BUILD)/libkinmat.so.2
 $(BUILD)/libkinmat.so.2: contrib/kinmat.map $(BUILD)/release/libkinmat.a
 	$(call say,LD,$(@F))$(FC) $(COMMON) $(release) $(no_lto) -shared -Wl,--no-undefined -Wl,-soname,$(@F) -Wl,--version-script=$< -Wl,-u,kinmat_read -o $@ $(BUILD)/release/libkinmat.a $(LIBS)
 
-#: example          build and run docs/example.f90
-# A program of one's own with the modules.
-example: $(BUILD)/example
-	$(BUILD)/example
-
-$(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
-	$(call say,FC,$<)$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
-
 #: kinds            build kinmat-quad (real128) and kinmat-single (real32) in addition
-# Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
 
 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
 	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
 	$(quiet)cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
-.PHONY: always
 
 decks := $(sort $(wildcard input/*.deck))
-include tests/tests.mk
-
-# The man page: the text of --help in another form.
-$(BUILD)/kinmat.1: $(BUILD)/kinmat docs/tools/man.awk
-	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/tools/man.awk > $@.new && mv $@.new $@
+include docs/tools/docs.mk tests/tests.mk
 
 # The command with its man page; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat; the
 # library for C, with its header and what pkg-config reads: gcc ... -lkinmat; kinmat.py, which finds that library; the

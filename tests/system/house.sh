@@ -97,7 +97,7 @@ equal 'names that hide those of pFUnit' '' "$(awk '
 plain_make() { env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make --no-print-directory "$@"; }
 blanks="$BUILD/with a blank"
 rm -rf "$blanks"
-mkdir -p "$blanks" && cp -R Makefile src tests input "$blanks/" && chmod -R u+w "$blanks" || exit 3
+mkdir -p "$blanks" && cp -R Makefile src tests input "$blanks/" && mkdir "$blanks/docs" && cp -R docs/tools "$blanks/docs/" && chmod -R u+w "$blanks" || exit 3
 (cd "$blanks" && plain_make FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
 equal 'make below a directory with blanks: status' 0 $?
 # A short line a file; make -s prints none, make V=1 whole commands.
