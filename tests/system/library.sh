@@ -71,6 +71,15 @@ tests/make_deck lattice 7 18 > "$w/net_7.deck"
    "$w/label.deck" "$w/loose.deck" > "$w/found"
 equal 'four threads' '0 differ' "$(sed 's/.*, //' "$w/found")"
 
+# Four threads with one structure and one geometry, and states of their own.
+"${FC:-gfortran}" -std=f2018 -Wall -Wextra -pedantic -Werror -fopenmp -O1 -fno-lto -fno-use-linker-plugin -I"$BUILD/release" -J"$w" \
+   -o "$w/one_structure" tests/library/threads.f90 "$BUILD/release/libkinmat.a" -lklu -llapack -lblas > "$w/err" 2>&1
+equal 'a program of four threads is compiled' '' "$(cat "$w/err")"
+for deck in input/four_bar.deck input/scissor.deck input/ten_plates.deck "$w/net_7.deck"; do
+   equal "four threads with one structure: $deck" '4 threads, 0 differ' \
+      "$("$w/one_structure" "$deck" 2>&1 | sed 's/ of [1-9][0-9]* numbers//')"
+done
+
 # kinmat.py, with numpy and without.
 for lists in '' --lists; do
    if [ -z "$lists" ] && ! python3 -c 'import numpy' 2> /dev/null; then echo 'skipped: kinmat.py with numpy (not installed)'; continue; fi
