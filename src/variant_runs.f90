@@ -3,8 +3,9 @@
 !> are asked for, several variants are solved together. The row of a variant that cannot be computed tells why.
 module variant_runs
    use failures, only: status_flagged
-   use mechanism, only: settings_t, mechanism_t
+   use mechanism, only: settings_t, mechanism_t, request_t
    use independent, only: set_t
+   use set_members, only: requests_of, has_cylinders
    use structure, only: structure_report_t, find_structure, faults_text
    use deck, only: build_variant
    use deck_variants, only: variation_t
@@ -41,12 +42,14 @@ contains
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
+      type(request_t), allocatable :: requests(:)
       logical :: full, has_more              ! tables; ratios or cylinders
-      integer :: n, k                        ! n: the first variant that is not written
+      integer :: n                           ! n: the first variant that is not written
 
       n = first
-      full = any([(any(set%parts(k)%requests%every > 0), k=1, set%count)])
-      has_more = any([(any(set%parts(k)%requests%drive > 0) .or. any(set%parts(k)%pairs%is_cylinder), k=1, set%count)])
+      requests = requests_of(set)
+      full = any(requests%every > 0)
+      has_more = any(requests%drive > 0) .or. has_cylinders(set)
       layout = new_layout(set)
       summary = new_summary(set, layout, variation)
       if (writers%asked(out_summary) .and. first == 1) call summary_head(writers%files(out_summary), summary)

@@ -3,7 +3,8 @@
 module writers
    use kinds, only: wp
    use failures, only: status_solved
-   use mechanism, only: settings_t, instant, instant_count
+   use mechanism, only: settings_t, request_t, instant, instant_count
+   use set_members, only: requests_of
    use deck_variants, only: variation_t
    use text_output, only: output_t, put
    use command_line, only: options_t, out_listing, out_csv, out_table, out_log
@@ -53,14 +54,14 @@ contains
       type(writers_t), intent(in) :: writers
       type(set_analysis_t), intent(in) :: set
       logical, intent(in) :: full            !< its tables are in the listing, too
-      integer :: i
+      type(request_t), allocatable :: requests(:)
 
       printing%lists = full .and. writers%asked(out_listing)
       if (printing%lists) call new_column_table(writers%layout, set%now, printing%columns)
       printing%each = writers%asked(out_table) .or. writers%asked(out_log) .or. allocated(printing%columns%columns)
       allocate (printing%rows(size(set%now%rows)))
-      printing%every = [(merge(1, set%now%parts(i)%requests%every, set%now%parts(i)%requests%in_columns), i=1, &
-         set%now%count)]
+      requests = requests_of(set%now)
+      printing%every = merge(1, requests%every, requests%in_columns)
       printing%every = pack(printing%every, printing%every > 0)
       printing%last = instant_count(set%now) - 1
       printing%next = merge(0, huge(printing%next), size(printing%every) > 0)

@@ -2,6 +2,8 @@
 !> and PROVE. A set that asks for nothing costs nothing.
 module answers
    use kinds, only: wp
+   use mechanism, only: request_t
+   use set_members, only: requests_of
    use set_analysis, only: set_analysis_t
    use rows, only: finished_row_t
    use extremes, only: extremes_t, new_extremes
@@ -36,9 +38,11 @@ contains
       type(set_analysis_t), intent(in) :: set
       logical, intent(in) :: lists           !< the tables of the set are written
       type(answers_t), intent(out) :: answers
+      type(request_t), allocatable :: requests(:)
       integer :: c
 
-      answers%wants_extremes = any([(any(set%now%parts(c)%requests%extremes), c=1, set%now%count)])
+      requests = requests_of(set%now)
+      answers%wants_extremes = any(requests%extremes)
       answers%wants_contributions = lists .and. set%now%largest_tolerance > 0.0_wp
       if (set%now%assemblies) then
          if (all(set%assemblies%is_known)) answers%assemblies = sum([(size(set%assemblies(c)%list), c=1, &

@@ -2,14 +2,14 @@
 !> cards name. What has no room in a line is in a second table, and so on. The lines are kept until the run ends.
 module column_table
    use kinds, only: wp
-   use columns, only: row_column_t, columns_of_rows, column_at, form_of, cell_of, of_length, of_angle
+   use columns, only: row_column_t, columns_of_rows, column_at, cell_of, of_length, of_angle
    use drives, only: drive_motion
    use mechanism, only: request_t, settings_t
-   use names, only: drive_name, subject_name
-   use independent, only: set_t, request_of
+   use independent, only: set_t
+   use set_members, only: requests_of, row_form, drive_title
    use set_motion, only: set_motion_t, is_flagged
    use rows, only: finished_row_t
-   use listing_layout, only: layout_t, line_length, column_name, column_unit
+   use listing_layout, only: layout_t, line_length, column_name, column_unit, row_title
    use listing_tables, only: law_error, mask_words
    use table, only: format_t, write_cell, write_number, power_text, right
    use text_output, only: output_t, open_held, move_text, put
@@ -52,10 +52,12 @@ contains
       type(layout_t), intent(in) :: l
       class(set_t), intent(in) :: set
       type(column_table_t), intent(out) :: table
-      integer :: i, c, used
+      type(request_t), allocatable :: requests(:)
+      integer :: i, used
 
       if (.not. allocated(set%columns)) return
-      table%alone = .not. any([(any(set%parts(c)%requests%every > 0), c=1, set%count)])
+      requests = requests_of(set)
+      table%alone = all(requests%every == 0)
       allocate (table%columns(1 + size(l%drives) + size(set%columns)))
       call write_heads(table%columns(1), '', 'T', l%time, trim(set%time_unit))
       do i = 1, size(l%drives)
@@ -90,8 +92,8 @@ contains
          character(:), allocatable :: name
          integer :: border
 
-         associate (place => set%drives(column%drive), drive => l%drives(column%drive))
-            name = trim(drive_name(set%parts(place%part), set%parts(place%part)%drives(place%number)))
+         associate (drive => l%drives(column%drive))
+            name = drive_title(set, column%drive)
             border = index(name, ' ')
             call write_heads(column, name(:border - 1), name(border + 1:), drive%format, &
                trim(l%unit(merge(of_angle, of_length, drive%format%is_angle))))
@@ -102,18 +104,12 @@ contains
       subroutine set_number_column(i, column)
          integer, intent(in) :: i
          type(listed_column_t), intent(inout) :: column
-         type(request_t) :: request
-         character(:), allocatable :: name
 
          column%request = set%columns(i)%request
-         request = request_of(set, column%request)
          associate (part => set%rows(column%request)%part)
-            column%number = columns_of_rows(column_at(form_of(set%parts(part), request), set%columns(i)%at(1), &
+            column%number = columns_of_rows(column_at(row_form(set, column%request), set%columns(i)%at(1), &
                set%columns(i)%at(2)))
-            name = subject_name(set%parts(part), request%kind, request%subject)
-            if (request%drive > 0) name = trim(name)//' '//phrase(text_by, set%polish)//' ' &
-               //drive_name(set%parts(part), set%parts(part)%drives(request%drive))
-            call write_heads(column, trim(name), column_name(l, column%number), &
+            call write_heads(column, row_title(set, column%request), column_name(l, column%number), &
                l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
          end associate
       end subroutine set_number_column

@@ -3,8 +3,9 @@
 module contributions_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, is_centre
-   use independent, only: set_t, request_of
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning
+   use independent, only: set_t
+   use set_members, only: requests_of, row_form
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, row_turning
    use table, only: format_t, unit_of, number_text
    use names, only: subject_name
    use sensitivities, only: has_tolerances
@@ -34,14 +35,15 @@ contains
       type(layout_t), intent(in) :: l
       type(shares_t), intent(in) :: shares
       class(set_t), intent(in) :: set
-      type(request_t) :: request
+      type(request_t), allocatable :: requests(:)
       integer :: i, c, d, j, form
 
       call put(o, '')
       call put(o, ' '//phrase(text_shares, set%polish))
-      if (any([(any(is_centre(set%parts(c)%requests%kind)), c=1, set%count)])) &
+      requests = requests_of(set)
+      if (any(is_centre(requests%kind))) &
          call put(o, ' --- '//phrase(text_no_shares, set%polish))
-      if (any([(any(set%parts(c)%requests%drive > 0), c=1, set%count)])) &
+      if (any(requests%drive > 0)) &
          call put(o, ' --- '//phrase(text_no_ratio_shares, set%polish))
       do c = 1, set%count
          do d = 1, size(set%parts(c)%tolerances)
@@ -50,10 +52,9 @@ contains
          end do
       end do
       do i = 1, size(set%rows)
-         request = request_of(set, i)
-         associate (part => set%rows(i)%part)
+         associate (part => set%rows(i)%part, request => requests(i))
             if (.not. has_tolerances(set%parts(part), request)) cycle
-            form = merge(row_turning, form_of(set%parts(part), request), request%angle_alone)
+            form = merge(row_turning, row_form(set, i), request%angle_alone)
             do j = forms(form)%first, forms(form)%last
                associate (c => columns_of_rows(j))
                   call write_quantity(o, l, l%own(part)%format(c%dimension, c%order), set%parts(part), request, c, &

@@ -13,15 +13,16 @@ module csv
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_value, ieee_quiet_nan
    use kinds, only: wp, label_length
    use plane_vectors, only: in_degrees
-   use mechanism, only: request_t, request_link, request_point
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, is_ratio, cell_of, &
+   use mechanism, only: drive_t, request_t, request_link, request_point
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, column_at, is_ratio, cell_of, &
       cell_words, cell_number, of_angle
    use scales, only: is_length
    use drives, only: drive_motion
    use points, only: row_t
    use independent, only: set_t, request_of
+   use set_members, only: requests_of, row_form, row_subject, link_of_point, drive_of, drive_number, drive_title, &
+      same_before
    use name_table, only: name_table_t, store_name, find_name
-   use names, only: drive_name, subject_name
    use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
    use rows, only: finished_row_t
@@ -57,6 +58,7 @@ module csv
    type :: table_t
       character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
       type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
+      type(drive_t), allocatable :: laws(:)               !< (drives)
    end type table_t
 
 contains
@@ -197,11 +199,12 @@ contains
       integer :: i, j, k, n
 
       t%drives = drive_columns(set)
+      t%laws = [(drive_of(set, i), i=1, size(set%drives))]
 
       ! The rows, and which names links have among them.
-      requests = [(request_of(set, i), i=1, size(set%rows))]
+      requests = requests_of(set)
       rows = [(i, i=1, size(set%rows))]
-      form = [(form_of(set%parts(set%rows(i)%part), requests(i)), i=1, size(set%rows))]
+      form = [(row_form(set, i), i=1, size(set%rows))]
       if (present(chosen)) then
          rows = chosen
       else if (allocated(set%columns)) then
@@ -211,9 +214,7 @@ contains
       end if
       do i = 1, size(rows)
          if (requests(rows(i))%kind /= request_link) cycle
-         associate (own => set%parts(set%rows(rows(i))%part))
-            call store_name(links, own%links(requests(rows(i))%subject)%name, i, k)
-         end associate
+         call store_name(links, row_subject(set, rows(i)), i, k)
       end do
 
       n = 0
@@ -253,16 +254,14 @@ contains
          integer, intent(in) :: j            !< the column, in `columns_of_rows`
          character(:), allocatable :: name
 
-         associate (request => requests(i), own => set%parts(set%rows(i)%part))
-            name = trim(subject_name(own, request%kind, request%subject))
+         associate (request => requests(i))
+            name = trim(row_subject(set, i))
             ! A point that has the name of a link in the table has that of its own link before it.
             if (request%kind == request_point .and. find_name(links, name) > 0) &
-               name = trim(own%links(own%points(request%subject)%link)%name)//'.'//name
+               name = trim(link_of_point(set, i))//'.'//name
             ! Of a ratio the first word comes before the name of the drive.
             if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
-               //trim(t%drives(findloc(set%drives%part == set%rows(i)%part .and. set%drives%number == request%drive, &
-                  .true., &
-               dim=1)))
+               //trim(t%drives(drive_number(set, set%rows(i)%part, request%drive)))
          end associate
          n = n + 1
          t%columns(n)%row_column_t = columns_of_rows(j)
@@ -282,14 +281,9 @@ contains
 
       allocate (columns(size(set%drives)))
       do i = 1, size(columns)
-         associate (own => set%parts(set%drives(i)%part), n => set%drives(i)%number)
-            columns(i) = dotted(drive_name(own, own%drives(n)))
-            associate (these => own%drives(:n))
-               number = count(these%kind == these(n)%kind .and. these%subject == these(n)%subject &
-                  .and. these%second == these(n)%second)
-            end associate
-            if (number > 1) columns(i) = trim(columns(i))//'.'//whole(number)
-         end associate
+         columns(i) = dotted(drive_title(set, i))
+         number = same_before(set, i) + 1
+         if (number > 1) columns(i) = trim(columns(i))//'.'//whole(number)
       end do
    end function drive_columns
 
@@ -352,11 +346,9 @@ contains
       values(1) = motions%motions(1)%t
       n = 1
       do i = 1, size(motions%drives)
-         associate (drive => motions%parts(motions%drives(i)%part)%drives(motions%drives(i)%number))
-            f = drive_motion(drive, motions%motions(1)%t)
-            n = n + 1
-            values(n) = in_units(f(1), .not. is_length(drive))
-         end associate
+         f = drive_motion(table%laws(i), motions%motions(1)%t)
+         n = n + 1
+         values(n) = in_units(f(1), .not. is_length(table%laws(i)))
       end do
       do i = 1, size(table%columns)
          associate (c => table%columns(i), at => table%columns(i)%at, row => rows(table%columns(i)%request))

@@ -9,7 +9,8 @@ module extremes_table
    use columns, only: columns_of_rows, forms, table_of, table_turning, cell_none, cell_unbounded, of_angle
    use table, only: format_t, number_text
    use independent, only: set_t, request_of, first_drive
-   use names, only: drive_name, subject_name, more
+   use set_members, only: row_subject, drive_title
+   use names, only: more
    use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
    use listing_tables, only: listing_state_t, write_times, write_heads, time_text, drive_text, mask_words
    use text_output, only: output_t, put
@@ -68,10 +69,8 @@ contains
          ! A drive that does not stand over the table has no name in it.
          drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0
-         associate (m => set%parts(part))
-            if (drive > 0) driven = trim(drive_name(m, m%drives(1)))
-            call write_subject(subject_name(m, request%kind, request%subject))
-         end associate
+         if (drive > 0) driven = drive_title(set, drive)
+         call write_subject(row_subject(set, extremes%asked(q)))
          do k = 1, size(dwells)
             associate (w => dwells(k))
                if (w%request /= extremes%asked(q)) cycle

@@ -164,7 +164,7 @@ contains
       call write_marks()
       if (table%masked) call put(o, mask_words(motions))
       do c = 1, motions%count
-         if (allocated(motions%motions(c)%diagnostics)) call write_diagnostics(o, motions%parts(c), &
+         if (allocated(motions%motions(c)%diagnostics)) call write_diagnostics(o, motions, c, &
             motions%motions(c)%diagnostics)
       end do
 
@@ -280,7 +280,7 @@ contains
          call write_folded(o, ' --- ', phrase(text_not_better, set%polish)//' '//trim(adjustl(number)))
       end if
       do i = 1, size(diagnostics)
-         call write_diagnostics(o, set%parts(diagnostics(i)%part), diagnostics(i:i))
+         call write_diagnostics(o, set, diagnostics(i)%part, diagnostics(i:i))
       end do
       associate (c => certificate_counts)
          call put(o, ' '//phrase(text_continuation, set%polish)//':  '//phrase(text_certified, set%polish)//' ' &
@@ -318,15 +318,17 @@ contains
    end function remark_text
 
    !> A line for each diagnostic of `list` that no mark has told.
-   subroutine write_diagnostics(o, m, list)
+   subroutine write_diagnostics(o, set, part, list)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of their independent mechanism
       type(diagnostic_t), intent(in) :: list(:)
       integer :: i
 
       do i = 1, size(list)
          if (all(list(i)%kind /= [diagnostic_beyond, diagnostic_surplus])) &
-            call write_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
+            call write_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), &
+               words_of(set%parts(part), list(i)))
       end do
    end subroutine write_diagnostics
 
@@ -434,14 +436,16 @@ contains
    end function words_of
 
    !> Where a drive is at the limit `diagnostic` of its range, and which links are there.
-   function limit_words(m, diagnostic) result(text)
-      type(mechanism_t), intent(in) :: m
+   function limit_words(set, part, diagnostic) result(text)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of the independent mechanism
       type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
 
-      text = measure(m, diagnostic, value_digits)
-      if (diagnostic%links(1) + diagnostic%pair == 0) return
-      text = text//'   '//at_limit(m, diagnostic)
+      associate (m => set%parts(part))
+         text = measure(m, diagnostic, value_digits)
+         if (diagnostic%links(1) + diagnostic%pair > 0) text = text//'   '//at_limit(m, diagnostic)
+      end associate
    end function limit_words
 
    !> TURNS FULLY, CLOSES AFTER 1 TURN

@@ -11,8 +11,9 @@ module listing_layout
       table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, &
       usual_size, cell_none, last_cell, of_length, of_angle
    use independent, only: set_t, request_of
+   use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
    use drives, only: growing_sizes
-   use names, only: drive_name, more
+   use names, only: more
    use scales, only: characteristic_length, characteristic_rate, latest_time, is_length, shortest_step
    use number_format, only: numeral_length
    use text_output, only: output_t, put
@@ -21,7 +22,7 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
-   public :: line_length, name_length, row_length, end_of_column, column_name, column_unit, angle_unit, &
+   public :: row_title, line_length, name_length, row_length, end_of_column, column_name, column_unit, angle_unit, &
       choose_time_digits, write_folded
 
    !> Characters of a line at most.
@@ -135,12 +136,12 @@ contains
          type(request_t), allocatable :: requests(:)
          integer :: i, k
 
-         requests = [(request_of(set, i), i=1, size(set%rows))]
+         requests = requests_of(set)
          if (any(requests%angle_alone) .and. .not. any(requests%kind == request_link .and. requests%every > 0 .and. &
             .not. requests%angle_alone)) l%links_table = table_turning
 
          do i = 1, size(requests)
-            l%has(form_of(set%parts(set%rows(i)%part), requests(i))) = .true.
+            l%has(row_form(set, i)) = .true.
          end do
          do k = table_turning, last_table
             associate (of_table => kinds_of_rows(k)%forms)
@@ -174,6 +175,7 @@ contains
 
       !> Writes the texts of the line over the tables of an instant: time and drives.
       subroutine write_instant()
+         type(drive_t) :: law
          real(wp) :: sizes(3, 0:1)
          integer :: k, dimension
 
@@ -182,21 +184,33 @@ contains
          l%behind_time = ' '//unit_of(l%time%power, trim(set%time_unit))
          allocate (l%drives(min(size(set%drives), max_drives)))
          do k = 1, size(l%drives)
-            associate (m => set%parts(set%drives(k)%part), &
-               law => set%parts(set%drives(k)%part)%drives(set%drives(k)%number), &
-               d => l%own(set%drives(k)%part), drive => l%drives(k))
+            law = drive_of(set, k)
+            associate (d => l%own(set%drives(k)%part), drive => l%drives(k))
                dimension = merge(of_length, of_angle, is_length(law))
                drive%law = law
                drive%format = d%format(dimension, 0)
-               drive%before = '   '//trim(drive_name(m, law))//' = '
+               drive%before = '   '//drive_title(set, k)//' = '
                drive%behind = ' '//unit_of(drive%format%power, trim(l%unit(dimension)))
-               sizes = growing_sizes(law, latest_time(m))
+               sizes = growing_sizes(law, latest_time(set))
                drive%size_of = sizes(1, :)
             end associate
          end do
          l%more_drives = more(size(set%drives) - size(l%drives), set%polish)
       end subroutine write_instant
    end function new_layout
+
+   !> Names a row: its link, point, pair or measure, of a ratio with its drive: MU BY ANGLE CRANK.
+   function row_title(set, i) result(name)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the row in the set
+      character(:), allocatable :: name
+      type(request_t) :: request
+
+      request = request_of(set, i)
+      name = trim(row_subject(set, i))
+      if (request%drive > 0) name = name//' '//phrase(text_by, set%polish)//' ' &
+         //drive_title(set, drive_number(set, set%rows(i)%part, request%drive))
+   end function row_title
 
    !> Writes the lines over rows in tables of one kind: names, powers of ten if there are any, units.
    subroutine write_table_heads(l, digits, kind)

@@ -2,9 +2,10 @@
 !> are not proved; and the counts.
 module proof_table
    use kinds, only: wp
-   use mechanism, only: shown_links, instant
+   use mechanism, only: instant
    use motion, only: flag_none
    use independent, only: set_t
+   use set_members, only: link_names
    use proofs, only: proofs_t, reason_t
    use names, only: listed
    use listing, only: words_of_flag
@@ -80,10 +81,8 @@ contains
          words = phrase(text_near_singular, set%polish)
          if (reason%too_many > 0) words = phrase(text_too_wide, set%polish)//' '//whole(reason%too_many)
          if (.not. allocated(reason%links)) return
-         associate (part => set%parts(reason%part))
-            if (size(reason%links) > 0) words = phrase(text_links, set%polish)//' ' &
-               //listed(part%links(shown_links(part, reason%links))%name, set%polish)//': '//words
-         end associate
+         if (size(reason%links) > 0) words = phrase(text_links, set%polish)//' ' &
+            //listed(link_names(set, reason%part, reason%links), set%polish)//': '//words
       end if
    end function words_of
 

@@ -1,7 +1,7 @@
 !> The answer to the card RANGE in the listing: the ends of the range of each drive.
 module ranges_table
    use independent, only: set_t
-   use names, only: drive_name
+   use set_members, only: drive_number, drive_title
    use ranges, only: range_t, low, high
    use listing, only: limit_words, full_turn_words
    use listing_layout, only: write_folded
@@ -28,26 +28,27 @@ contains
       call put(o, ' '//phrase(text_range, set%polish))
       if (size(list) == 0) call put(o, '   '//phrase(text_none, set%polish))
       do i = 1, size(list)
-         associate (r => list(i), m => set%parts(list(i)%part))
-            words = trim(drive_name(m, m%drives(r%drive)))
-            if (r%is_of_branch) words = words//'   '//phrase(text_range_of_branch, m%polish)
+         associate (r => list(i))
+            words = drive_title(set, drive_number(set, r%part, r%drive))
+            if (r%is_of_branch) words = words//'   '//phrase(text_range_of_branch, set%polish)
             call put(o, ' '//words)
             if (r%is_all) then
-               call put(o, '   '//full_turn_words(r%turns, m%polish))
+               call put(o, '   '//full_turn_words(r%turns, set%polish))
             else
                do side = low, high
-                  words = limit_words(m, r%limit(side))
+                  words = limit_words(set, r%part, r%limit(side))
                   ! Where no limit is told rounding is too coarse to follow the motion farther.
                   if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &
-                     words = words//'   '//phrase(text_close, m%polish)
+                     words = words//'   '//phrase(text_close, set%polish)
                   if (r%has_limit(side)) then
                      call write_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
                   else
-                     call put(o, '   '//side_words(side)//'  '//phrase(text_no_limit, m%polish)//' '//words)
+                     call put(o, '   '//side_words(side)//'  '//phrase(text_no_limit, set%polish)//' '//words)
                   end if
                end do
             end if
-            if (r%change_points > 0) call put(o, '   '//phrase(text_on_the_way, m%polish)//' '//whole(r%change_points))
+            if (r%change_points > 0) &
+               call put(o, '   '//phrase(text_on_the_way, set%polish)//' '//whole(r%change_points))
          end associate
       end do
    end subroutine write_ranges

@@ -8,10 +8,10 @@ module variant_rows
    use table, only: format_t, cell_t, choose_digits
    use motion, only: flag_none
    use drives, only: drive_motion
-   use names, only: drive_name, subject_name
    use independent, only: set_t, request_of, first_drive
+   use set_members, only: drive_of, drive_number, drive_title
    use deck_variants, only: variation_t, varied_t, values_of_variant
-   use listing_layout, only: layout_t, angle_unit, column_name, column_unit
+   use listing_layout, only: layout_t, angle_unit, column_name, column_unit, row_title
    use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
    use extremes, only: coordinate_t, strokes_t, least, greatest, outward, requested_rows, strokes_of
    use extremes_table, only: extreme_words, ratio_format
@@ -82,9 +82,7 @@ contains
       call add_column(summary_column_t('limit.value'))
 
       do i = 1, merge(size(set%drives), 0, set%ranges)
-         associate (own => set%parts(set%drives(i)%part))
-            name = drive_name(own, own%drives(set%drives(i)%number))
-         end associate
+         name = drive_title(set, i)
          call add_drive(i, 'range.min', name, phrase(text_one_range, set%polish)//' MIN')
          call add_drive(i, 'range.max', name, phrase(text_one_range, set%polish)//' MAX')
          call add_column(summary_column_t('range.turns.'//trim(drives(i)), .true., name, &
@@ -133,9 +131,7 @@ contains
          c%name = start//'.drive'
          if (number > 0) then
             c%name = start//'.'//drives(number)
-            associate (place => set%drives(number))
-               c%format%is_angle = .not. is_length(set%parts(place%part)%drives(place%number))
-            end associate
+            c%format%is_angle = .not. is_length(drive_of(set, number))
             c%printed = above /= ''
             c%above = above
             c%below = below
@@ -145,17 +141,6 @@ contains
          end if
          call add_column(c)
       end subroutine add_drive
-
-      !> Gives the name of what a request is about: ROCKER, MU BY ANGLE CRANK.
-      function name_of(m, request) result(name)
-         type(mechanism_t), intent(in) :: m  !< whose request it is
-         type(request_t), intent(in) :: request
-         character(:), allocatable :: name
-
-         name = trim(subject_name(m, request%kind, request%subject))
-         if (request%drive > 0) &
-            name = name//' '//phrase(text_by, set%polish)//' '//trim(drive_name(m, m%drives(request%drive)))
-      end function name_of
 
       !> Adds the columns of what EXTREMES asks for.
       subroutine add_extremes()
@@ -171,7 +156,7 @@ contains
                request = request_of(set, column%request)
                word = column_name(l, column%row_column_t)
                c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
-                  above=name_of(set%parts(part), request), &
+                  above=row_title(set, column%request), &
                   format=l%own(part)%format(column%dimension, column%order))
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
@@ -234,9 +219,8 @@ contains
       if (row%limit%kind /= 0) then
          row%cells(n + 1) = cell_t(cell_number, row%limit%t)
          if (row%limit%drive > 0) then
-            associate (own => set%parts(row%limit%part))
-               row%cells(n + 2) = cell_t(cell_word, word=drive_name(own, own%drives(row%limit%drive)))
-            end associate
+            row%cells(n + 2) = cell_t(cell_word, &
+               word=drive_title(set, drive_number(set, row%limit%part, row%limit%drive)))
             row%cells(n + 3) = cell_t(cell_number, row%limit%value)
             if (row%limit%is_angle .and. set%degrees) row%cells(n + 3)%value = in_degrees(row%limit%value)
          end if
@@ -247,8 +231,8 @@ contains
       if (set%ranges) then
          ! Three for each drive: the limits, and the turns after which the motion closes.
          do i = 1, size(asked%ranges)
-            associate (one => asked%ranges(i), d => n + 3*(findloc(set%drives%part == asked%ranges(i)%part &
-                       .and. set%drives%number == asked%ranges(i)%drive, .true., dim=1) - 1))
+            associate (one => asked%ranges(i), d => n + 3*(drive_number(set, asked%ranges(i)%part, &
+                       asked%ranges(i)%drive) - 1))
                do which = low, high
                   if (one%has_limit(which)) row%cells(d + which) = cell_t(cell_number, one%limit(which)%value)
                end do
@@ -322,9 +306,7 @@ contains
       real(wp) :: f(3)
 
       if (number == 0) return
-      associate (drive => set%parts(set%drives(number)%part)%drives(set%drives(number)%number))
-         f = drive_motion(drive, t)
-         cell = cell_t(cell_number, f(1))
-      end associate
+      f = drive_motion(drive_of(set, number), t)
+      cell = cell_t(cell_number, f(1))
    end function drive_cell
 end module variant_rows

@@ -131,7 +131,7 @@ contains
       end do
       if (row%rejected /= '') call write_folded(o, ' *** ', row%rejected)
       if (row%limit%kind /= 0) then
-         call write_diagnostics(o, set%parts(row%limit%part), [row%limit])
+         call write_diagnostics(o, set, row%limit%part, [row%limit])
       else if (row%mark /= flag_none) then
          call put(o, ' *** '//words_of_flag(row%mark, row%singularity, set%polish))
       end if
