@@ -1,5 +1,5 @@
-!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY, CIRCUITS, TOLER
-!> and PROVE. A set that asks for nothing costs nothing.
+!> Answers about the whole motion of a set, in addition to tables at instants: the cards EXTREMES, RANGE, ASSEMBLY,
+!> CIRCUITS, TOLER and PROVE. A set without these cards costs nothing.
 module answers
    use kinds, only: wp
    use mechanism, only: request_t
@@ -26,17 +26,16 @@ module answers
       type(shares_t) :: shares
       type(proofs_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one)
-      integer :: assemblies = -1                    !< of all parts, where they are asked for and all are known
-      type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
+      integer :: assemblies = -1                    !< of all parts, if they are asked for and all are known; or -1
+      type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free); not allocated: not asked for
    end type answers_t
 
 contains
 
-   !> Ready for the first instant of the set that `set` analyses. `lists`: its tables are written, which alone have the
-   !> shares of tolerances.
+   !> Prepares the answers of a set, before its first instant.
    subroutine new_answers(set, lists, answers)
       type(set_analysis_t), intent(in) :: set
-      logical, intent(in) :: lists           !< the tables of the set are written
+      logical, intent(in) :: lists           !< its tables are written: only these have the shares of tolerances
       type(answers_t), intent(out) :: answers
       type(request_t), allocatable :: requests(:)
       integer :: c
@@ -52,12 +51,11 @@ contains
       if (answers%wants_extremes) call new_extremes(set%now, answers%extremes)
    end subroutine new_answers
 
-   !> Takes instant number `k`, to which `set` has advanced, and what is asked for between it and those before. `due`:
-   !> it is printed.
+   !> Takes an instant, to which the set has advanced, and searches between it and the last one.
    subroutine update_answers(answers, set, rows, k, due)
       type(answers_t), intent(inout) :: answers
       type(set_analysis_t), intent(inout) :: set
-      type(finished_row_t), intent(in) :: rows(:)
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
       integer, intent(in) :: k               !< the number of the instant, from 0
       logical, intent(in) :: due             !< it is printed
 
@@ -68,7 +66,7 @@ contains
       if (answers%wants_extremes) call record_instant(answers%extremes, set, k)
    end subroutine update_answers
 
-   !> Finds after the last instant what the whole run answers.
+   !> Finds the answers that need the whole run, after its last instant.
    subroutine finish_answers(answers, set)
       type(answers_t), intent(inout) :: answers
       type(set_analysis_t), intent(inout) :: set   !< after its last instant

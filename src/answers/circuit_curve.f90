@@ -1,12 +1,12 @@
 !> The curve of all positions of a mechanism whose one drive is set free: its equations, its points, and steps from one
 !> to another.
 !>
-!> Its pairs and its other drives, at rest, are one equation less than it has coordinates; a mechanism with more has no
-!> such curve here. Lengths are those of METHOD DENSE's system.
+!> Its pairs and its other drives, at rest, are one equation less than it has coordinates; a mechanism with more
+!> equations has no such curve here. The unit of length is the one of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
-!> singular at change points alone. K and D of `uniqueness_radius`, taken from B, bound how fast B^-1 B changes in any
-!> direction and along t; `find_reach` takes from them how long a step cannot jump to another circuit.
+!> singular only at change points. K and D of `uniqueness_radius`, taken from B, bound how fast B^-1 B changes in any
+!> direction and along t. By them `find_reach` finds how long a step cannot jump to another circuit.
 module circuit_curve
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
@@ -23,39 +23,41 @@ module circuit_curve
    implicit none
    private
    public :: curve_t, make_curve, is_redundant, drive_value, deck_position
-   public :: of_value, of_slope, of_bend, of_size, of_gap
+   public :: of_value, of_slope, of_bend, of_size, of_cylinder
    public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, &
-      same_place, same, reversed
+      same_place, same_position_tolerance, reversed
 
-   integer, parameter :: max_iterations = 12
-   !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
-   real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
+   !> The largest number of steps of Newton's method for one point.
+   integer, parameter :: max_newton_steps = 12
+   !> A correction below the first, relative to the largest coordinate, is rounding. A correction that no longer
+   !> shrinks is rounding below the second (rad and lengths).
+   real(wp), parameter :: rounding_correction = 16.0_wp*epsilon(1.0_wp), stalled_correction = sqrt(epsilon(1.0_wp))
 
-   !> The bound of `find_reach`, less than 1/2: K of slides is taken at the start of a step, and they grow.
-   real(wp), parameter :: certified = 0.25_wp
+   !> The bound of `find_reach`, less than 1/2, since K of slides is taken at the start of a step, and they grow.
+   real(wp), parameter :: certified_bound = 0.25_wp
    !> The longest step, in rad and lengths, and in parts of a longer slide: a curve of such pieces looks smooth.
    real(wp), parameter :: max_step = 0.1_wp
    !> Two positions are one up to this difference, in rad and lengths.
-   real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
+   real(wp), parameter :: same_position_tolerance = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
 
    !> The numbers of a position on the curve: the drive's value, its first and second derivative, the largest coordinate
-   !> in lengths, and the shortest length of a cylinder in the deck's unit.
+   !> in lengths, and the length of the shortest cylinder in the deck's unit.
    enum, bind(c)
-      enumerator :: of_value = 0, of_slope, of_bend, of_size, of_gap
+      enumerator :: of_value = 0, of_slope, of_bend, of_size, of_cylinder
    end enum
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
-      type(system_t) :: driven                !< with the drive that is free as well: its row is the last
+      type(system_t) :: driven                !< the free drive as well: its row is the last
       type(cylinder_t), allocatable :: cylinders(:)
-      logical :: drives_cylinder = .false.    !< the free drive is that of the length of one
-      real(wp), allocatable :: held(:)        !< (drives) the values of those that are held, and 0 of the free one
-      logical :: is_angle = .true.            !< the free drive is that of an angle
+      logical :: drives_cylinder = .false.    !< the free drive is the length of a cylinder
+      real(wp), allocatable :: held(:)        !< (drives) the values of the held ones, and 0 of the free one
+      logical :: is_angle = .true.            !< the free drive is an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
       real(wp) :: far = 100.0_wp
       type(configuration_t) :: configuration   !< of the position found last
-      type(coordinates_t) :: nonlinear        !< in which the equations are not linear
+      type(coordinates_t) :: nonlinear        !< the coordinates in which the equations are not linear
       type(factors_t) :: factors
    end type curve_t
 
@@ -64,7 +66,7 @@ module circuit_curve
       real(wp), allocatable :: q(:, :)        !< (3, links) x, y, phi
       real(wp), allocatable :: tangent(:)     !< (coordinates) unit vector
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
-      real(wp) :: value(of_value:of_gap) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]
+      real(wp) :: value(of_value:of_cylinder) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]
       real(wp) :: reach = 0.0_wp              !< the longest step that is certified
       real(wp) :: room = 0.0_wp               !< within it no other curve comes near, whatever the direction
       logical :: is_dead = .false.            !< the drive turns back here
@@ -73,12 +75,12 @@ module circuit_curve
 
 contains
 
-   !> The curve on which drive number `drive` of `m` is free; the other ones have their values of the time `t`.
+   !> Makes the curve on which a drive of a mechanism is free; the other drives have their values of a time.
    subroutine make_curve(curve, m, drive, t)
       type(curve_t), intent(out) :: curve
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: drive
-      real(wp), intent(in) :: t
+      integer, intent(in) :: drive           !< number of the free drive
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3, size(m%drives))
       integer, allocatable :: others(:)
       integer :: i
@@ -99,25 +101,25 @@ contains
       curve%nonlinear = new_coordinates(curve%closure)
    end subroutine make_curve
 
-   !> Some equations are too many, by count: two of each pair, one of each drive that is held.
+   !> Tells whether some equations are redundant, by count: two of each pair, one of each drive that is held.
    pure logical function is_redundant(curve)
       type(curve_t), intent(in) :: curve
 
       is_redundant = 2*size(curve%closure%pairs) + size(curve%closure%drives) > curve%closure%n - 1
    end function is_redundant
 
-   !> Newton's method from `curve%configuration`, with the row `border` at rest. `curve%factors` are those of the
-   !> Jacobian there, with `border` in the place of the `row` of the free drive.
+   !> Corrects curve%configuration by Newton's method, at right angles to the row `border`. curve%factors become those
+   !> of the Jacobian there, with `border` in the place of the row of the free drive.
    subroutine correct(curve, border, row, ok)
       type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: border(:)
-      real(wp), intent(out) :: row(:)
-      logical, intent(out) :: ok
+      real(wp), intent(in) :: border(:)      !< (coordinates)
+      real(wp), intent(out) :: row(:)        !< (coordinates) of the free drive
+      logical, intent(out) :: ok             !< the iteration has converged, and the Jacobian is regular
       real(wp) :: r(curve%closure%n), change, before
       integer :: i, info
 
       before = huge(before)
-      do i = 1, max_iterations
+      do i = 1, max_newton_steps
          call residual(curve%driven, curve%configuration, curve%held, r)
          r(curve%closure%n) = 0.0_wp
          call factor_there()
@@ -128,9 +130,9 @@ contains
          if (.not. ok) return
          call add_to_links(curve%closure, -r, curve%configuration%q)
          call set_configuration(curve%closure, curve%configuration)
-         ok = change <= converged*max(1.0_wp, maxval(abs(curve%configuration%q)))
+         ok = change <= rounding_correction*max(1.0_wp, maxval(abs(curve%configuration%q)))
          if (ok) return
-         ok = change <= stalled
+         ok = change <= stalled_correction
          if (ok .and. change > 0.5_wp*before) exit
          before = change
       end do
@@ -148,10 +150,10 @@ contains
       end subroutine factor_there
    end subroutine correct
 
-   !> The value `given` of the free drive in the deck's unit.
+   !> Converts a value of the free drive to the deck's unit.
    pure real(wp) function drive_value(curve, given) result(value)
       type(curve_t), intent(in) :: curve
-      real(wp), intent(in) :: given
+      real(wp), intent(in) :: given          !< rad, or lengths of the curve from its origin
 
       value = given
       if (curve%is_angle) return
@@ -162,52 +164,51 @@ contains
       end associate
    end function drive_value
 
-   !> The links' position (3, links) `places` in the deck's unit, counted from its origin.
+   !> Converts the position (3, links) of links to the deck's unit, counted from the origin of the curve.
    pure function deck_position(curve, places) result(position)
       type(curve_t), intent(in) :: curve
-      real(wp), intent(in) :: places(:, :)
+      real(wp), intent(in) :: places(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
       real(wp) :: position(3, size(places, 2))
 
       position = places
       position(:2, :) = places(:2, :)*curve%closure%length
    end function deck_position
 
-   !> The `point` of the curve at the links' `position` (3, links), in the deck's unit and from its origin. Its
-   !> tangent has the sense in which the drive grows, unless it is at rest. `ok`: it was found, and is regular.
+   !> Finds the point of the curve at a position of the links. Its tangent has the sense in which the drive grows,
+   !> unless the drive is at rest.
    subroutine start_point(curve, position, point, ok)
       type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: position(:, :)
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from the origin, phi in rad
       type(curve_point_t), intent(out) :: point
-      logical, intent(out) :: ok
+      logical, intent(out) :: ok             !< it was found, and is regular
       real(wp) :: q(3, size(position, 2)), border(curve%closure%n)
       integer :: i
 
       q = position
       q(:2, :) = q(:2, :)/curve%closure%length
-      ! A row without a meaning: only by chance is it at right angles to the tangent.
+      ! A row without a meaning, which hardly ever is at right angles to the tangent.
       border = [(cos(real(i, wp)), i=1, size(border))]
       call find_point(curve, q, border/norm2(border), point, ok)
       if (.not. ok) return
       if (point%value(of_slope) < 0.0_wp) point = reversed(point)
    end subroutine start_point
 
-   !> The point `to` of the curve at the distance `step` `from` along its tangent; `ok`: it is regular, and where the
-   !> tangent and the bend of `from` let it be expected.
+   !> Finds the point of the curve at a distance from a point along its tangent.
    subroutine step_along(curve, from, step, to, ok)
       type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: from
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: step           !< the distance, rad and lengths of the curve
       type(curve_point_t), intent(out) :: to
-      logical, intent(out) :: ok
+      logical, intent(out) :: ok             !< `to` is regular, and near the place that tangent and bend predict
       real(wp) :: q(3, size(from%q, 2))
 
       q = from%q
       call add_to_links(curve%closure, step*from%tangent + 0.5_wp*step**2*from%bend, q)
       call find_point(curve, q, from%tangent, to, ok)
-      if (ok) ok = maxval(abs(to%q - q)) <= max(same, 0.5_wp*abs(step))
+      if (ok) ok = maxval(abs(to%q - q)) <= max(same_position_tolerance, 0.5_wp*abs(step))
    end subroutine step_along
 
-   !> `point`, its tangent turned round.
+   !> Gives a point with the opposite tangent.
    pure function reversed(point) result(r)
       type(curve_point_t), intent(in) :: point
       type(curve_point_t) :: r
@@ -217,7 +218,7 @@ contains
       r%value(of_slope) = -point%value(of_slope)
    end function reversed
 
-   !> The distance `from` `to` along the tangent of `from`.
+   !> Gives the distance of two points along the tangent of the first, in rad and lengths of the curve.
    pure real(wp) function step_between(curve, from, to) result(h)
       type(curve_t), intent(in) :: curve
       type(curve_point_t), intent(in) :: from, to
@@ -225,29 +226,30 @@ contains
       h = dot_product(from%tangent, offset_from(curve, from%q, to%q, .false.))
    end function step_between
 
-   !> Whether the `position` (3, links) is on the curve at a distance from 0 to `step` along the tangent of `from`, or
-   !> beside its end; whole turns of links do not count. `to`: the point of the curve there.
+   !> Finds whether a position is on the curve within a step from a point, or near the ends of the step. Whole turns of
+   !> links do not count.
    subroutine lies_between(curve, from, step, position, to, lies)
       type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: from
-      real(wp), intent(in) :: step, position(:, :)
-      type(curve_point_t), intent(out) :: to
-      logical, intent(out) :: lies
+      real(wp), intent(in) :: step           !< along the tangent of `from`, rad and lengths of the curve
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
+      type(curve_point_t), intent(out) :: to   !< the point of the curve there
+      logical, intent(out) :: lies           !< the position is there
       real(wp) :: x(curve%closure%n), along
 
       x = offset_from(curve, from%q, position, .true.)
       along = dot_product(from%tangent, x)
-      lies = along >= -same .and. along <= step + same
-      if (lies) lies = maxval(abs(x - along*from%tangent)) <= step + same
+      lies = along >= -same_position_tolerance .and. along <= step + same_position_tolerance
+      if (lies) lies = maxval(abs(x - along*from%tangent)) <= step + same_position_tolerance
       if (lies) call step_along(curve, from, along, to, lies)
       if (lies) lies = same_place(to%q, position)
    end subroutine lies_between
 
-   !> The coordinates of the position `second` less those of `first` (3, links), without whole turns if `turns_off`.
+   !> Gives the difference (coordinates) of two positions, in rad and lengths of the curve.
    pure function offset_from(curve, first, second, turns_off) result(x)
       type(curve_t), intent(in) :: curve
-      real(wp), intent(in) :: first(:, :), second(:, :)
-      logical, intent(in) :: turns_off
+      real(wp), intent(in) :: first(:, :), second(:, :)   !< (3, links) the first is subtracted from the second
+      logical, intent(in) :: turns_off       !< without whole turns
       real(wp) :: x(curve%closure%n)
       integer :: i
 
@@ -260,17 +262,17 @@ contains
       end do
    end function offset_from
 
-   !> Whether two positions (3, links) are one, but for whole turns.
+   !> Tells whether two positions are one, but for whole turns.
    pure logical function same_place(first, second)
-      real(wp), intent(in) :: first(:, :), second(:, :)
+      real(wp), intent(in) :: first(:, :), second(:, :)   !< (3, links) in lengths of the curve and rad
 
-      same_place = maxval(separation(first, second, 1.0_wp)) <= same
+      same_place = maxval(separation(first, second, 1.0_wp)) <= same_position_tolerance
    end function same_place
 
-   !> Finds the shortest length of a cylinder at the position `places` (3, links), in the deck's unit.
+   !> Finds the shortest length of a cylinder at a position, in the deck's unit.
    pure real(wp) function shortest(curve, places)
       type(curve_t), intent(in) :: curve
-      real(wp), intent(in) :: places(:, :)
+      real(wp), intent(in) :: places(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
       real(wp) :: position(3, size(places, 2))
       integer :: k
 
@@ -279,13 +281,14 @@ contains
          position(:, curve%cylinders(k)%j)), k=1, size(curve%cylinders))])
    end function shortest
 
-   !> The `point` near the `position` (3, links) at which `border` (coordinates) times the difference from `position` is
-   !> 0. Its tangent has the sense of `border`.
+   !> Finds the point near a position at which `border` times the difference from the position is 0. Its tangent has the
+   !> sense of `border`.
    subroutine find_point(curve, position, border, point, ok)
       type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: position(:, :), border(:)
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
+      real(wp), intent(in) :: border(:)      !< (coordinates)
       type(curve_point_t), intent(out) :: point
-      logical, intent(out) :: ok
+      logical, intent(out) :: ok             !< it was found, and is regular
       real(wp) :: x(curve%closure%n), row(curve%closure%n), along(3, size(position, 2))
 
       curve%configuration%q = position
@@ -312,19 +315,19 @@ contains
       point%value(of_slope) = dot_product(row, point%tangent)
       point%value(of_bend) = point%value(of_bend) + dot_product(row, point%bend)
       point%value(of_size) = maxval(abs(point%q(:2, :)))
-      if (size(curve%cylinders) > 0) point%value(of_gap) = shortest(curve, point%q)
+      if (size(curve%cylinders) > 0) point%value(of_cylinder) = shortest(curve, point%q)
       call find_reach(curve, along, point)
    end subroutine find_point
 
-   !> Finds the longest certified step at `point`, found last, and the room about it; `along` (3, links): its tangent.
+   !> Finds the longest certified step at a point, and the room about it.
    !>
    !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
    !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
    !> within 2 e of that place, and one solution is there.
    subroutine find_reach(curve, along, point)
       type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: along(:, :)
-      type(curve_point_t), intent(inout) :: point
+      real(wp), intent(in) :: along(:, :)    !< (3, links) its tangent
+      type(curve_point_t), intent(inout) :: point   !< found last
       real(wp), allocatable :: y(:, :)
       real(wp) :: k, change, speed, bend, powers(3), least
 
@@ -334,12 +337,12 @@ contains
       change = change_along(curve%closure, curve%nonlinear, y, curve%configuration, along)
       speed = distance(curve%nonlinear, point%tangent)
       bend = distance(curve%nonlinear, point%bend)
-      ! Where nothing turns a step is as long as the mechanism is far.
+      ! If nothing turns, a step is as long as the largest coordinate.
       least = 1.0_wp/max(1.0_wp, point%value(of_size))
 
-      powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified
+      powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified_bound
       ! The sum of powers(i) h^i is 1 at most.
       point%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
-      point%room = 1.0_wp/max(speed/max_step, speed*k/certified, least)
+      point%room = 1.0_wp/max(speed/max_step, speed*k/certified_bound, least)
    end subroutine find_reach
 end module circuit_curve

@@ -1,30 +1,30 @@
-!> One circuit: the curve of positions followed by its length from one of them, both ways where it does not close.
-!> Dead points are where the drive's derivative by the length changes its sign. At a change point no step is certified:
-!> it is passed in the direction of the tangent.
+!> One circuit: the curve of positions, followed by its length from one of them, both ways if it does not close.
+!> At a dead point the drive's derivative by the length changes its sign. At a change point no step is certified: the
+!> curve passes it in the direction of the tangent.
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, of_value, of_slope, of_bend, of_size, of_gap, step_along, &
-      step_between, &
-      lies_between, offset_from, reversed
+   use circuit_curve, only: curve_t, curve_point_t, of_value, of_slope, of_bend, of_size, of_cylinder, step_along, &
+      step_between, lies_between, offset_from, reversed
    use drives, only: halve, middle_of
    use configuration, only: add_to_links
    implicit none
    private
    public :: circuit_t, trace, least_step, find_root, end_closed, end_far, end_lost, end_shut
 
-   !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
-   !> better.
+   !> A certified step below this means a change point: rounding does not distinguish other positions that are nearer.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
-   !> The value of the drive where the length of a cylinder comes to 0 is that of the parabola through its values at
-   !> one, two and three of these lengths, in characteristic lengths: its error is below their cube.
-   real(wp), parameter :: short = 1.0e-4_wp
-   !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
-   real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
+   !> The value of the drive at which a cylinder reaches the length 0 is extrapolated: by the parabola through its
+   !> values at one, two and three of these lengths, in characteristic lengths. Its error is below their cube.
+   real(wp), parameter :: short_cylinder = 1.0e-4_wp
+   !> Across a change point certified steps become longer or shorter by less than this factor, and the tangent turns by
+   !> less than this (rad).
+   real(wp), parameter :: max_step_ratio = 3.0_wp, max_tangent_turn = 0.1_wp
+   !> The largest number of points of one circuit, each way.
    integer, parameter :: max_points = 50000
    !> Rounding makes the tangent uncertain by some roundings over the square of the certified step, and with it the
    !> sense in which the drive moves.
-   real(wp), parameter :: unsure = 16.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: unsure_slope = 16.0_wp*epsilon(1.0_wp)
 
    !> How a circuit ends: it closes, a slide goes to infinity, it can be followed no further, or a cylinder has the
    !> length 0.
@@ -41,7 +41,7 @@ module circuit_trace
 
 contains
 
-   !> The circuit of the `curve` through the point `start`. One that closes begins, and ends, at its first dead point.
+   !> Follows the circuit of a curve through a point. A circuit that closes begins, and ends, at its first dead point.
    subroutine trace(curve, start, circuit)
       type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: start
@@ -53,12 +53,12 @@ contains
       call follow(curve, start, circuit)
       if (circuit%ends(2) == end_closed) then
          circuit%ends(1) = end_closed
-         ! Of a dead point at the start only the neighbours tell.
+         ! Only its neighbours show whether the start is a dead point.
          n = size(circuit%points)
          circuit%points([1, n])%is_dead = sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
          i = findloc(circuit%points%is_dead, .true., dim=1)
          if (i > 1) then
-            ! What comes before that point comes a round later.
+            ! The points before that one come a round later.
             points = [circuit%points(i:), circuit%points(2:i)]
             associate (first => circuit%points(1), last => circuit%points(n))
                do i = n - i + 2, n
@@ -71,7 +71,7 @@ contains
       else
          call follow(curve, reversed(start), back)
          circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
-         ! What lies back from the first point comes before it.
+         ! The points that were followed back come before the first one.
          n = size(back%points)
          allocate (points(n - 1 + size(circuit%points)))
          do i = 1, n - 1
@@ -84,7 +84,7 @@ contains
       circuit%rests = size(circuit%points) > 1 .and. .not. any(is_sure(circuit%points))
    end subroutine trace
 
-   !> Follows the curve from `start` in the sense of its tangent to its end.
+   !> Follows the curve from a point in the sense of its tangent to its end.
    subroutine follow(curve, start, circuit)
       type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: start
@@ -116,13 +116,14 @@ contains
             leaves = .true.
          end if
          if (.not. ok .or. signal_received() > 0) exit
+
          closes = .false.
          if (n > 1) call lies_between(curve, a, step_between(curve, a, b), start%q, again, closes)
          if (closes) b = again
-         if (b%value(of_gap) <= 0.0_wp) then
+         if (b%value(of_cylinder) <= 0.0_wp) then
             closes = .false.
             circuit%ends(2) = end_shut
-            call find_root(curve, a, b, of_gap, 0.0_wp, again, ok)
+            call find_root(curve, a, b, of_cylinder, 0.0_wp, again, ok)
             if (ok) b = again
             ! Nothing is passed there.
             if (circuit%points(n)%is_change) n = n - 1
@@ -132,8 +133,9 @@ contains
             call find_root(curve, a, b, of_size, curve%far, again, ok)
             if (ok) b = again
          end if
-         ! The dead points between point `sure`, the last one at which the drive's sense is known, and `b`. Where they
-         ! are no neighbours it turns back too near to a change point to tell the two apart.
+
+         ! The dead points between `b` and point `sure`, the last one at which the drive's sense is known. If these are
+         ! no neighbours, the drive turns back too near to a change point to distinguish the two.
          if (sure > 0 .and. is_sure(b)) then
             if (sure == n) then
                call append_dead_points(b)
@@ -152,31 +154,33 @@ contains
 
    contains
 
-      !> Finds the drive's `value` where the length of a cylinder comes to 0. The direction of the barrel is free
-      !> there, and a point of the curve known to half its digits: the parabola through the values at three lengths
-      !> before it.
+      !> Finds the drive's value at which the length of a cylinder becomes 0, by the parabola through the values at
+      !> three lengths before it. The direction of the barrel is free there, and a point of the curve is known to half
+      !> its digits. If the parabola cannot be made, the value stays.
       subroutine find_value_at_0(value)
-         real(wp), intent(inout) :: value
+         real(wp), intent(inout) :: value    !< rad or lengths of the curve
          type(curve_point_t) :: p
          real(wp) :: x(3)
          integer :: from, k
 
-         from = findloc(circuit%points(:n)%value(of_gap) > 3.0_wp*short*curve%closure%length, .true., dim=1, &
-            back=.true.)
+         from = findloc(circuit%points(:n)%value(of_cylinder) > 3.0_wp*short_cylinder*curve%closure%length, .true., &
+            dim=1, back=.true.)
          if (from > 0) then
             do k = 1, 3
-               call find_root(curve, circuit%points(from), b, of_gap, real(k, wp)*short*curve%closure%length, p, ok)
+               call find_root(curve, circuit%points(from), b, of_cylinder, &
+                  real(k, wp)*short_cylinder*curve%closure%length, p, ok)
                if (.not. ok) return
                x(k) = p%value(of_value)
             end do
             value = 3.0_wp*(x(1) - x(2)) + x(3)
          end if
-         ! The driven cylinder itself has the length 0; another one may come to 0 before it.
-         if (curve%drives_cylinder .and. abs(value) < short*curve%closure%length) value = 0.0_wp
+         ! The driven cylinder itself has the length 0; another one may reach 0 before it.
+         if (curve%drives_cylinder .and. abs(value) < short_cylinder*curve%closure%length) value = 0.0_wp
       end subroutine find_value_at_0
 
-      !> From the last of the `n` points of `circuit` across the change point ahead, which is appended, to `point`, as
-      !> far behind it: certified steps shrink in proportion to the distance from it.
+      !> Passes the change point ahead of the last of the `n` points of the circuit, and appends it. The new point is
+      !> as far after it: certified steps shrink in proportion to the distance from a change point. Without it `ok` is
+      !> false.
       subroutine pass_change_point(point)
          type(curve_point_t), intent(out) :: point
          type(curve_point_t) :: change
@@ -191,10 +195,10 @@ contains
             h = 2.0_wp*step_between(curve, before, a)*shrinks/(1.0_wp - shrinks)
             call step_along(curve, a, h, point, ok)
             if (.not. ok) return
-            ok = point%room < alike*a%room .and. a%room < alike*point%room &
-               .and. norm2(point%tangent - a%tangent) < straight
+            ok = point%room < max_step_ratio*a%room .and. a%room < max_step_ratio*point%room &
+               .and. norm2(point%tangent - a%tangent) < max_tangent_turn
             if (.not. ok) return
-            ! Halfway on the cubic through both with their tangents: the drive may have its dead point there.
+            ! Halfway on the cubic through both with their tangents: this may be a dead point of the drive.
             call add_to_links(curve%closure, &
                0.5_wp*offset_from(curve, a%q, point%q, .false.) + 0.125_wp*h*(a%tangent - point%tangent), change%q)
             change%value(of_value) = 0.5_wp*(a%value(of_value) + point%value(of_value)) &
@@ -205,8 +209,8 @@ contains
          call append(change)
       end subroutine pass_change_point
 
-      !> Appends the dead points between the last of the `n` points and `point`: one where the drive's derivative
-      !> changes its sign; two where it does so and back, about the place at which it is least.
+      !> Appends the dead points between the last of the `n` points and another one: one if the drive's derivative
+      !> changes its sign; two, about the place at which the derivative is least, if it changes its sign and back.
       recursive subroutine append_dead_points(point)
          type(curve_point_t), intent(in) :: point
          type(curve_point_t) :: a, p
@@ -227,7 +231,7 @@ contains
          end if
       end subroutine append_dead_points
 
-      !> Appends `point` to the `n` points of `circuit`.
+      !> Appends a point to the `n` points of the circuit.
       subroutine append(point)
          type(curve_point_t), intent(in) :: point
          type(curve_point_t), allocatable :: more(:)
@@ -242,14 +246,15 @@ contains
       end subroutine append
    end subroutine follow
 
-   !> Whether the sense in which the drive moves is known at `point`.
+   !> Tells whether the sense in which the drive moves is known at a point.
    pure elemental logical function is_sure(point)
       type(curve_point_t), intent(in) :: point
 
-      is_sure = abs(point%value(1))*point%room**2 > unsure
+      is_sure = abs(point%value(1))*point%room**2 > unsure_slope
    end function is_sure
 
-   !> 1 or -1: the sense in which the drive moves at the first of `points` at which it is known; 0 where there is none.
+   !> Gives the sense in which the drive moves, 1 or -1, at the first of some points at which it is known; 0 if it is
+   !> not known at any.
    pure integer function sense(points)
       type(curve_point_t), intent(in) :: points(:)
       integer :: k
@@ -259,15 +264,15 @@ contains
       if (k > 0) sense = nint(sign(1.0_wp, points(k)%value(1)))
    end function sense
 
-   !> The point `root` between the neighbours `from` and `to` at which number `order` (of_value, ..., of_size) is
-   !> `level`, which is between theirs, by halving the step `from`. `ok`: it was found.
+   !> Finds the point between two neighbours at which one of the numbers of a position has a level, by halving the step
+   !> from the first.
    subroutine find_root(curve, from, to, order, level, root, ok)
       type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: from, to
-      integer, intent(in) :: order
-      real(wp), intent(in) :: level
+      type(curve_point_t), intent(in) :: from, to   !< the neighbours
+      integer, intent(in) :: order           !< which number: of_value, ..., of_gap
+      real(wp), intent(in) :: level          !< between the numbers of the neighbours, in their unit
       type(curve_point_t), intent(out) :: root
-      logical, intent(out) :: ok
+      logical, intent(out) :: ok             !< it was found
       real(wp) :: near, far
       integer :: i
 

@@ -1,11 +1,12 @@
 !> Card CIRCUITS: the whole motion of a mechanism with one free drive (Chase and Mirth, Circuits and branches of
-!> single-degree-of-freedom planar linkages, Journal of Mechanical Design 115, 1993). A circuit is what the mechanism
-!> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
+!> single-degree-of-freedom planar linkages, Journal of Mechanical Design 115, 1993). A circuit has all positions that
+!> the mechanism reaches without being taken apart, the drive free to turn back at dead points; its branches lie
+!> between dead points.
 !>
-!> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
-!> instant, and all assemblies at angles of each link that turns: a circuit between all of these is not found.
+!> A circuit is traced from each assembly that is on no known circuit: the deck's own, all others of the first instant,
+!> and all assemblies at several angles of each link that turns. A circuit between all of these is not found.
 !>
-!> The links at a dead point are those that are singular where the motion begins there.
+!> The links at a dead point are those whose position is singular when a motion begins there.
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
@@ -15,24 +16,24 @@ module circuits
    use analysis, only: analysis_t, make_analysis, advance
    use assemblies, only: assemblies_t, assembly_t, find_assemblies
    use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      of_size, of_gap, step_between, lies_between, same_place, same
+      of_size, of_cylinder, step_between, lies_between, same_place, same_position_tolerance
    use circuit_trace, only: circuit_t, trace, least_step, end_closed
    use ranges, only: held_at, estimate_side
    implicit none
    private
    public :: circuits_t, circuit_branch_t, find_circuits, turns_of
 
-   real(wp), parameter :: turn = 2.0_wp*pi
-   !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
-   real(wp), parameter :: tie = 1.0e-6_wp
+   real(wp), parameter :: full_turn = 2.0_wp*pi   !< rad
+   !> More than the rounding of an angle, in turns: ties between whole turns always fall on one side.
+   real(wp), parameter :: tie_turns = 1.0e-6_wp
 
-   !> More circuits are not looked for, nor any after so much work: points times the cube of the coordinates.
+   !> A search ends after so many circuits, or after so much work: points times the cube of the coordinates.
    integer, parameter :: max_circuits = 64
    real(wp), parameter :: max_work = 3.0e9_wp
 
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t
-      integer :: circuit = 0
+      integer :: circuit = 0                   !< number of the circuit
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
@@ -41,7 +42,7 @@ module circuits
 
    !> A change point.
    type :: meeting_t
-      real(wp), allocatable :: q(:, :)         !< (3, links) its place
+      real(wp), allocatable :: q(:, :)         !< (3, links) its position
       real(wp) :: value = 0.0_wp               !< the drive's (rad or deck's length)
       logical, allocatable :: circuits(:)      !< (circuits) which meet there
    end type meeting_t
@@ -51,30 +52,29 @@ module circuits
       integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_redundant = .false.        !< there are too many equations: none is followed
       logical :: is_complete = .true.          !< all assemblies of the first instant were known
-      logical :: are_more = .false.            !< than are followed
-      real(wp) :: work = 0.0_wp                !< of those that are followed
+      logical :: are_more = .false.            !< there are more circuits than are followed
+      real(wp) :: work = 0.0_wp                !< for the followed ones
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)
       type(circuit_branch_t), allocatable :: branches(:)
-      type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links where known
+      type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links if known
       type(meeting_t), allocatable :: meetings(:)
    end type circuits_t
 
-   !> A slide is followed farther than it goes in any assembly of the first instant, by this factor.
-   real(wp), parameter :: beyond = 2.0_wp
-   !> Angles of each link at which all assemblies are found; fewer where that takes more than so many paths.
-   integer, parameter :: link_values = 24, max_paths = 500
+   !> A slide is followed farther than its largest value in the assemblies of the first instant, by this factor.
+   real(wp), parameter :: farther_than_seen = 2.0_wp
+   !> All assemblies are found at so many angles of each link; at fewer if that takes more than so many paths.
+   integer, parameter :: max_link_angles = 24, max_paths = 500
 
 contains
 
-   !> Finds the circuits of `m`, one independent mechanism with the motion `start` at its first instant, known or not;
-   !> drive number `drive` is free, the others keep their values. `first`: the assemblies there, if they are known.
+   !> Finds the circuits of a mechanism with one free drive; the others keep their values.
    subroutine find_circuits(m, start, drive, found, first)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
+      type(mechanism_t), intent(in) :: m     !< one independent mechanism
+      type(motion_t), intent(in) :: start    !< at its first instant, known or not
+      integer, intent(in) :: drive           !< number of the free drive
       type(circuits_t), intent(out) :: found
-      type(assemblies_t), intent(in), optional :: first
+      type(assemblies_t), intent(in), optional :: first   !< those of the first instant, if they are known
       type(assemblies_t) :: all_of_them
       type(mechanism_t) :: held
       integer :: i
@@ -92,7 +92,7 @@ contains
       if (found%is_redundant) return
       do i = 1, size(all_of_them%list)
          associate (size_of => maxval(abs(all_of_them%list(i)%position(:2, :)))/found%curve%closure%length)
-            found%curve%far = max(found%curve%far, beyond*size_of)
+            found%curve%far = max(found%curve%far, farther_than_seen*size_of)
          end associate
       end do
 
@@ -102,7 +102,7 @@ contains
          call add_circuit(found, all_of_them%list(i)%position, .false.)
       end do
       call search_whole_range(held, found)
-      ! The run's own assembly has a row, if only one of a circuit that is not followed.
+      ! The run's own assembly has a row, even if its circuit cannot be followed.
       if (start%known >= 0) call add_circuit(found, start%position, .true.)
 
       do i = 1, size(found%list)
@@ -112,11 +112,11 @@ contains
       call add_assemblies(found, all_of_them%list)
    end subroutine find_circuits
 
-   !> Adds the circuits through the assemblies of `m`, in which all drives rest, at angles of each link that turns on a
-   !> known circuit. The link is driven instead of the free drive: a circuit that is narrow in the drive is mostly wide
-   !> in some link. Links that turn together are one; if no circuit is known any may turn.
+   !> Adds the circuits through all assemblies at angles of each link that turns on a known circuit. The link is driven
+   !> instead of the free drive: a circuit that is narrow in the drive is mostly wide in some link. Links that turn
+   !> together are one; if no circuit is known, any may turn.
    subroutine search_whole_range(m, found)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< all drives rest
       type(circuits_t), intent(inout) :: found
       logical :: is_left(found%curve%nonlinear%angles)
       integer :: k
@@ -131,25 +131,26 @@ contains
 
    contains
 
-      !> Whether angle number `k` changes on a known circuit.
+      !> Tells whether an angle changes on a known circuit.
       pure logical function turns(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< its number in `nonlinear`
          integer :: link, i, j
 
          link = findloc(found%curve%nonlinear%angle_of, k, dim=1)
          turns = size(found%list) == 0
          do i = 1, size(found%list)
             associate (p => found%list(i)%points)
-               turns = turns .or. any([(abs(p(j)%q(3, link) - p(1)%q(3, link)) > same, j=1, size(p))])
+               turns = turns .or. &
+                  any([(abs(p(j)%q(3, link) - p(1)%q(3, link)) > same_position_tolerance, j=1, size(p))])
             end associate
          end do
       end function turns
    end subroutine search_whole_range
 
-   !> Adds the circuits through the assemblies of `m` at angles of number `link`.
+   !> Adds the circuits through all assemblies at several angles of a link.
    subroutine search_at_angles(m, link, found)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link
+      type(mechanism_t), intent(in) :: m     !< all drives rest
+      integer, intent(in) :: link            !< number of the link
       type(circuits_t), intent(inout) :: found
       type(mechanism_t) :: driven
       type(assemblies_t) :: more
@@ -160,10 +161,10 @@ contains
       driven%drives(found%drive) = drive_t(kind=drive_angle, subject=link)
       from = 0.0_wp
       if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, link)
-      n = link_values
+      n = max_link_angles
       k = 0
       do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
-         driven%drives(found%drive)%polynomial(1) = from + turn*real(k, wp)/real(n, wp)
+         driven%drives(found%drive)%polynomial(1) = from + full_turn*real(k, wp)/real(n, wp)
          call find_assemblies(driven, 0.0_wp, more)
          do i = 1, size(more%list)
             call add_circuit(found, more%list(i)%position, .false.)
@@ -173,12 +174,12 @@ contains
       end do
    end subroutine search_at_angles
 
-   !> Adds the circuit through the links' `position` (3, links), in the deck's unit and from its origin, unless it is
-   !> known. From a change point, where it cannot be followed, and beyond all limits only if it is `needed`.
+   !> Adds the circuit through a position, unless it is known. At a change point a circuit cannot be followed: there,
+   !> and beyond all limits, it is added only if it is needed.
    subroutine add_circuit(found, position, needed)
       type(circuits_t), intent(inout) :: found
-      real(wp), intent(in) :: position(:, :)
-      logical, intent(in) :: needed
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from the origin, phi in rad
+      logical, intent(in) :: needed          !< it is added in any case
       type(curve_point_t) :: p
       type(circuit_t), allocatable :: more(:)
       integer :: n, i, k
@@ -189,7 +190,7 @@ contains
       call start_point(found%curve, position, p, ok)
       if (.not. ok) return
       if (.not. needed .and. (p%room < least_step .or. p%value(of_size) > found%curve%far .or. &
-         p%value(of_gap) <= same*found%curve%closure%length)) return
+         p%value(of_cylinder) <= same_position_tolerance*found%curve%closure%length)) return
       call locate(found, p, i, k)
       if (i > 0) return
       found%are_more = found%are_more .or. .not. needed .and. (n > max_circuits .or. found%work > max_work)
@@ -201,12 +202,12 @@ contains
       call move_alloc(more, found%list)
    end subroutine add_circuit
 
-   !> Finds where a known circuit goes through `point`: number `i`, between its points `k` and k + 1, or at its only
-   !> one. `i` is 0 if none does.
+   !> Finds the place of a point on the known circuits.
    subroutine locate(found, point, i, k)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: point
-      integer, intent(out) :: i, k
+      integer, intent(out) :: i              !< number of the circuit; 0: it is on none
+      integer, intent(out) :: k              !< it is between points `k` and k + 1 of the circuit, or at its only one
       type(curve_point_t) :: again
       real(wp) :: least, greatest
       logical :: passes
@@ -216,11 +217,11 @@ contains
          n = size(found%list(i)%points)
          do k = 1, max(1, n - 1)
             associate (a => found%list(i)%points(k), b => found%list(i)%points(min(k + 1, n)), value => point%value(0))
-               ! The drive has the value of `point`, but for whole turns, between these neighbours, or nearly there.
-               least = min(a%value(0), b%value(0)) - same
-               greatest = max(a%value(0), b%value(0)) + same
+               ! The drive has the value of `point`, but for whole turns, between these neighbours or near them.
+               least = min(a%value(0), b%value(0)) - same_position_tolerance
+               greatest = max(a%value(0), b%value(0)) + same_position_tolerance
                passes = value >= least .and. value <= greatest
-               if (found%curve%is_angle) passes = modulo(value - least, turn) <= greatest - least
+               if (found%curve%is_angle) passes = modulo(value - least, full_turn) <= greatest - least
                if (passes) call lies_between(found%curve, a, step_between(found%curve, a, b), point%q, again, passes)
                if (passes) return
             end associate
@@ -229,13 +230,13 @@ contains
       i = 0
    end subroutine locate
 
-   !> The dead point at the `point` of the curve, where the drive has this `value` (deck's unit). Its links are those
-   !> that are singular at a first instant there of `held`, in which all other drives rest.
+   !> Makes the diagnostic of a dead point. It has the links whose position is singular at a first instant there, if
+   !> such an instant is found.
    function dead_point(found, held, point, value) result(dead)
       type(circuits_t), intent(in) :: found
-      type(mechanism_t), intent(in) :: held
+      type(mechanism_t), intent(in) :: held   !< all drives rest
       type(curve_point_t), intent(in) :: point
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< of the free drive there, rad or the deck's length
       type(diagnostic_t) :: dead
       type(mechanism_t) :: there
       type(analysis_t) :: a
@@ -243,7 +244,7 @@ contains
 
       dead = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle, value=value)
       there = held
-      ! A drive at rest leaves open which singular position that is.
+      ! With a drive at rest the kind of singular position would not be known.
       there%drives(found%drive)%polynomial(:2) = [drive_value(found%curve, point%value(0)), &
          merge(1.0_wp, found%curve%closure%length, found%curve%is_angle)]
       call estimate_side(there, deck_position(found%curve, point%q))
@@ -256,12 +257,11 @@ contains
       dead%in_line = q%singular_links%in_line
    end function dead_point
 
-   !> Adds the branches and dead points of circuit number `i`, and its shift; `held`: the mechanism with all drives at
-   !> rest.
+   !> Adds the branches and dead points of a circuit, and finds its shift.
    subroutine add_branches(found, held, i)
       type(circuits_t), intent(inout) :: found
-      type(mechanism_t), intent(in) :: held
-      integer, intent(in) :: i
+      type(mechanism_t), intent(in) :: held   !< all drives rest
+      integer, intent(in) :: i               !< number of the circuit
       type(circuit_branch_t) :: b
       integer, allocatable :: ends(:), numbers(:)
       real(wp), allocatable :: values(:)       ! of the drive at the points, in the deck's unit
@@ -273,6 +273,7 @@ contains
       associate (points => found%list(i)%points)
          n = size(points)
          values = [(drive_value(found%curve, points(k)%value(0) + found%list(i)%shift), k=1, n)]
+
          ends = pack([(k, k=1, n)], points%is_dead)
          dead = size(found%dead)
          numbers = [(dead + k, k=1, size(ends))]
@@ -286,6 +287,7 @@ contains
             ends = [1, ends, n]
             numbers = [0, numbers, 0]
          end if
+
          do k = 2, size(ends)
             b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k), &
                assemblies=[integer ::])
@@ -299,10 +301,10 @@ contains
       end associate
    end subroutine add_branches
 
-   !> Adds to the branches their assemblies of the `list`, those of card ASSEMBLY.
+   !> Adds to each branch the assemblies of card ASSEMBLY that are on it.
    subroutine add_assemblies(found, list)
       type(circuits_t), intent(inout) :: found
-      type(assembly_t), intent(in) :: list(:)
+      type(assembly_t), intent(in) :: list(:)   !< of the first instant
       type(curve_point_t) :: p
       integer :: number, i, k, b
       logical :: ok
@@ -318,10 +320,10 @@ contains
       end do
    end subroutine add_assemblies
 
-   !> Adds the change points of circuit number `i`.
+   !> Adds the change points of a circuit.
    subroutine add_meetings(found, i)
       type(circuits_t), intent(inout) :: found
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< number of the circuit
       real(wp) :: value
       integer :: k, j
 
@@ -342,19 +344,19 @@ contains
       end do
    end subroutine add_meetings
 
-   !> The value `given` of the free drive without whole turns: within half a turn of the first instant's.
+   !> Removes whole turns from a value of the free drive: the result is within half a turn of the first instant's.
    pure real(wp) function near_first(curve, given) result(value)
       type(curve_t), intent(in) :: curve
-      real(wp), intent(in) :: given
+      real(wp), intent(in) :: given          !< rad or lengths of the curve
 
       value = given
-      if (curve%is_angle) value = given - turn*floor((given - curve%first)/turn + 0.5_wp - tie)
+      if (curve%is_angle) value = given - full_turn*floor((given - curve%first)/full_turn + 0.5_wp - tie_turns)
    end function near_first
 
-   !> The turns of the drive after which `circuit` closes.
+   !> Gives the number of turns of the drive after which a circuit closes.
    pure integer function turns_of(circuit) result(turns)
       type(circuit_t), intent(in) :: circuit
 
-      turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/turn)
+      turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/full_turn)
    end function turns_of
 end module circuits

@@ -1,58 +1,59 @@
 !> Searches for extremes of each column of each row between two nodes.
 !>
-!> Between two times a coordinate has an extreme where its velocity is zero, a velocity where its acceleration is, and
-!> an acceleration where the derivative of the polynomial through five of its values is. Each zero lies between two
-!> times at which that derivative has opposite signs, and is found there by motions at times between the instants.
+!> Between two times a coordinate has an extreme at a zero of its velocity, a velocity at a zero of its acceleration,
+!> and an acceleration at a zero of the derivative of the polynomial through five of its values. Each zero lies between
+!> two times at which that derivative has opposite signs, and is found there by motions at times between the instants.
 !>
 !> A part between two nodes is halved until all accelerations are simple there: the cubic with their values and
-!> derivatives at the ends gives the value in the middle, and has one extreme at most. So none is missed of an
-!> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
+!> derivatives at the ends gives the value in the middle, and has one extreme at most. If an acceleration has at most
+!> one extreme in each of these parts, none is missed. If halving ends sooner, the interval is kept as open.
 module column_search
    use kinds, only: wp
    use masked_numbers, only: nothing_known
    use points, only: row_t, known_at
    use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at
-   use nodes, only: node_t, sample_t, beside_joint
+   use nodes, only: node_t, sample_t, joint_margin
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
    use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, record_velocity, add_interval, &
-      alike, never_better
+      equal_part, never_better
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
 
-   !> The step of the stencil at a zero, in steps of TIME. If it proves too long, `find_turn` shortens it.
-   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp
+   !> The step of the stencil at a zero, in steps of TIME. If it is too long, `find_turn` shortens it.
+   real(wp), parameter :: stencil_step = 1.0_wp/256.0_wp
    !> In short steps of TIME the stencil may be longer: until a link moves by this, in rad or lengths.
-   real(wp), parameter :: difference_angle = 5.0e-4_wp
+   real(wp), parameter :: stencil_motion = 5.0e-4_wp
    !> The longest step of the stencil, as a part of the interval.
-   real(wp), parameter :: max_part = 1.0_wp/4.0_wp
+   real(wp), parameter :: max_stencil_part = 1.0_wp/4.0_wp
    !> The sum of the sizes of the factors by which `find_jerk` takes rates and accelerations.
    real(wp), parameter :: errors_by_rates = 122.0_wp
-   !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
-   !> monotonic cubic may be at its ends than on average (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
-   real(wp), parameter :: misses_by = 1.0_wp/8.0_wp, steeper_by = 3.0_wp
-   !> Smaller features of an acceleration, in characteristic ones, are passed over: no table shows them.
+   !> The cubic may miss the value in the middle by this part of the variation.
+   real(wp), parameter :: misses_by = 1.0_wp/8.0_wp
+   !> A monotonic cubic may be steeper at its ends than on average by this factor (Fritsch and Carlson, SIAM J. Numer.
+   !> Anal. 17, 1980).
+   real(wp), parameter :: steeper_by = 3.0_wp
+   !> Smaller changes of an acceleration, in characteristic ones, are passed over: no table shows them.
    real(wp), parameter :: overlooked = sqrt(epsilon(1.0_wp))
-   !> Smallest part that is halved, in steps of TIME.
+   !> A shorter part is not halved, in steps of TIME;
    real(wp), parameter :: shortest_part = 2.0_wp**(-20)
-   !> Nor is one that is shorter than this part of the time.
-   real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
-   !> Most halvings in a step (a pole of the motion needs 40).
+   !> nor one that is shorter than this part of the time.
+   real(wp), parameter :: shortest_time_part = 1024.0_wp*epsilon(1.0_wp)
+   !> The largest number of halvings in a step (a pole of the motion needs 40).
    integer, parameter :: max_halvings = 120
-   !> Lengths that differ by this part are one.
-   real(wp), parameter :: alike_part = 1.0e-9_wp
+   !> Two parts of time whose lengths differ by less than this part of them are equally long.
+   real(wp), parameter :: equal_length_part = 1.0e-9_wp
 
 contains
 
-   !> Finds the `node` of the `track` at the last instant of `set` or a time `t` between the instants. `always`: its
-   !> errors too where no digit of a table is in doubt.
+   !> Finds the node of a mechanism at the last instant or at a time between the instants.
    subroutine find_node(set, track, t, node, always)
       type(set_analysis_t), intent(inout) :: set
       type(track_t), intent(inout) :: track
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       type(node_t), intent(inout) :: node
-      logical, intent(in) :: always
+      logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
       real(wp) :: growth
       integer :: i
 
@@ -71,7 +72,7 @@ contains
                sample%growth = growth
                sample%error = error(k, :, row)
                node%is_known = node%is_known .and. sample%known == 2
-               ! Where points of a measure coincide the node is known, and a length has its value.
+               ! If points of a measure coincide the node is known, and a length has its value.
                sample%known = known_at(rows(row))
                if (.not. sample%meets) node%is_known = node%is_known .and. all(sample%error < nothing_known)
             end associate
@@ -79,24 +80,22 @@ contains
       end associate
    end subroutine find_node
 
-   !> Finds the node of mechanism `place` that comes next, at the time `t`, and whether something turns between the last
-   !> three: `always` as in `find_node`.
-   subroutine find_next(extremes, set, place, t, always)
+   !> Finds the next node of a mechanism, and whether a number turns between the last three nodes.
+   subroutine find_next(extremes, set, part, t, always)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: place
-      real(wp), intent(in) :: t
-      logical, intent(in) :: always
+      integer, intent(in) :: part            !< number of the mechanism
+      real(wp), intent(in) :: t              !< time of the node
+      logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
 
-      associate (track => extremes%tracks(place))
+      associate (track => extremes%tracks(part))
          call find_node(set, track, t, track%nodes(track%filled + 1), always)
          if (track%filled == 2) call look_for_extreme(track)
       end associate
    end subroutine find_next
 
-   !> Finds whether a number of the `track` may have an extreme between its first and its third node: a rate, an
-   !> acceleration or a jerk has another sign there, or than when it had a clear one last, or an acceleration is not
-   !> simple.
+   !> Finds whether a number may have an extreme between the first and the third node of a mechanism: a rate, an
+   !> acceleration or a jerk changes its sign there or since its last clear sign, or an acceleration is not simple.
    subroutine look_for_extreme(track)
       type(track_t), intent(inout) :: track
       real(wp) :: jerk(2), noise(3), f(3), low, high
@@ -110,7 +109,7 @@ contains
          do i = 1, size(track%coordinates)
             associate (one => track%coordinates(i))
                meets = [a%samples(i)%meets, middle%samples(i)%meets, b%samples(i)%meets]
-               ! Where points of a measure coincide at all nodes there is nothing to find.
+               ! If points of a measure coincide at all nodes there is nothing to find.
                track%turns = track%turns .or. (any(meets) .and. .not. all(meets))
                if (any(meets)) cycle
                call find_jerk(a%samples(i), middle%samples(i), b%samples(i), one%size_of, jerk, noise, simple)
@@ -123,8 +122,8 @@ contains
                   if (min(low, one%last(k)) > noise(k) .or. max(high, one%last(k)) < -noise(k)) cycle
                   call compare(f, noise(k), one%last(k))
                end do
-               ! Where accelerations are alike a small one is that of rounding.
-               if (high - low > 2.0_wp*max(alike*one%size_of(2), noise(2))) noise(3) = 0.0_wp
+               ! If accelerations are about equal, a small jerk is rounding.
+               if (high - low > 2.0_wp*max(equal_part*one%size_of(2), noise(2))) noise(3) = 0.0_wp
                if (pair) call compare(jerk, noise(3), one%last(3))
             end associate
          end do
@@ -132,10 +131,11 @@ contains
 
    contains
 
-      !> Takes `values` after the `last` one with a clear sign; those up to `noise` have none.
+      !> Compares values with the last one that has a clear sign. If a sign changes, the number turns.
       subroutine compare(values, noise, last)
-         real(wp), intent(in) :: values(:), noise
-         real(wp), intent(inout) :: last
+         real(wp), intent(in) :: values(:)   !< (any number) along the run, in the deck's unit or rad
+         real(wp), intent(in) :: noise       !< values up to it have no clear sign
+         real(wp), intent(inout) :: last     !< the last value with a clear sign, and now the last of `values`
          integer :: n
 
          do n = 1, size(values)
@@ -146,49 +146,51 @@ contains
       end subroutine compare
    end subroutine look_for_extreme
 
-   !> The parts between three nodes have one length, and are searched together.
+   !> Tells whether the parts between three nodes are equally long, and are searched together.
    pure logical function is_pair(track, before, middle, after)
       type(track_t), intent(in) :: track
-      type(node_t), intent(in) :: before, middle, after
+      type(node_t), intent(in) :: before, middle, after   !< the nodes
 
       associate (length => abs(after%t - before%t))
-         is_pair = length <= track%longest .and. abs(after%t - 2.0_wp*middle%t + before%t) <= alike_part*length
+         is_pair = length <= track%longest .and. abs(after%t - 2.0_wp*middle%t + before%t) <= equal_length_part*length
       end associate
    end function is_pair
 
-   !> Takes the node of mechanism `place` that comes next, and searches between it and the last one of which all is
-   !> known. Two parts of one length are searched together: the node between them is the one in the middle, and no
-   !> motion is looked for. They are passed over if nothing turns there.
-   subroutine add_node(extremes, set, place)
+   !> Takes the next node of a mechanism, and searches between it and the last one of which all is known. Two parts of
+   !> one length are searched together: the node between them is in the middle, and no other motion is needed. They are
+   !> passed over if nothing turns there.
+   subroutine add_node(extremes, set, part)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: place
+      integer, intent(in) :: part            !< number of the mechanism
       integer :: n
 
-      associate (track => extremes%tracks(place), nodes => extremes%tracks(place)%nodes)
+      associate (track => extremes%tracks(part), nodes => extremes%tracks(part)%nodes)
          n = track%filled + 1
          if (.not. nodes(n)%is_known) then
-            call search_waiting(extremes, set, place)
-            call record_node(extremes, place, nodes(n), .true.)
+            call search_waiting(extremes, set, part)
+            call record_node(extremes, part, nodes(n), .true.)
             ! Nothing is searched across it.
             track%filled = 0
             return
          end if
          track%filled = n
-         if (n == 1) call record_node(extremes, place, nodes(1), .true.)
+         if (n == 1) call record_node(extremes, part, nodes(1), .true.)
          if (n < 3) return
+
          if (track%turns) then
-            call record_node(extremes, place, nodes(1), .true.)
+            call record_node(extremes, part, nodes(1), .true.)
             if (is_pair(track, nodes(1), nodes(2), nodes(3))) then
-               call search_part(extremes, set, place, nodes(1), nodes(3), nodes(2))
+               call search_part(extremes, set, part, nodes(1), nodes(3), nodes(2))
             else
-               call search_part(extremes, set, place, nodes(1), nodes(2))
-               call record_node(extremes, place, nodes(2), .true.)
-               call search_part(extremes, set, place, nodes(2), nodes(3))
+               call search_part(extremes, set, part, nodes(1), nodes(2))
+               call record_node(extremes, part, nodes(2), .true.)
+               call search_part(extremes, set, part, nodes(2), nodes(3))
             end if
-            call record_node(extremes, place, nodes(3), .true.)
+            call record_node(extremes, part, nodes(3), .true.)
          end if
-         ! Into the room that there is: this is done at every instant.
+
+         ! Without an allocation, since this is done at every instant.
          nodes(1)%t = nodes(3)%t
          nodes(1)%is_known = nodes(3)%is_known
          nodes(1)%samples(:) = nodes(3)%samples
@@ -196,12 +198,11 @@ contains
       end associate
    end subroutine add_node
 
-   !> Searches between the last node of mechanism `part` and the one that waits, if there is one: the last one ends a
-   !> piece.
+   !> Searches between the last two nodes of a mechanism, if there are two, since the last one ends a piece.
    subroutine search_waiting(extremes, set, part)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< number of the mechanism
 
       associate (track => extremes%tracks(part), nodes => extremes%tracks(part)%nodes)
          if (track%filled == 0) return
@@ -214,15 +215,15 @@ contains
       end associate
    end subroutine search_waiting
 
-   !> Finds the third derivatives `jerk` at both ends of a part with the samples `before`, `middle` and `after`: those
-   !> of the polynomial of degree 8 with their values, rates and accelerations (Hermite). `size_of`: characteristic
-   !> values. `noise`: what rounding may leave open, at most, of rate, acceleration and jerk. `simple`: the cubic with
-   !> the accelerations and jerks at the ends has about the acceleration in the middle, and one extreme inside at most.
+   !> Finds the third derivatives at both ends of a part: those of the polynomial of degree 8 with the values, rates and
+   !> accelerations of three samples (Hermite).
    pure subroutine find_jerk(before, middle, after, size_of, jerk, noise, simple)
-      type(sample_t), intent(in) :: before, middle, after
-      real(wp), intent(in) :: size_of(0:2)
-      real(wp), intent(out) :: jerk(2), noise(3)
-      logical, intent(out) :: simple
+      type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
+      real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
+      real(wp), intent(out) :: jerk(2)       !< at both ends, in the deck's units or rad
+      real(wp), intent(out) :: noise(3)      !< bounds of the rounding errors of rate, acceleration and jerk
+      !> The cubic with the accelerations and jerks at the ends has about the acceleration in the middle.
+      logical, intent(out) :: simple         !< and at most one extreme inside
       real(wp), dimension(0:2) :: left, odd, even
       real(wp) :: seventh, eighth, mean, change, open, h, most, step
 
@@ -231,7 +232,8 @@ contains
       noise(:2) = left(1:)
       noise(3) = errors_by_rates*(noise(1)/abs(h) + noise(2))/abs(h)
       call find_differences(before, middle, after, left(0), odd, even, seventh, eighth)
-      ! The mean of both jerks and half their change, in accelerations; what is less than `open` counts for nothing.
+
+      ! The mean of both jerks and half their change, in accelerations; less than `open` counts for nothing.
       mean = (40.0_wp*odd(2) - 64.0_wp*odd(1) + 448.0_wp*seventh)/(h*h)
       change = (56.0_wp*even(2) - 120.0_wp*even(1) + 512.0_wp*eighth)/(h*h)
       jerk = [mean - change, mean + change]/h
@@ -244,12 +246,12 @@ contains
       simple = simple .and. mean*sign(1.0_wp, step) > 0.0_wp .and. most <= steeper_by*abs(step) + open
    end subroutine find_jerk
 
-   !> The coefficients (0:8) of that polynomial, of the time from the middle in halves of the part. Its `jerk` has an
-   !> error of 2E-6 of the ninth derivative, but where rounding explains the difference from rates and accelerations
-   !> alone, with an error of 7E-4 of the seventh.
+   !> Finds the coefficients (0:8) of the polynomial with the numbers of three samples, in the time from the middle over
+   !> half of the part. Its jerk has an error of 2E-6 of the ninth derivative. If rounding explains the difference from
+   !> the polynomial of rates and accelerations, the error is 7E-4 of the seventh.
    pure function curve_through(before, middle, after, size_of) result(curve)
-      type(sample_t), intent(in) :: before, middle, after
-      real(wp), intent(in) :: size_of(0:2)
+      type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
+      real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
       real(wp) :: curve(0:8)
       real(wp), dimension(0:2) :: left, odd, even
       real(wp) :: half
@@ -264,11 +266,11 @@ contains
       curve(4) = (even(1) - 6.0_wp*curve(6) - 8.0_wp*curve(8))/4.0_wp
    end function curve_through
 
-   !> What is `left` open at most of values, rates and accelerations: by errors, by the size of numbers, and by a
-   !> rounding of the time.
+   !> Bounds the errors (0:2) of values, rates and accelerations of three samples: by estimates, by the size of
+   !> numbers, and by a rounding of the time.
    pure function left_open(before, middle, after, size_of) result(left)
-      type(sample_t), intent(in) :: before, middle, after
-      real(wp), intent(in) :: size_of(0:2)
+      type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of a part
+      real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
       real(wp) :: left(0:2), largest(0:2)
 
       largest = max(abs(before%f), abs(middle%f), abs(after%f))
@@ -277,13 +279,13 @@ contains
       left = max(before%error, middle%error, after%error, left)
    end function left_open
 
-   !> Finds by what values, rates and accelerations at the ends differ from those of the square at the middle, halves
-   !> of the part as unit of time: the `odd` (0:2) and `even` (0:2) parts of the differences, and the coefficients of
-   !> degree 7 and 8, which are 0 where rounding explains them by values that are `open`.
+   !> Finds the differences of the numbers at the ends of a part from the square at its middle, and the coefficients of
+   !> degree 7 and 8. Half of the part is the unit of time. A coefficient that rounding explains is 0.
    pure subroutine find_differences(before, middle, after, open, odd, even, seventh, eighth)
-      type(sample_t), intent(in) :: before, middle, after
-      real(wp), intent(in) :: open
-      real(wp), intent(out) :: odd(0:2), even(0:2), seventh, eighth
+      type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
+      real(wp), intent(in) :: open           !< bound of the errors of values, in their unit
+      real(wp), intent(out) :: odd(0:2), even(0:2)   !< the odd and the even part of the differences
+      real(wp), intent(out) :: seventh, eighth   !< coefficients of degree 7 and 8
       real(wp), dimension(0:2) :: first, half, last
       real(wp) :: h
 
@@ -303,12 +305,12 @@ contains
       eighth = eighth/8.0_wp
    end subroutine find_differences
 
-   !> The values of `node` of mechanism `part` may be extremes; its velocities are the `next` along the run.
+   !> Offers the values of a node of a mechanism as extremes.
    subroutine record_node(extremes, part, node, next)
       type(extremes_t), intent(inout) :: extremes
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< number of the mechanism
       type(node_t), intent(in) :: node
-      logical, intent(in) :: next
+      logical, intent(in) :: next            !< its velocities are the next ones along the run
       integer :: i, k
 
       do i = 1, size(node%samples)
@@ -323,14 +325,14 @@ contains
       end do
    end subroutine record_node
 
-   !> Searches between the nodes `before` and `after` of mechanism `part`, in halves where accelerations are not simple;
-   !> `between`: a node in the middle.
+   !> Searches between two nodes of a mechanism, in halves if accelerations are not simple. If halving ends sooner, the
+   !> interval is open.
    recursive subroutine search_part(extremes, set, part, before, after, between)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: part
-      type(node_t), intent(in) :: before, after
-      type(node_t), intent(in), optional :: between
+      integer, intent(in) :: part            !< number of the mechanism
+      type(node_t), intent(in) :: before, after   !< the two nodes
+      type(node_t), intent(in), optional :: between   !< a node in the middle, if there is one
       type(node_t) :: middle
       real(wp) :: shortest, jerk(2), noise(3, size(extremes%tracks(part)%coordinates))
       logical, dimension(size(extremes%tracks(part)%coordinates)) :: simple, has_kink
@@ -339,15 +341,16 @@ contains
 
       has_kink = .false.
       associate (track => extremes%tracks(part), length => abs(after%t - before%t))
-         shortest = max(shortest_part*extremes%step, time_part*max(abs(before%t), abs(after%t)))
-         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(extremes%run, before%t))
+         shortest = max(shortest_part*extremes%step, shortest_time_part*max(abs(before%t), abs(after%t)))
+         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*joint_margin(extremes%run, before%t))
          if (length <= shortest) then
             ! Near a joint there is nothing to be missed but the joint itself.
-            if (length > 0.5_wp*extremes%step) call add_interval(extremes%open, extremes%way, before%t, after%t, &
-               shortest)
+            if (length > 0.5_wp*extremes%step) &
+               call add_interval(extremes%open, extremes%way, before%t, after%t, shortest)
             if (present(between)) call record_node(extremes, part, between, .true.)
             return
          end if
+
          if (present(between)) then
             middle = between
          else
@@ -358,20 +361,21 @@ contains
             return
          end if
          do i = 1, size(simple)
-            ! Where points of a measure coincide at one of the three nodes it is searched up to there.
+            ! If points of a measure coincide at one of the three nodes, the measure is searched up to that node.
             meets = [before%samples(i)%meets, middle%samples(i)%meets, after%samples(i)%meets]
             simple(i) = all(meets)
             if (.not. any(meets)) call find_jerk(before%samples(i), middle%samples(i), after%samples(i), &
                track%coordinates(i)%size_of, jerk, noise(:, i), simple(i))
          end do
+
          is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
          if (all(simple) .or. is_last) then
             do i = 1, size(simple)
                if (.not. simple(i) .and. length <= 2.0_wp*shortest) &
                   has_kink(i) = jumps(set, track%coordinates(i), before%samples(i), middle%samples(i), after%samples(i))
             end do
-            if (.not. all(simple .or. has_kink)) call add_interval(extremes%open, extremes%way, before%t, after%t, &
-               shortest)
+            if (.not. all(simple .or. has_kink)) &
+               call add_interval(extremes%open, extremes%way, before%t, after%t, shortest)
             call record_node(extremes, part, middle, .false.)
             call search_columns(extremes, set, part, before, middle, after, noise(3, :), has_kink)
          else
@@ -384,7 +388,7 @@ contains
    end subroutine search_part
 
    !> Tells whether points of a measure coincide in a short part: the rate of a length jumps there, or a direction.
-   !> The place of that is found by halving. The parts beside this one are searched.
+   !> Halving finds the time. The parts next to this one are searched.
    logical function jumps(set, one, before, middle, after)
       type(set_analysis_t), intent(inout) :: set
       type(coordinate_t), intent(in) :: one
@@ -401,7 +405,7 @@ contains
          t = ends(1) + 0.5_wp*(ends(2) - ends(1))
          call rows_at(set, [one%request], t, row)
          if (row(1)%known < 2) return
-         jumps = row(1)%weight <= alike
+         jumps = row(1)%weight <= equal_part
          if (jumps .or. abs(ends(2) - ends(1)) <= 4.0_wp*spacing(maxval(abs(ends)))) return
          associate (f => row(1)%value(one%column, k))
             ends(merge(1, 2, abs(f - before%f(k)) < abs(f - after%f(k)))) = t
@@ -409,14 +413,13 @@ contains
       end do
    end function jumps
 
-   !> Searches for extremes of all columns of mechanism `part` between the nodes `before` and `after`, with the node
-   !> `middle`. Rounding may leave the `noise` (coordinates) of their third derivatives open.
+   !> Searches for extremes of all columns of a mechanism between two nodes.
    subroutine search_columns(extremes, set, part, before, middle, after, noise, has_kink)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: part
-      type(node_t), intent(in) :: before, middle, after
-      real(wp), intent(in) :: noise(:)
+      integer, intent(in) :: part            !< number of the mechanism
+      type(node_t), intent(in) :: before, middle, after   !< the two nodes, and one between
+      real(wp), intent(in) :: noise(:)       !< (coordinates) bounds of the rounding errors of third derivatives
       logical, intent(in) :: has_kink(:)     !< (coordinates) only a length is searched, which turns where it is 0
       type(sample_t), allocatable :: path(:), known(:)
       type(sample_t) :: found
@@ -425,43 +428,46 @@ contains
       integer :: i, k, n, order, last
 
       ! The motion is smooth from the last joint before to the next one, or to the ends of the run so far.
-      associate (joints => extremes%tracks(part)%joints, beside => extremes%way*beside_joint(extremes%run, before%t))
+      associate (joints => extremes%tracks(part)%joints, margin => extremes%way*joint_margin(extremes%run, before%t))
          smooth = [set%now%t0, set%now%motions(part)%t]
          n = count((joints - before%t)*extremes%way <= 0.0_wp)
-         if (n > 0) smooth(1) = joints(n) + beside
+         if (n > 0) smooth(1) = joints(n) + margin
          n = count((joints - after%t)*extremes%way < 0.0_wp)
          if (n < size(joints)) smooth(2) = extremes%way*min(extremes%way*smooth(2), &
-            extremes%way*(joints(n + 1) - beside))
+            extremes%way*(joints(n + 1) - margin))
       end associate
+
       do i = 1, size(extremes%tracks(part)%coordinates)
          if (any([before%samples(i)%meets, middle%samples(i)%meets, after%samples(i)%meets])) cycle
          if (has_kink(i) .and. extremes%tracks(part)%coordinates(i)%is_angle) cycle
          associate (one => extremes%tracks(part)%coordinates(i))
             path = [before%samples(i), middle%samples(i), after%samples(i)]
-            column = column_t(one%request, one%column, min(max_part*abs(after%t - before%t), &
-               max(difference_part*extremes%step, difference_angle*one%size_of(1)/one%size_of(2))), smooth, &
-                  middle=middle%t, &
-               half=0.5_wp*(after%t - before%t), &
+            column = column_t(one%request, one%column, min(max_stencil_part*abs(after%t - before%t), &
+               max(stencil_step*extremes%step, stencil_motion*one%size_of(1)/one%size_of(2))), smooth, &
+               middle=middle%t, half=0.5_wp*(after%t - before%t), &
                curve=curve_through(path(1), path(2), path(3), one%size_of))
             do k = 0, 2
                column%noise(k) = max(noise_part*one%size_of(k), maxval(path%error(k)))
                column%inside(:, k) = never_better(one, k)
             end do
-            ! An extreme of the acceleration; of the velocity, one on either side of that at most; of the coordinate,
-            ! one on either side of each of these. Where accelerations are alike and rounding explains the change of
-            ! their derivative, none is told.
+
+            ! The acceleration may have one extreme. The velocity has at most one on either side of that; the coordinate
+            ! has at most one on either side of each of these. If accelerations are about equal and rounding explains
+            ! the change of their derivative, they have none.
             jerk = [on_curve(column, 3, before%t), on_curve(column, 3, after%t)]
             if (differ_in_sign(jerk(1), jerk(2)) .and. .not. has_kink(i) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
-               .or. maxval(path%f(2)) - minval(path%f(2)) > 2.0_wp*max(alike*one%size_of(2), column%noise(2)))) then
+               .or. maxval(path%f(2)) - minval(path%f(2)) &
+               > 2.0_wp*max(equal_part*one%size_of(2), column%noise(2)))) then
                call find_turn(set, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call accept_extreme(2)
             end if
+
             do order = merge(1, 2, has_kink(i)), 1, -1
                known = path
                last = 0
                do k = 1, size(known)
-                  ! Of a derivative that is no more than rounding no sign is known.
+                  ! A derivative that is no more than rounding has no known sign.
                   if (abs(known(k)%f(order)) <= column%noise(order)) cycle
                   if (last > 0) then
                      if (differ_in_sign(known(last)%f(order), known(k)%f(order))) then
@@ -480,10 +486,9 @@ contains
 
    contains
 
-      !> Derivative number `k` of the coordinate has an extreme where it is `found`: that is put in its place on the
-      !> path.
+      !> Offers the extreme that was found, and puts it in its place on the path.
       subroutine accept_extreme(k)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< which derivative of the coordinate, 0 to 2
          integer :: n
 
          if (found%known < 2) return

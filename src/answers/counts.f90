@@ -18,7 +18,7 @@ module counts
 
 contains
 
-   !> Takes the instant to which `set` has advanced: whether it is flagged, and of the first one why.
+   !> Counts the instant to which a set has advanced, solved or flagged, and keeps why the first one is flagged.
    subroutine record_flag(counts, set)
       type(counts_t), intent(inout) :: counts
       type(set_analysis_t), intent(in) :: set

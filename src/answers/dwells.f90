@@ -10,23 +10,25 @@ module dwells
    private
    public :: dwell_t, find_dwells
 
-   !> Column `column` (1 to 3) of the row of a request of the set is within `distance` of its extreme `which` (least or
-   !> greatest) between these times; in a cyclic motion `to` may come before `from`.
+   !> A column of the row of a request is within a distance of its extreme between two times. In a cyclic motion `to`
+   !> may come before `from`.
    type :: dwell_t
-      integer :: request = 0, column = 0, which = least
+      integer :: request = 0                           !< number in the set
+      integer :: column = 0                            !< 1 to 3
+      integer :: which = least                         !< the extreme: least or greatest
       real(wp) :: distance = 0.0_wp                    !< in the deck's unit or rad
       real(wp) :: from = 0.0_wp, to = 0.0_wp           !< times
-      real(wp) :: error(2) = 0.0_wp                    !< what rounding leaves open of both
+      real(wp) :: error(2) = 0.0_wp                    !< errors of both by rounding
    end type dwell_t
 
 contains
 
-   !> The dwells (any number) of the set that `set` has analysed, after its last instant, by its `extremes`; none
-   !> of what never leaves its distance, and none at all where some of the motion between instants is not known.
+   !> Finds the dwells of a set after its last instant, by its extremes. A coordinate that never leaves its distance has
+   !> none. If some of the motion between instants is not known, there are none at all.
    subroutine find_dwells(extremes, set, list)
       type(extremes_t), intent(in) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      type(dwell_t), allocatable, intent(out) :: list(:)
+      type(dwell_t), allocatable, intent(out) :: list(:)   !< (any number)
       type(dwell_t) :: one
       type(value_at_t), allocatable :: path(:)
       logical, allocatable :: inside(:), before(:)
@@ -42,16 +44,16 @@ contains
                one = dwell_t(moved%request, moved%column, distance=moved%dwell)
                stroke = moved%found(greatest, 0)%value - moved%found(least, 0)%value
                if (one%distance <= 0.0_wp .or. stroke <= one%distance) cycle
-               ! They are in order but for extremes beside the middle of a part.
+               ! They are in order but for extremes near the middle of a part.
                path = moved%places(order_along(moved%places%t, extremes%way))
-               ! A crank that has made whole turns is not where it was.
+               ! A crank that has made whole turns has another value.
                is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(extremes, c)
 
                do which = least, greatest
                   one%which = which
                   level = moved%found(which, 0)%value - outward(which)*one%distance
                   inside = (path%value - level)*outward(which) >= 0.0_wp
-                  ! Each begins at a place inside after one outside; in a cycle the last place is before the first.
+                  ! A dwell begins at a place inside after one outside; in a cycle the last place is before the first.
                   before = cshift(inside, -1)
                   before(1) = is_cycle .and. before(1)
                   do k = 1, size(path)
@@ -67,13 +69,14 @@ contains
 
    contains
 
-      !> The time `t` at which the coordinate, followed on its path from place number `start` along the run (`way` 1) or
-      !> against it (-1), passes the level, and its `error`; the end of the run where it does not, unless the motion is
-      !> a cycle and goes on.
+      !> Finds the time at which the coordinate, followed on its path from a place, passes the level. If it does not,
+      !> the end of the run is the time; in a cycle the path goes on from the other end.
       subroutine find_end(start, way, t, error, found)
-         integer, intent(in) :: start, way
-         real(wp), intent(out) :: t, error
-         logical, intent(out) :: found
+         integer, intent(in) :: start        !< number of the place
+         integer, intent(in) :: way          !< 1: along the run; -1: against it
+         real(wp), intent(out) :: t          !< time
+         real(wp), intent(out) :: error      !< its error by rounding
+         logical, intent(out) :: found       !< the time is known
          type(sample_t) :: zero
          integer :: from, to, passed
 
@@ -86,7 +89,7 @@ contains
             to = from + way
             if (to < 1 .or. to > size(path)) then
                if (.not. is_cycle) return
-               ! On from the other end, in the same position.
+               ! The path goes on from the other end, where the position is equal.
                to = merge(1, size(path), way > 0)
             end if
             if (.not. inside(to)) exit

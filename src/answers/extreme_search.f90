@@ -1,53 +1,57 @@
 !> How extremes are found, instant by instant. The instants, and the joints of the drives' laws, are nodes, between
 !> which `column_search` searches.
 !>
-!> Between three instants that is done where a number turns: a velocity, an acceleration or its derivative has changed
-!> its sign, or an acceleration is not a simple curve. Where nothing of that has happened no number has an extreme. The
-!> engine and the lanes of `lane_runs` are watched alike.
+!> Between three instants it searches if a number turns: a velocity, an acceleration or its derivative has changed its
+!> sign, or an acceleration is not a simple curve. Otherwise no number has an extreme there. The motion of a set and the
+!> lanes of `lane_runs` are searched in one way.
 !>
 !> Pieces of a step end at change points, limits of motion and instants without velocities. Each piece has nodes up to
-!> beside that place, and the one-sided limits there may be extremes. What is closer is not searched, and the table says
-!> so. On each side of a change point a number is a smooth function of the time that is left, at a limit of the motion
-!> of the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the
-!> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
+!> near that place, and the one-sided limits there may be extremes. The time between is not searched, which the table
+!> shows. On each side of a change point a number is a smooth function of the time that is left; at a limit of the
+!> motion it is a smooth function of the root s of that time: x0 + x1 s + x2 s^2 ... It is computed at s, 2s, ... 5s,
+!> and extrapolated to s = 0 by the polynomial through these five in s^2 or in s; or it grows without bound with 1/s,
+!> as velocities do at a limit.
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t, apart_from_first
-   use nodes, only: node_t, extreme_t, times_between, beside_joint
+   use nodes, only: node_t, extreme_t, times_between, joint_margin
    use extremes, only: extremes_t, end_t, offer, badly_known, add_interval, settle_ratios
    use column_search, only: find_node, find_next, add_node, search_waiting
    implicit none
    private
    public :: record_instant, is_searched, search_instant
 
-   !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
-   !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
-   !> times at most.
-   real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
+   !> Limits with smaller errors, in characteristic values, are good enough.
+   real(wp), parameter :: well_known_limit = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp))
+   !> Otherwise they are tried nearer to a change point by this factor, though roundings grow there; or farther from a
+   !> limit of the motion, near which some of the motion may not be found.
+   real(wp), parameter :: nearer_by = 0.25_wp, farther_by = 4.0_wp
+   !> Up to so many such tries.
    integer, parameter :: max_nearer = 5, max_farther = 8
-   !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
-   !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
-   !> of the motion it leaves the power 5/2.
+   !> The places near an end of a piece.
    integer, parameter :: places = 5
-   real(wp), parameter :: beside_change = 1.0_wp/256.0_wp, &
-      beside_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
+   !> The distance of the nearest place from the end, in steps of TIME. At a change point rounding errors of
+   !> accelerations are divided by the square of that distance, and the polynomial has an error of its fifth power; at
+   !> a limit of the motion the power is 5/2.
+   real(wp), parameter :: from_change_point = 1.0_wp/256.0_wp, &
+      from_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
    !> The polynomials at s = 0: through the five places, and through the first four for an estimate of the error.
    real(wp), parameter :: in_time(places) = [5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, &
       1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
    real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
       four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
    !> A number that grows by more than this factor when s is halved is UNBOUNDED: 1/s doubles, s^(-2/3) grows by 1.59.
-   !> Numbers below the second, in characteristic ones, are bounded.
-   real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
+   !> Numbers below this part of their characteristic value are bounded.
+   real(wp), parameter :: unbounded_growth = 1.4_wp, bounded_part = 1.0e-3_wp
 
 contains
 
-   !> Takes instant number `k`, to which `set` has advanced. Only the instants of TIME count.
+   !> Takes an instant, to which the set has advanced, and searches up to it. Only the instants of TIME count.
    subroutine record_instant(extremes, set, k)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< the number of the instant, from 0
       integer :: c
 
       if (k > set%now%steps) return
@@ -58,12 +62,12 @@ contains
       end do
    end subroutine record_instant
 
-   !> Between the last instant of mechanism `part` and the one whose node is found something is searched for: a number
-   !> may turn, or the step is divided.
+   !> Tells whether something is searched for between the last instant of a mechanism and the one whose node is found: a
+   !> number may turn, or the step is divided.
    pure logical function is_searched(extremes, set, part)
       type(extremes_t), intent(in) :: extremes
       type(set_analysis_t), intent(in) :: set
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< number of the mechanism
 
       associate (track => extremes%tracks(part), q => set%now%motions(part))
          is_searched = (track%filled == 2 .and. track%turns) .or. track%last%is_open .or. allocated(q%diagnostics) &
@@ -73,13 +77,13 @@ contains
       end associate
    end function is_searched
 
-   !> Searches up to instant number `k` of mechanism `part`, whose node is found, and goes on from there. `searches`:
-   !> see `is_searched`.
+   !> Searches for extremes of a mechanism up to an instant whose node is found, and goes on from there.
    subroutine search_instant(extremes, set, part, k, searches)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: part, k
-      logical, intent(in) :: searches
+      integer, intent(in) :: part            !< number of the mechanism
+      integer, intent(in) :: k               !< number of the instant, from 0
+      logical, intent(in) :: searches        !< something is searched for, by `is_searched`
       type(node_t) :: now
       real(wp) :: t
       logical :: known
@@ -94,6 +98,7 @@ contains
             track%nodes(track%filled + 1) = now
             track%turns = .true.
          end if
+
          associate (node => track%nodes(track%filled + 1))
             known = node%is_known
             track%is_lost = node%is_lost
@@ -133,13 +138,14 @@ contains
          end associate
       end subroutine search_step
 
-      !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached:
-      !> that is the last. A change point that is later only by rounding is the same one, or at `from` itself.
+      !> Finds the times at which a change point was passed, or the limit of the motion was reached, which is the last
+      !> one. A change point that is later only by rounding is the one before, or the last instant itself.
       pure subroutine find_ends(q, from, way, ends, is_limit)
-         type(motion_t), intent(in) :: q
-         real(wp), intent(in) :: from, way
-         real(wp), allocatable, intent(out) :: ends(:)
-         logical, intent(out) :: is_limit
+         type(motion_t), intent(in) :: q     !< at the end of the step: has diagnostics
+         real(wp), intent(in) :: from        !< time of the last instant
+         real(wp), intent(in) :: way         !< the direction of the run: 1 or -1
+         real(wp), allocatable, intent(out) :: ends(:)   !< (any number) times, in the run's order
+         logical, intent(out) :: is_limit    !< the last one is a limit of the motion
          real(wp) :: last
          integer :: i
 
@@ -150,8 +156,8 @@ contains
          do i = 1, size(q%diagnostics)
             associate (d => q%diagnostics(i))
                if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-               if ((d%t - last)*way <= merge(beside_joint(extremes%run, last), 0.0_wp, d%kind == &
-                  diagnostic_change)) cycle
+               if ((d%t - last)*way <= merge(joint_margin(extremes%run, last), 0.0_wp, &
+                  d%kind == diagnostic_change)) cycle
                is_limit = d%kind == diagnostic_limit
                if ((q%t - d%t)*way <= 0.0_wp .and. .not. is_limit) cycle
                ! A limit at the instant itself is later only by rounding.
@@ -161,49 +167,52 @@ contains
          end do
       end subroutine find_ends
 
-      !> Searches between the ends `from` and `to`, with nodes at those of the `times` that are between.
+      !> Searches a piece of a step, with nodes at the times that are inside.
       subroutine search_piece(times, from, to)
-         real(wp), intent(in) :: times(:)
-         type(end_t), intent(in) :: from, to
-         real(wp) :: low, high, beside(places)
+         real(wp), intent(in) :: times(:)    !< (any number) of nodes, in the run's order
+         type(end_t), intent(in) :: from, to   !< the ends of the piece, in the run's order
+         real(wp) :: low, high, near(places)
          integer :: i
 
          low = from%t
          high = to%t
+
          if (from%is_open) then
             call search_waiting(extremes, set, part)
             extremes%tracks(part)%filled = 0
-            call accept_limits(from, to%t, beside)
-            low = beside(places)
-            call look_at(beside(1), .true.)
-            call add_interval(extremes%open, extremes%way, from%t, merge(beside(1), to%t, &
-               extremes%tracks(part)%filled > 0), 0.0_wp)
+            call accept_limits(from, to%t, near)
+            low = near(places)
+            call look_at(near(1), .true.)
+            call add_interval(extremes%open, extremes%way, from%t, &
+               merge(near(1), to%t, extremes%tracks(part)%filled > 0), 0.0_wp)
             call look_at(low, .true.)
          end if
          if (to%is_open) then
-            call accept_limits(to, from%t, beside)
-            high = beside(places)
+            call accept_limits(to, from%t, near)
+            high = near(places)
          end if
+
          do i = 1, size(times)
             if ((times(i) - low)*extremes%way > 0.0_wp .and. (high - times(i))*extremes%way > 0.0_wp) &
                call look_at(times(i), .false.)
          end do
+
          if (.not. to%is_open) return
          call look_at(high, .true.)
-         call look_at(beside(1), .true.)
+         call look_at(near(1), .true.)
          call search_waiting(extremes, set, part)
          low = from%t
          if (extremes%tracks(part)%filled > 0) low = extremes%tracks(part)%nodes(1)%t
          call add_interval(extremes%open, extremes%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
-      !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times
-      !> `beside`: of those that were tried the ones from which the limits are known best.
-      subroutine accept_limits(at, other, beside)
+      !> Offers the one-sided limits at an end of a piece as extremes, by the motion at times near the end. Of the times
+      !> that were tried those count from which the limits are known best.
+      subroutine accept_limits(at, other, near)
          type(end_t), intent(in) :: at
-         real(wp), intent(in) :: other
-         real(wp), intent(out) :: beside(places)
-         type(node_t) :: near(places)
+         real(wp), intent(in) :: other       !< time of the other end of the piece
+         real(wp), intent(out) :: near(places)   !< the times that count, the nearest first
+         type(node_t) :: nodes(places)
          type(extreme_t), dimension(0:2, size(extremes%tracks(part)%coordinates)) :: limits, best
          real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
          integer :: i, k, n, try
@@ -213,29 +222,30 @@ contains
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             ! The nearest first, on the side of `other`.
-            nearest = merge(nearer**try*beside_change, farther**try*beside_limit, at%is_change)*extremes%step
+            nearest = merge(nearer_by**try*from_change_point, farther_by**try*from_limit, at%is_change)*extremes%step
             nearest = min(nearest, abs(other - at%t)/(2*places**2))
             times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places
-               call find_node(set, extremes%tracks(part), times(i), near(i), .true.)
-               if (.not. near(i)%is_known) exit
+               call find_node(set, extremes%tracks(part), times(i), nodes(i), .true.)
+               if (.not. nodes(i)%is_known) exit
             end do
             if (i <= places) cycle
 
-            ! The largest error of those that have a bound, in characteristic values or as a part of larger ones. What
-            ! is badly known counts for nothing.
+            ! The largest error of the limits that have a bound, in characteristic values or as a part of larger ones.
+            ! A limit that is badly known does not exist.
             error = 0.0_wp
             do k = 1, size(limits, 2)
                do i = 0, 2
                   associate (one => limits(i, k), size_of => extremes%tracks(part)%coordinates(k)%size_of(i))
                      one = extreme_t()
                      ! Points of a measure coincide.
-                     if (any([(near(n)%samples(k)%known < 2, n=1, places)])) cycle
-                     f = [(near(n)%samples(k)%f(i), n=1, places)]
+                     if (any([(nodes(n)%samples(k)%known < 2, n=1, places)])) cycle
+                     f = [(nodes(n)%samples(k)%f(i), n=1, places)]
                      one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
                      one%error = 2.0_wp*abs(dot_product(five - four, f)) &
-                        + maxval([(near(n)%samples(k)%error(i), n=1, places)])
-                     one%has_bound = at%is_change .or. abs(f(1)) < growth*abs(f(2)) .or. abs(f(1)) < small*size_of
+                        + maxval([(nodes(n)%samples(k)%error(i), n=1, places)])
+                     one%has_bound = at%is_change .or. abs(f(1)) < unbounded_growth*abs(f(2)) &
+                        .or. abs(f(1)) < bounded_part*size_of
                      if (.not. one%has_bound) one%value = f(1)
                      one%exists = .not. one%has_bound .or. one%error <= badly_known*max(size_of, abs(one%value))
                      if (one%has_bound) error = max(error, one%error/max(size_of, abs(one%value)))
@@ -245,11 +255,12 @@ contains
             if (error < least_error) then
                least_error = error
                best = limits
-               beside = times
+               near = times
             end if
-            if (least_error < well_known) exit
+            if (least_error < well_known_limit) exit
          end do
-         if (least_error >= huge(1.0_wp)) beside = times
+
+         if (least_error >= huge(1.0_wp)) near = times
          do k = 1, size(best, 2)
             do i = 0, 2
                if (best(i, k)%exists) call offer(extremes%tracks(part)%coordinates(k), i, best(i, k), 0.0_wp)
@@ -257,10 +268,10 @@ contains
          end do
       end subroutine accept_limits
 
-      !> Takes a node at the time `t`; `always`: with its errors.
+      !> Takes a node at a time, and searches up to it. If its motion is not known, the time is a gap.
       subroutine look_at(t, always)
-         real(wp), intent(in) :: t
-         logical, intent(in) :: always
+         real(wp), intent(in) :: t           !< time
+         logical, intent(in) :: always       !< errors are estimated even if no digit of a table is in doubt
 
          associate (track => extremes%tracks(part))
             call find_next(extremes, set, part, t, always)

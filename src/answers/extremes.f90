@@ -1,5 +1,5 @@
-!> Card EXTREMES: the least and the greatest value of each coordinate, velocity and acceleration of a row, as far as
-!> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
+!> Card EXTREMES: the least and the greatest value of each coordinate, velocity and acceleration of a row, up to the
+!> time that `extreme_search` has reached; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
    use plane_vectors, only: pi, in_degrees, wrap_angle
@@ -17,72 +17,72 @@ module extremes
    private
    public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
       requested_rows, new_extremes, offer, offer_sample, record_velocity, add_interval, is_cyclic, is_covered, &
-      varies, strokes_t, strokes_of, settle_ratios, badly_known, alike, never_better
+      varies, strokes_t, strokes_of, settle_ratios, badly_known, equal_part, never_better
 
-   !> Values closer than this, in characteristic lengths or rad and rates, count as equal, the earlier one is printed:
-   !> errors below a table's last digit reach it.
-   real(wp), parameter :: alike = 10.0_wp*max_amplification*epsilon(1.0_wp)
-   !> Derivatives that no estimate of errors is made for may be off by so much, in these units: with 1/p for the inverse
-   !> of a block's Jacobian, roundings grow by 1/p^2 < `max_amplification` in velocities and by 1/p^3 in accelerations.
-   real(wp), parameter :: unseen(0:2) = alike*[1.0_wp, 1.0_wp, sqrt(max_amplification)]
+   !> Values closer than this, in characteristic lengths or rad and rates, count as equal, and the earlier one is
+   !> printed: errors below a table's last digit may be as large.
+   real(wp), parameter :: equal_part = 10.0_wp*max_amplification*epsilon(1.0_wp)
+   !> Derivatives without an estimate of errors may be off by so much, in these units: with 1/p for the inverse of a
+   !> block's Jacobian, roundings grow by 1/p^2 < `max_amplification` in velocities and by 1/p^3 in accelerations.
+   real(wp), parameter :: unseen_part(0:2) = equal_part*[1.0_wp, 1.0_wp, sqrt(max_amplification)]
    !> A variation counts if it exceeds this many estimated errors; a smaller one has no digit in a table.
    real(wp), parameter :: above_errors = 10.0_wp
-   !> A value with a larger error has no digits in a table.
+   !> A value with a larger error, in characteristic values, has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
-   !> So many parts at least has a turn of a drive, and a period of a harmonic law.
+   !> A turn of a drive, and a period of a harmonic law, has at least so many parts.
    integer, parameter :: parts_of_turn = 12
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
-   !> A coordinate at the time `t`.
+   !> A coordinate at a time.
    type :: value_at_t
       real(wp) :: t = 0.0_wp, value = 0.0_wp
    end type value_at_t
 
    !> A coordinate of a row whose extremes are asked for, in the deck's unit or rad, with its rate and acceleration.
    type :: coordinate_t
-      integer :: request = 0, column = 0               !< of the set, and its column (1 to 3) in this row
+      integer :: request = 0, column = 0               !< number in the set, and column (1 to 3) in the row of this
       integer :: form = 0                              !< of the row
       integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
-      integer :: part = 0, row = 0                     !< its mechanism, and the request among those of that
+      integer :: part = 0, row = 0                     !< number of its mechanism, and of its row in `track_t`
       logical :: is_angle = .false.
-      logical :: is_measure = .false.                  !< it may be known less well where two points are close
+      logical :: is_measure = .false.                  !< it may be known less well if two points are close
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
       type(extreme_t) :: found(least:greatest, 0:2)
       real(wp) :: last(3) = 0.0_wp                     !< its latest rate, acceleration and jerk with a clear sign
       type(value_at_t), allocatable :: places(:)       !< nodes and extremes, if it may dwell
-      !> How it has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest` since that,
-      !> at this `speed`, where it was before the first, and where it has reversed.
+      !> Its way: the first sign of its velocity and the latest, 0 for none; its place at the lowest `speed` since the
+      !> latest sign, the place before the first sign, and the places at which it has reversed.
       integer :: first_sign = 0, last_sign = 0
       type(value_at_t) :: start, slowest
       real(wp) :: speed = huge(1.0_wp)
       type(value_at_t), allocatable :: reversals(:)
    end type coordinate_t
 
-   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
+   !> An end of a piece of a step. `is_open`: not all of the motion exists there.
    type :: end_t
       real(wp) :: t = 0.0_wp
       logical :: is_open = .false., is_change = .false.
    end type end_t
 
-   !> The way that the coordinates of one independent mechanism have come.
+   !> The coordinates of one independent mechanism along the run.
    type :: track_t
-      integer, allocatable :: requests(:)              !< of the set, that are asked for,
-      type(row_t), allocatable :: rows(:)              !< room for their rows,
-      real(wp), allocatable :: error(:, :, :)          !< and for (3, 0:2, rows) errors of these
+      integer, allocatable :: requests(:)              !< (rows) numbers in the set of those that are asked for
+      type(row_t), allocatable :: rows(:)              !< room for their rows
+      real(wp), allocatable :: error(:, :, :)          !< (3, 0:2, rows) room for the errors of the rows
       type(coordinate_t), allocatable :: coordinates(:)
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
-      !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
+      !> The largest difference of the last motion from the first: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
       type(end_t) :: last                              !< the last instant
       logical :: is_lost = .false.                     !< of some row nothing is known there
-      !> The last one up to which this piece is searched, and those after it: so many are `filled`, and the next one is
-      !> found where it belongs. Between three a number has an extreme only if it `turns`.
+      !> The first node is the last one up to which this piece is searched; so many are `filled`, and the next one is
+      !> put after these. Between three nodes a number has an extreme only if it `turns`.
       type(node_t) :: nodes(3)
       integer :: filled = 0
       logical :: turns = .false.
@@ -94,21 +94,21 @@ module extremes
       real(wp) :: from = 0.0_wp, to = 0.0_wp
    end type uncovered_interval_t
 
-   !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
+   !> The strokes of a coordinate: it reverses at the places of one period. Two reversals are the ends of both strokes,
    !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
    type :: strokes_t
       type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
       type(value_at_t), allocatable :: reversals(:)
       real(wp) :: times(2) = 0.0_wp
-      real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and what is unknown of it
+      real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and its error
    end type strokes_t
 
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
       type(uncovered_interval_t), allocatable :: gaps(:)   !< (any number) in which not all is known, in the run's order
-      type(uncovered_interval_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
+      type(uncovered_interval_t), allocatable :: open(:)   !< (any number) in which extremes may be missed
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
@@ -116,7 +116,7 @@ module extremes
 
 contains
 
-   !> The rows of `set` whose extremes are asked for, but those of the ground, which does not move.
+   !> Finds the numbers of the rows of a set whose extremes are asked for, but those of the ground, which does not move.
    pure function requested_rows(set) result(asked)
       class(set_t), intent(in) :: set
       integer, allocatable :: asked(:)
@@ -142,14 +142,14 @@ contains
       coordinate%column = column_of_ratio
       coordinate%columns = [0, coordinate%columns(:1)]
       coordinate%sought = [.false., coordinate%sought(:1)]
-      ! No digit of the first one counts.
+      ! No digit of the unknown coordinate counts.
       coordinate%size_of(0) = sqrt(huge(1.0_wp))
       coordinate%size_of(1) = usual_size(columns_of_rows(coordinate%columns(1))%dimension, 0, length, rate, degrees)
       coordinate%size_of(2) = coordinate%size_of(1)*rate
    end subroutine set_ratio
 
-   !> Makes of the extremes of the rates of ratios those of their derivatives by the drive. Only of a drive with a
-   !> constant rate they are at the same places; of another one they are not told.
+   !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive. Both are at the same
+   !> places only if the rate of the drive is constant; otherwise they are not printed.
    pure subroutine settle_ratios(coordinates, m)
       type(coordinate_t), intent(inout) :: coordinates(:)   !< after the last instant
       type(mechanism_t), intent(in) :: m     !< their mechanism, which has one drive if one of them is a ratio
@@ -172,7 +172,7 @@ contains
       end do
    end subroutine settle_ratios
 
-   !> Tells of which coordinates (3) of the row of `request` extremes are asked for: their own, or of a derivative.
+   !> Tells of which coordinates (3) of a row extremes are asked for: their own, or of a derivative.
    pure function are_sought(m, request) result(sought)
       type(mechanism_t), intent(in) :: m     !< whose request it is
       type(request_t), intent(in) :: request
@@ -182,7 +182,7 @@ contains
       sought = [(i <= forms(form_of(m, request))%coordinates, i=1, 3)] .and. any(request%sought, dim=2)
    end function are_sought
 
-   !> Ready for the first instant of the `set`.
+   !> Prepares the search for extremes of a set, before its first instant.
    subroutine new_extremes(set, extremes)
       class(set_t), intent(in) :: set
       type(extremes_t), intent(out) :: extremes
@@ -205,6 +205,7 @@ contains
             rate = characteristic_rate(own, length)
             allocate (track%coordinates(sum([(count(are_sought(own, own%requests(set%rows(asked(q))%number))), &
                q=1, size(asked))])))
+
             n = 0
             do q = 1, size(asked)
                associate (request => own%requests(set%rows(asked(q))%number))
@@ -212,6 +213,7 @@ contains
                   do i = 1, size(sought)
                      if (.not. sought(i)) cycle
                      n = n + 1
+
                      associate (one => track%coordinates(n))
                         one%request = asked(q)
                         one%part = c
@@ -243,29 +245,29 @@ contains
       end do
    end subroutine new_extremes
 
-   !> Derivative number `k` of `sample` may be an extreme of the `coordinate`; a place is kept, if its dwells are
-   !> asked for. `at_zero`: the sample is at a zero of the next derivative. `step` of TIME.
+   !> Offers a number of a sample as an extreme of a coordinate. The place is kept if dwells of the coordinate are asked
+   !> for.
    pure subroutine offer_sample(coordinate, k, sample, at_zero, step)
       type(coordinate_t), intent(inout) :: coordinate
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
       type(sample_t), intent(in) :: sample
-      logical, intent(in) :: at_zero
-      real(wp), intent(in) :: step
+      logical, intent(in) :: at_zero         !< the sample is at a zero of the next derivative
+      real(wp), intent(in) :: step           !< of TIME
 
       call offer(coordinate, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, &
          sample%error(k)), step)
-      if (k == 0 .and. coordinate%dwell > 0.0_wp) coordinate%places = [coordinate%places, value_at_t(sample%t, &
-         sample%f(0))]
+      if (k == 0 .and. coordinate%dwell > 0.0_wp) &
+         coordinate%places = [coordinate%places, value_at_t(sample%t, sample%f(0))]
    end subroutine offer_sample
 
-   !> The value `extreme` of derivative number `k` of the `coordinate` may be the least or the greatest. One that is
-   !> located replaces that of a node less than a `step` beside it. So does a node that is alike but by more than
-   !> rounding: the time is open by their distance then.
+   !> Takes a value as the least or the greatest of a coordinate, if it is. A located value replaces the value of a node
+   !> less than a step away. A node replaces another node less than a step away if it is more extreme by more than
+   !> rounding, though equal otherwise: their distance is then the error of the time.
    pure subroutine offer(coordinate, k, extreme, step)
       type(coordinate_t), intent(inout) :: coordinate
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
       type(extreme_t), intent(in) :: extreme
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: step           !< of TIME
       real(wp) :: gain, open
       integer :: which
       logical :: better, near
@@ -274,22 +276,22 @@ contains
          associate (best => coordinate%found(which, k))
             if (.not. best%has_bound) cycle
             gain = (extreme%value - best%value)*outward(which)
-            open = alike*coordinate%size_of(k) + best%error + extreme%error
+            open = equal_part*coordinate%size_of(k) + best%error + extreme%error
             better = .not. best%exists .or. gain > open
             near = gain > noise_part*max(coordinate%size_of(k), abs(extreme%value)) + best%error + extreme%error &
                .and. abs(extreme%t - best%t) < step .and. .not. (better .or. best%is_located .or. extreme%is_located)
             better = better .or. near
-            if (extreme%is_located .and. .not. (better .or. best%is_located)) better = gain >= -open &
-               .and. abs(extreme%t - best%t) < step
-            ! Of a value of which almost nothing is known, the least that it can be counts.
+            if (extreme%is_located .and. .not. (better .or. best%is_located)) &
+               better = gain >= -open .and. abs(extreme%t - best%t) < step
+            ! Of a value that is badly known the least possible value counts.
             if (best%error > badly_known*coordinate%size_of(k) .and. abs(extreme%t - best%t) > best%t_error) &
                better = better .or. gain + best%error > extreme%error
             ! A one-sided limit is known less well than the number itself.
-            better = better .or. (.not. extreme%is_located .and. abs(extreme%t - best%t) <= &
-               0.0_wp .and. extreme%error < best%error)
-            ! A value that is alike and much better known.
-            better = better .or. (coordinate%is_measure .and. abs(gain) <= &
-               open .and. extreme%error < badly_known*best%error)
+            better = better .or. (.not. extreme%is_located .and. abs(extreme%t - best%t) <= 0.0_wp &
+               .and. extreme%error < best%error)
+            ! An equal value that is much better known replaces a value of a measure.
+            better = better .or. (coordinate%is_measure .and. abs(gain) <= open &
+               .and. extreme%error < badly_known*best%error)
             if (.not. extreme%has_bound) better = extreme%value*outward(which) > 0.0_wp
             if (.not. better) cycle
             open = merge(abs(extreme%t - best%t), 0.0_wp, near)
@@ -299,26 +301,26 @@ contains
       end do
    end subroutine offer
 
-   !> Finds the values between which derivative number `k` of the `coordinate` is no new extreme, as `offer` sees it;
-   !> the first is above the second where one may be, or where dwells need its place.
+   !> Finds the values between which a number of a coordinate is no new extreme for `offer`. If every value may be one,
+   !> or dwells need its place, the first is above the second.
    pure function never_better(coordinate, k) result(inside)
       type(coordinate_t), intent(in) :: coordinate
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
       real(wp) :: inside(least:greatest)
 
       associate (e => coordinate%found(:, k))
-         inside = e%value + outward*merge(alike*coordinate%size_of(k) + e%error, -badly_known*coordinate%size_of(k), &
-            e%is_located)
+         inside = e%value + outward*merge(equal_part*coordinate%size_of(k) + e%error, &
+            -badly_known*coordinate%size_of(k), e%is_located)
          if ((k == 0 .and. coordinate%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
             .and. e%error <= badly_known*coordinate%size_of(k))) inside = -huge(inside)*outward
       end associate
    end function never_better
 
-   !> Takes the velocity of the `coordinate` in the next `sample` along the run: where its sign has changed the
-   !> coordinate has reversed, at its slowest place between.
+   !> Takes the velocity of a coordinate at the next place along the run. If its sign has changed, the coordinate has
+   !> reversed at its slowest place between.
    pure subroutine record_velocity(coordinate, sample)
       type(coordinate_t), intent(inout) :: coordinate
-      type(sample_t), intent(in) :: sample
+      type(sample_t), intent(in) :: sample   !< at that place
       real(wp) :: speed
       integer :: this
 
@@ -329,6 +331,7 @@ contains
          coordinate%speed = speed
       end if
       if (speed <= 0.0_wp) return
+
       this = merge(1, -1, sample%f(1) > 0.0_wp)
       if (coordinate%first_sign == 0) then
          coordinate%first_sign = this
@@ -340,11 +343,12 @@ contains
       coordinate%speed = speed
    end subroutine record_velocity
 
-   !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
-   !> more than `apart_by` apart are one.
+   !> Adds an interval of time to a list. Intervals that are near one another become one.
    pure subroutine add_interval(list, way, from, to, apart_by)
-      type(uncovered_interval_t), allocatable, intent(inout) :: list(:)
-      real(wp), intent(in) :: way, from, to, apart_by
+      type(uncovered_interval_t), allocatable, intent(inout) :: list(:)   !< in the run's order
+      real(wp), intent(in) :: way            !< the direction of the run: 1 or -1
+      real(wp), intent(in) :: from, to       !< the ends of the interval, times in the run's order
+      real(wp), intent(in) :: apart_by       !< time: intervals that are not farther apart are one
       type(uncovered_interval_t), allocatable :: joined(:)
       logical :: apart(size(list)), before(size(list))
       real(wp) :: low, high
@@ -362,37 +366,36 @@ contains
       call move_alloc(joined, list)
    end subroutine add_interval
 
-   !> All of the motion is known, but for single instants.
+   !> Tells whether all of the motion is known, but for single instants.
    pure logical function is_covered(extremes)
       type(extremes_t), intent(in) :: extremes
 
       is_covered = .not. any(abs(extremes%gaps%to - extremes%gaps%from) > 0.0_wp)
    end function is_covered
 
-   !> After the last instant: all links of mechanism `part` are where they were at the first, but for whole turns, and
-   !> as fast.
+   !> Tells whether the last instant repeats the first: all links of a mechanism have their first position, but for
+   !> whole turns, and their first velocity.
    pure logical function is_cyclic(extremes, part)
       type(extremes_t), intent(in) :: extremes
-      integer, intent(in) :: part
+      integer, intent(in) :: part            !< number of the mechanism
 
       is_cyclic = is_covered(extremes) .and. closes(extremes%tracks(part)%closure)
    end function is_cyclic
 
-   !> Derivative `k` of the `coordinate`, if it is asked for, has a least and a greatest value that differ by more
-   !> than rounding can make, or one of them is not known.
+   !> Tells whether a number of a coordinate varies, if it is asked for: its least and its greatest value differ by more
+   !> than rounding, or one of them is not known.
    pure logical function varies(coordinate, k)
       type(coordinate_t), intent(in) :: coordinate
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
 
       associate (e => coordinate%found(:, k))
          varies = coordinate%sought(k) .and. (.not. all(e%exists .and. e%has_bound) &
-               .or. e(greatest)%value - e(least)%value &
-            > unseen(k)*coordinate%size_of(k) + above_errors*sum(e%error))
+            .or. e(greatest)%value - e(least)%value > unseen_part(k)*coordinate%size_of(k) + above_errors*sum(e%error))
       end associate
    end function varies
 
-   !> The strokes of the `coordinate` after the last instant, in the shortest part of a cyclic run after which its
-   !> reversals repeat.
+   !> Finds the strokes of a coordinate after the last instant: the shortest part of a cyclic run after which its
+   !> reversals repeat is its period.
    pure type(strokes_t) function strokes_of(extremes, coordinate) result(strokes)
       type(extremes_t), intent(in) :: extremes
       type(coordinate_t), intent(in) :: coordinate
@@ -410,6 +413,7 @@ contains
          strokes%in_run = n
          strokes%reversals = all_of(:0)
          if (n == 0 .or. .not. is_cyclic(extremes, coordinate%part)) return
+
          do in_period = 2, n, 2
             if (mod(n, in_period) /= 0) cycle
             period = extremes%run*in_period/n
@@ -418,6 +422,7 @@ contains
             if (all(abs(change) <= closes_to*coordinate%size_of(0)) .and. all(abs(all_of(in_period + 1:)%t &
                - all_of(:n - in_period)%t - period) <= closes_to*abs(extremes%run))) exit
          end do
+
          if (in_period > n) return
          strokes%reversals = all_of(:in_period)
          if (in_period > 2) return

@@ -1,52 +1,56 @@
-!> The rows of some requests of a set at the instants of TIME and at times between them, where what is asked of the
-!> whole run looks for something.
+!> The rows of some requests of a set at the instants of TIME and at times between them, for the questions about the
+!> whole run.
 module nodes
    use kinds, only: wp
    implicit none
    private
-   public :: sample_t, node_t, extreme_t, times_between, beside_joint, order_along
+   public :: sample_t, node_t, extreme_t, times_between, joint_margin, order_along
 
-   !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
-   real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
-   !> The parts between two joints at least, and at most.
+   !> The nodes next to a joint are so far from it, in parts of the time or of the run: `drives` takes a nearer time as
+   !> the joint itself.
+   real(wp), parameter :: joint_margin_part = 65536.0_wp*epsilon(1.0_wp)
+   !> Between two joints there are at least `parts_of_gap` parts, and at most `max_parts`.
    integer, parameter :: parts_of_gap = 8, max_parts = 120
+
    !> A coordinate of a row at one time, in the deck's unit or rad.
    type :: sample_t
       real(wp) :: t = 0.0_wp            !< time
       real(wp) :: f(0:2) = 0.0_wp       !< value, rate, acceleration
-      real(wp) :: error(0:2) = 0.0_wp   !< of them, where digits of a table could be in doubt
+      real(wp) :: error(0:2) = 0.0_wp   !< of `f`, if digits of a table could be in doubt
       integer :: known = -1             !< as in `row_t`; 2: all of `f`
       logical :: meets = .false.        !< points of a measure coincide: at most its value is known
-      real(wp) :: growth = 0.0_wp       !< by which roundings grow where no digits could be in doubt
+      real(wp) :: growth = 0.0_wp       !< factor of roundings, if no digits could be in doubt
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
    end type sample_t
 
    !> The coordinates of one independent mechanism at one time. Small, since lanes have many of them.
    type :: node_t
       real(wp) :: t = 0.0_wp                   !< time
-      !> All of the motion is known, and of no number all digits are open: such a one cannot be told to be an extreme,
-      !> nor to be none.
+      !> All of the motion is known, and each number has known digits: others could be extremes or not.
       logical :: is_known = .false.
       logical :: is_lost = .false.             !< of some row nothing is known
       type(sample_t), allocatable :: samples(:)   !< (coordinates)
    end type node_t
 
-   !> The least or the greatest value of a number, or what may be that. In the deck's unit or rad.
+   !> The least or the greatest value of a number, or a value that may be that. In the deck's unit or rad.
    type :: extreme_t
       logical :: exists = .false.
       logical :: has_bound = .true.                    !< false: the number grows without bound before the time `t`
       logical :: is_located = .false.                  !< at a zero of a derivative or as a limit, not at a node
-      real(wp) :: t = 0.0_wp, value = 0.0_wp           !< of what has no bound, a value with its sign
-      real(wp) :: t_error = 0.0_wp, error = 0.0_wp     !< what rounding leaves open of both
+      real(wp) :: t = 0.0_wp, value = 0.0_wp           !< without a bound, some value with the sign
+      real(wp) :: t_error = 0.0_wp, error = 0.0_wp     !< errors of `t` and `value` by rounding
    end type extreme_t
 
 contains
 
-   !> The times of the nodes between `t1` and `t2`, instants of a run of the time `run`, in their order: at each of the
-   !> `joints` of the drives' laws, which are in this order too, and on either side of it; and between them, so that no
-   !> part is longer than `longest` or an eighth of the time from joint to joint.
+   !> Finds the times (any number) of the nodes between two instants, in the run's order: at each joint of the drives'
+   !> laws and on either side of it, and between joints. No part is longer than an eighth of the time from joint to
+   !> joint.
    pure function times_between(joints, longest, run, t1, t2) result(times)
-      real(wp), intent(in) :: joints(:), longest, run, t1, t2
+      real(wp), intent(in) :: joints(:)      !< (joints) times, in the run's order
+      real(wp), intent(in) :: longest        !< time: no part is longer
+      real(wp), intent(in) :: run            !< time of the whole run
+      real(wp), intent(in) :: t1, t2         !< times of the instants, in the run's order
       real(wp), allocatable :: times(:)
       real(wp) :: way, from, to, part
       integer :: i, k, low, high, parts
@@ -62,13 +66,14 @@ contains
          if (i < size(joints)) then
             if (i < high) to = joints(i + 1)
             if (i > 0) part = min(part, abs(joints(i + 1) - joints(i))/parts_of_gap)
-            times = [times, joints(i + 1) + way*beside_joint(run, joints(i + 1))*[(k, k=-1, 1)]]
+            times = [times, joints(i + 1) + way*joint_margin(run, joints(i + 1))*[(k, k=-1, 1)]]
          end if
-         if (i > 0) times = [times, joints(i) + way*beside_joint(run, joints(i))]
+         if (i > 0) times = [times, joints(i) + way*joint_margin(run, joints(i))]
+
          ! Joints of two drives may be one.
          parts = 0
          if (abs(to - from) > 0.0_wp) &
-            parts = ceiling(min(real(max_parts, wp), abs(to - from)/part*(1.0_wp - joint_part)))
+            parts = ceiling(min(real(max_parts, wp), abs(to - from)/part*(1.0_wp - joint_margin_part)))
          times = [times, (from + (to - from)*k/parts, k=1, parts - 1)]
          from = to
       end do
@@ -76,17 +81,18 @@ contains
       times = times(order_along(times, way))
    end function times_between
 
-   !> How far from a joint at the time `t` are the nodes just beside it, in a run of the time `run`.
-   pure real(wp) function beside_joint(run, t)
-      real(wp), intent(in) :: run, t
+   !> Gives the time between a joint and the nodes next to it.
+   pure real(wp) function joint_margin(run, t)
+      real(wp), intent(in) :: run            !< time of the whole run
+      real(wp), intent(in) :: t              !< time of the joint
 
-      beside_joint = joint_part*max(abs(t), abs(run))
-   end function beside_joint
+      joint_margin = joint_margin_part*max(abs(t), abs(run))
+   end function joint_margin
 
-   !> The numbers of the `times` in their order, upwards where `step` > 0, otherwise downwards. What is in order already
-   !> is only looked at.
+   !> Gives the numbers of times in the order of the times. If they are in order already, the cost is one look at each.
    pure function order_along(times, step) result(order)
-      real(wp), intent(in) :: times(:), step
+      real(wp), intent(in) :: times(:)       !< (any number)
+      real(wp), intent(in) :: step           !< above 0: upwards; otherwise downwards
       integer :: order(size(times)), i, k
 
       do i = 1, size(times)

@@ -1,4 +1,4 @@
-!> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
+!> The results of card PROVE: a line for each printed instant, with the steps to it since the one before; why instants
 !> are not proved; and the counts.
 module proofs
    use kinds, only: wp
@@ -10,7 +10,7 @@ module proofs
    private
    public :: proofs_t, reason_t, record_proof
 
-   !> Of a printed instant, and the steps to it from the last one.
+   !> The proof of a printed instant, and of the steps to it from the last one.
    type :: line_t
       integer :: step = 0                        !< number of the instant
       logical :: is_proved = .true.
@@ -30,19 +30,19 @@ module proofs
    end type reason_t
 
    type :: proofs_t
-      type(line_t), allocatable :: lines(:)      !< with room behind
-      integer :: count = 0                       !< of them; the next one is in the making
+      type(line_t), allocatable :: lines(:)      !< with room for further ones
+      integer :: count = 0                       !< of finished lines; the next one is in the making
       type(reason_t), allocatable :: reasons(:)  !< the first ones
       integer :: instants = 0, proved = 0        !< in all
       real(wp) :: closure_error = 0.0_wp         !< bound, of redundant equations, in units of the blocks
    end type proofs_t
 
-   !> So many reasons are kept; of more, the number.
+   !> So many reasons are kept; further ones are only counted.
    integer, parameter :: max_reasons = 50
 
 contains
 
-   !> Takes what is proved of instant number `k`, to which `set` has advanced; `due`: it is printed.
+   !> Takes the proof of an instant, to which the set has advanced.
    subroutine record_proof(proofs, set, k, due)
       type(proofs_t), intent(inout) :: proofs
       type(set_analysis_t), intent(in) :: set

@@ -1,6 +1,6 @@
-!> Card RANGE: the interval of each drive in which the assembly of the first instant lives, the other drives held. The
-!> motion is followed both ways, by the drive's value instead of time, until it ends or, where a drive of an angle has
-!> made whole turns, every link is where it was.
+!> Card RANGE: the interval of each drive in which the assembly of the first instant exists, the other drives held. The
+!> motion is followed both ways, by the drive's value instead of time, until it ends. The motion of a drive of an angle
+!> also ends after whole turns at which every link has its first position.
 module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
@@ -15,24 +15,26 @@ module ranges
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
-   public :: range_t, find_range, held_at, estimate_side, low, high
+   public :: range_t, find_range, held_at, estimate_side, lower_end, upper_end
 
-   !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
+   !> Steps along the drive, in rad or characteristic lengths.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
+   !> A drive is followed so far each way, in turns or characteristic lengths.
    integer, parameter :: max_turns = 12
    real(wp), parameter :: max_lengths = 100.0_wp
-   !> How close its end is looked for where no limit is known. Reason: rounding leaves about the root of a rounding open
-   !> there, and a try that fails takes as long as a long run.
-   real(wp), parameter :: closest = max(1.0e-7_wp, 64.0_wp*sqrt(epsilon(1.0_wp)))
+   !> The shortest step, in rad or characteristic lengths, with which an end is searched for if no limit is known.
+   !> Rounding leaves an error of about the root of a rounding there, and a try that fails takes as long as a long run.
+   real(wp), parameter :: nearest_try = max(1.0e-7_wp, 64.0_wp*sqrt(epsilon(1.0_wp)))
    !> The ends of a range.
-   integer, parameter :: low = 1, high = 2
+   integer, parameter :: lower_end = 1, upper_end = 2
 
    !> The range of a drive. An end without a limit is the last value to which the drive was followed.
    type :: range_t
-      integer :: part = 1, drive = 0        !< the number of its independent mechanism, and its own there
+      integer :: part = 1                   !< number of its independent mechanism
+      integer :: drive = 0                  !< number of the drive there
       logical :: is_all = .false.           !< it turns fully, and the motion closes
       integer :: turns = 0                  !< after so many turns
-      logical :: is_of_branch = .false.     !< the first instant has no position: of a branch that CIRCUITS knows
+      logical :: is_of_branch = .false.     !< the first instant has no position: of a branch by card CIRCUITS
       integer :: change_points = 0          !< passed on the smooth branch, both ways
       logical :: has_limit(2) = .false.     !< (low:high)
       type(diagnostic_t) :: limit(2)        !< (low:high) of the kind diagnostic_limit: links, the drive's value
@@ -40,11 +42,11 @@ module ranges
 
 contains
 
-   !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
+   !> Finds the range of a drive of a mechanism.
    subroutine find_range(m, start, drive, range)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
+      type(mechanism_t), intent(in) :: m     !< one independent mechanism
+      type(motion_t), intent(in) :: start    !< of its first instant
+      integer, intent(in) :: drive           !< number of the drive
       type(range_t), intent(out) :: range
       type(mechanism_t) :: d
       real(wp) :: unit
@@ -55,16 +57,16 @@ contains
       call estimate_side(d, start%position)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
-      do side = low, high
-         call follow(d, merge(-unit, unit, side == low), side, range)
+      do side = lower_end, upper_end
+         call follow(d, merge(-unit, unit, side == lower_end), side, range)
          if (range%is_all) return
       end do
    end subroutine find_range
 
-   !> `m` with all drives at rest at their values of the time `t`, by METHOD NEWTON, with all links asked for.
+   !> Makes a mechanism with all drives at rest at their values of a time, by METHOD NEWTON, with all links asked for.
    function held_at(m, t) result(held)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       type(mechanism_t) :: held
       real(wp) :: f(3)
       integer :: i
@@ -81,10 +83,10 @@ contains
       end do
    end function held_at
 
-   !> The links of `m` are expected at this `position` (3, links), in the deck's unit and from its origin.
+   !> Gives the moving links of a mechanism an estimated position.
    subroutine estimate_side(m, position)
       type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: position(:, :)
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from its origin, phi in rad
       integer :: i
 
       do i = 1, size(m%links)
@@ -92,12 +94,12 @@ contains
       end do
    end subroutine estimate_side
 
-   !> Follows the motion of `turned`, in which all drives rest, by the value of its drive to its end on one `side`: at
-   !> the parameter t the drive has gone `rate` times t.
+   !> Follows the motion of a mechanism by the value of a drive to its end on one side. At the parameter t the drive has
+   !> moved by t times its rate.
    subroutine follow(turned, rate, side, range)
-      type(mechanism_t), intent(in) :: turned
-      real(wp), intent(in) :: rate
-      integer, intent(in) :: side
+      type(mechanism_t), intent(in) :: turned   !< all drives rest
+      real(wp), intent(in) :: rate           !< of the drive by the parameter, in rad or the deck's length
+      integer, intent(in) :: side            !< lower_end or upper_end
       type(range_t), intent(inout) :: range
       type(analysis_t) :: a
       type(motion_t) :: first, now
@@ -112,12 +114,14 @@ contains
       now = first
       call make_analysis(a, turned)
       a%geometry%cylinders = cylinders_of(turned, .true.)
+
       value = turned%drives(range%drive)%polynomial(1)
       call lead(a%path, range%drive, 0.0_wp, rate, [0.0_wp, 1.0_wp])
       call advance(a, 0.0_wp, first)
       range%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=range%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return
-      ! A position without velocities, as at a change point, is passed by more than one motion: the next one counts.
+
+      ! Through a position without velocities, as at a change point, there is more than one motion: the next one counts.
       begin = merge(0, -1, first%known == 2)
       do k = 1, nint(merge(2.0_wp*pi*max_turns, max_lengths, is_angle)/step)
          if (signal_received() > 0) return
@@ -131,9 +135,9 @@ contains
             t = a%t
             i = last_of(now, diagnostic_close)
             if (i > 0) t = now%diagnostics(i)%t
-            part = closest
+            part = nearest_try
             grows = .true.
-            do while (last_of(now, diagnostic_limit) == 0 .and. part >= closest .and. signal_received() == 0)
+            do while (last_of(now, diagnostic_limit) == 0 .and. part >= nearest_try .and. signal_received() == 0)
                call advance(a, t + part, now)
                grows = grows .and. now%known >= 0 .and. part < step
                if (now%known >= 0) t = t + part
@@ -145,6 +149,7 @@ contains
             if (i > 0) range%limit(side) = now%diagnostics(i)
             return
          end if
+
          if (.not. is_angle .or. now%known < 2) cycle
          if (begin < 0) then
             begin = k
@@ -153,7 +158,7 @@ contains
          end if
          if (mod(k - begin, steps_a_turn) /= 0) cycle
          apart = motions_apart(turned, first, now)
-         ! The drive has one rate: what is in its place is as fast.
+         ! The drive has one rate: at its first position the mechanism has its first velocity.
          range%is_all = closes(apart(:2))
          range%turns = (k - begin)/steps_a_turn
          if (range%is_all) return
@@ -161,10 +166,10 @@ contains
       range%limit(side)%value = value + rate*t
    end subroutine follow
 
-   !> The number of the last diagnostic of `q` of this `kind`; 0: there is none.
+   !> Finds the number of the last diagnostic of a kind; 0 if there is none.
    pure integer function last_of(q, kind) result(i)
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: kind
+      integer, intent(in) :: kind            !< diagnostic_limit, ...
 
       i = 0
       if (allocated(q%diagnostics)) i = findloc(q%diagnostics%kind, kind, dim=1, back=.true.)

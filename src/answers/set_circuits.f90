@@ -6,23 +6,23 @@ module set_circuits
    use assemblies, only: assemblies_t
    use circuit_trace, only: end_closed
    use circuits, only: circuits_t, turns_of, find_circuits
-   use ranges, only: range_t, find_range, low, high
+   use ranges, only: range_t, find_range, lower_end, upper_end
    implicit none
    private
    public :: find_ranges, find_all_circuits, known
 
-   !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
-   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
-   !> Ranges are alike up to this, in rad and lengths.
-   real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
+   !> A value below this, in rad or lengths of the order of 1, is rounding of 0.
+   real(wp), parameter :: zero_value = 1.0e3_wp*epsilon(1.0_wp)
+   !> Ranges with ends that differ by less, in rad or characteristic lengths, are equal.
+   real(wp), parameter :: equal_range = sqrt(epsilon(1.0_wp))
 
 contains
 
-   !> The ranges of all drives of the set that `set` analyses, at its first instant. A mechanism without a position
-   !> there has those of its branches, if all of its circuits are known; a variant has none.
+   !> Finds the ranges of all drives of a set at its first instant. If a mechanism has no position there, its branches
+   !> have ranges, if all of its circuits are known; a variant has none.
    subroutine find_ranges(set, list)
       type(set_analysis_t), intent(in) :: set
-      type(range_t), allocatable, intent(out) :: list(:)
+      type(range_t), allocatable, intent(out) :: list(:)   !< (any number) by drives
       type(range_t) :: r
       type(circuits_t) :: found
       integer :: c, i
@@ -43,10 +43,10 @@ contains
       end do
    end subroutine find_ranges
 
-   !> Adds the range of the drive on each branch of `found`; alike ones once.
+   !> Adds the range of the drive on each branch of its circuits; equal ranges once.
    subroutine add_branch_ranges(found, list)
       type(circuits_t), intent(in) :: found
-      type(range_t), allocatable, intent(inout) :: list(:)
+      type(range_t), allocatable, intent(inout) :: list(:)   !< (any number)
       type(range_t) :: r
       integer :: k, i, side
 
@@ -56,7 +56,7 @@ contains
             r = range_t(part=found%part, drive=found%drive, is_of_branch=.true., has_limit=b%dead > 0)
             r%is_all = all(circuit%ends == end_closed) .and. all(b%dead == 0)
             if (r%is_all) r%turns = turns_of(circuit)
-            do side = low, high
+            do side = lower_end, upper_end
                r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
                if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))
                r%limit(side)%value = known(b%range(side))
@@ -64,16 +64,16 @@ contains
          end associate
          do i = 1, size(list)
             if (list(i)%part == r%part .and. list(i)%drive == r%drive .and. (list(i)%is_all .eqv. r%is_all) &
-               .and. all(abs(list(i)%limit%value - r%limit%value) <= alike*found%curve%closure%length)) exit
+               .and. all(abs(list(i)%limit%value - r%limit%value) <= equal_range*found%curve%closure%length)) exit
          end do
          if (i > size(list)) list = [list, r]
       end do
    end subroutine add_branch_ranges
 
-   !> Finds the circuits of each drive, the others held, of the set that `set` analyses, from its first instant.
+   !> Finds the circuits of each drive of a set, the others held, from its first instant.
    subroutine find_all_circuits(set, list)
       type(set_analysis_t), intent(in) :: set
-      type(circuits_t), allocatable, intent(out) :: list(:)
+      type(circuits_t), allocatable, intent(out) :: list(:)   !< (drives)
       type(assemblies_t), allocatable :: first
       integer :: c, i, n
 
@@ -90,10 +90,10 @@ contains
       end do
    end subroutine find_all_circuits
 
-   !> `value` (rad or length), 0 if it is rounding.
+   !> Gives a value, or 0 if it is rounding.
    pure real(wp) function known(value)
       real(wp), intent(in) :: value              !< rad or length
 
-      known = merge(0.0_wp, value, abs(value) <= rounding)
+      known = merge(0.0_wp, value, abs(value) <= zero_value)
    end function known
 end module set_circuits

@@ -1,5 +1,5 @@
-!> Which tolerances count: of each quantity that PRINT asks for, at the printed instant at which the root of the sum of
-!> squares is greatest, the sensitivities to all numbers.
+!> Which tolerances count: the sensitivities to all numbers of each quantity that PRINT asks for. They are taken at the
+!> printed instant at which the root of the sum of squares is greatest.
 module tolerance_contributions
    use kinds, only: wp
    use columns, only: columns_of_rows, forms
@@ -7,29 +7,30 @@ module tolerance_contributions
    use rows, only: finished_row_t, word_worst
    implicit none
    private
-   public :: shares_t, share_t, record_sensitivities, alike
+   public :: shares_t, share_t, record_sensitivities, equal_share_part
 
    !> A quantity at the instant at which its root of squares is greatest so far.
    type :: share_t
-      real(wp) :: root = 0.0_wp, worst = 0.0_wp, t = 0.0_wp
+      real(wp) :: root = 0.0_wp, worst = 0.0_wp     !< root of squares and worst case, in the unit of the quantity
+      real(wp) :: t = 0.0_wp                        !< time of the instant
       real(wp), allocatable :: s(:)                 !< (numbers) the sensitivities; not allocated: none was known yet
    end type share_t
 
    type :: shares_t
       type(share_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
-      logical, allocatable :: jams(:, :)            !< (numbers, parts) redundant equations leave no room for it
+      logical, allocatable :: jams(:, :)            !< (numbers, parts) redundant equations do not allow a change
    end type shares_t
 
-   !> Numbers that differ by less than this part are alike: the first counts.
-   real(wp), parameter :: alike = max(1.0e-9_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Roots and contributions that differ by less than this part are equal: the first counts.
+   real(wp), parameter :: equal_share_part = max(1.0e-9_wp, 4096.0_wp*epsilon(1.0_wp))
 
 contains
 
-   !> Takes the sensitivities of an instant: of each quantity the instant with the largest root of squares is kept.
+   !> Takes the sensitivities of an instant. For each quantity the instant with the largest root of squares is kept.
    subroutine record_sensitivities(shares, motions, rows)
       type(shares_t), intent(inout) :: shares
       type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
       integer :: i, j, n, c
 
       if (.not. allocated(shares%list)) then
@@ -46,7 +47,8 @@ contains
                associate (at => columns_of_rows(j)%at, &
                   one => shares%list(columns_of_rows(j)%at(1), columns_of_rows(j)%at(2), i))
                   if (at(2) > others(1)%row%known) cycle
-                  if (allocated(one%s) .and. others(2)%row%value(at(1), at(2)) <= one%root*(1.0_wp + alike)) cycle
+                  if (allocated(one%s) .and. others(2)%row%value(at(1), at(2)) &
+                     <= one%root*(1.0_wp + equal_share_part)) cycle
                   one%root = others(2)%row%value(at(1), at(2))
                   one%worst = others(1)%row%value(at(1), at(2))
                   one%t = motions%motions(1)%t

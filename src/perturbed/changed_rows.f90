@@ -204,6 +204,7 @@ contains
                   place%opened = max(place%opened, c%open%value/c%open%level)
                   place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
                      .or. place%opened > place%room
+
                   if (c%singular) lack = missing_rates
                   if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
                   if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(b, x, i, w, s)
@@ -217,6 +218,7 @@ contains
                if (lack > missing_nothing) missing(b%unknown(block%first:block%last)) = lack
             end associate
          end do
+
          ! The change of a drive's own unknown counts too: full turns are no return.
          do k = 1, ubound(s%u, 1)
             place%change = max(place%change, abs(s%u(k)%value - place%start(k)%value/slide_unit(b, x, k)))

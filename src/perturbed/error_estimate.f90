@@ -307,6 +307,7 @@ contains
          end if
          if (estimate%asked) error = nothing_known
          if (.not. estimate%taken) return
+
          error = merge(nothing_known, safety_factor*estimate%changes(:, :, i), &
             max(estimate%changes(:, :, i), estimate%by_closure(:, :, i)) >= nothing_known)
          where (error < nothing_known) &

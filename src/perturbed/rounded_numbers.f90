@@ -96,6 +96,7 @@ contains
                *deviate(parameter_t(parameter_pair, tree%orientation(link), quarters, 1), k)
          end associate
       end do
+
       if (length > 0.0_wp) off%drives = m%drives
       if (length > 0.0_wp) return
       do i = 1, size(m%drives)

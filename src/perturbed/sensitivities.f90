@@ -96,6 +96,7 @@ contains
             .and. row%state /= points_coincide)
       end do
       do d = 1, size(m%tolerances)
+
          associate (one => m%tolerances(d))
             call look_at_joint(m, one, q%t, usual_step*natural_unit(one, estimator%sizes), side, order)
             call find_step(one, side, step)

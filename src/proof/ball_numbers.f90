@@ -50,6 +50,7 @@ contains
                lengths = lengths*(number_error + vector_error + angle + terms*rounding) &
                   /(x%equations%length*own%unit)*room
             end associate
+
             p%loops(i)%ground = around(own%ground, lengths(0))
             p%loops(i)%direction = around(own%direction, of_direction*length_of(own%direction))
             do k = g%first_vector, g%last_vector
@@ -60,6 +61,7 @@ contains
             end do
          end associate
       end do
+
       p%rows%constant%mid = x%rows%constant
       p%rows%constant%radius = (2.0_wp*number_error*abs(x%rows%constant) &
          + merge(2.0_wp*angle, 0.0_wp, b%rows%angular))*room

@@ -41,6 +41,7 @@ contains
             associate (h => chain(i), own => chain(i)%link, place => chain(i)%place, &
                p => balls%u(chain(i)%parent_orientation), f => balls%u(chain(i)%orientation))
                here = vector_t()
+
                if (h%root > 0) then
                   call add_sliding(vector_t(ball_t(length*h%root_unit(1), 0.0_wp), zero), balls%u(0), balls%u(h%root), &
                      here)
@@ -56,6 +57,7 @@ contains
                   if (h%slide > 0) call add_sliding(around(real_vector_t(slide(1), slide(2)), &
                      of_direction*norm2(slide)), p, balls%u(h%slide), here)
                end if
+
                links(1, :, own) = here%x
                links(2, :, own) = here%y
                links(3, :, own) = [f%value + ball_t(h%angle_offset, of_angle), f%rate, f%acceleration]

@@ -129,6 +129,7 @@ contains
             placed%u(own(k))%rate = ball_t(s%u(own(k))%rate, 0.0_wp)
             placed%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
          end do
+
          is_proved = block%direct
          if (block%direct) then
             associate (row => b%rows(block%first_row), direct => placed%u(own(1)))

@@ -9,7 +9,7 @@ module contributions_table
    use table, only: format_t, unit_of, number_text
    use names, only: subject_name
    use sensitivities, only: has_tolerances
-   use tolerance_contributions, only: shares_t, share_t, alike
+   use tolerance_contributions, only: shares_t, share_t, equal_share_part
    use listing_layout, only: layout_t, column_name, column_unit
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -98,7 +98,7 @@ contains
       part = (share%s*m%tolerances%size_of/share%root)**2
       do while (any(part >= least_share))
          ! Of those that are alike the first one comes first.
-         i = findloc(part >= maxval(part)*(1.0_wp - alike), .true., dim=1)
+         i = findloc(part >= maxval(part)*(1.0_wp - equal_share_part), .true., dim=1)
          associate (one => m%tolerances(i))
             write (sensitivity, '(es12.4e3)') share%s(i)/f%unit
             name = one%name

@@ -2,7 +2,7 @@
 module ranges_table
    use independent, only: set_t
    use set_members, only: drive_number, drive_title
-   use ranges, only: range_t, low, high
+   use ranges, only: range_t, lower_end, upper_end
    use listing, only: limit_words, full_turn_words
    use listing_layout, only: write_folded
    use text_output, only: output_t, put
@@ -12,7 +12,7 @@ module ranges_table
    private
    public :: write_ranges, side_words
 
-   character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
+   character(3), parameter :: side_words(lower_end:upper_end) = ['MIN', 'MAX']
 
 contains
 
@@ -35,7 +35,7 @@ contains
             if (r%is_all) then
                call put(o, '   '//full_turn_words(r%turns, set%polish))
             else
-               do side = low, high
+               do side = lower_end, upper_end
                   words = limit_words(set, r%part, r%limit(side))
                   ! Where no limit is told rounding is too coarse to follow the motion farther.
                   if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &

@@ -15,7 +15,7 @@ module variant_rows
    use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
    use extremes, only: coordinate_t, strokes_t, least, greatest, outward, requested_rows, strokes_of
    use extremes_table, only: extreme_words, ratio_format
-   use ranges, only: low, high
+   use ranges, only: lower_end, upper_end
    use answers, only: answers_t
    use counts, only: counts_t
    use number_format, only: whole
@@ -233,7 +233,7 @@ contains
          do i = 1, size(asked%ranges)
             associate (one => asked%ranges(i), d => n + 3*(drive_number(set, asked%ranges(i)%part, &
                        asked%ranges(i)%drive) - 1))
-               do which = low, high
+               do which = lower_end, upper_end
                   if (one%has_limit(which)) row%cells(d + which) = cell_t(cell_number, one%limit(which)%value)
                end do
                row%cells(d + 3) = cell_t(cell_count, real(merge(one%turns, 0, one%is_all), wp))
