@@ -10,7 +10,7 @@
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
-   use plane_vectors, only: pi
+   use plane_vectors, only: full_turn
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, singular_dead
    use analysis, only: analysis_t, make_analysis, advance
@@ -23,7 +23,6 @@ module circuits
    private
    public :: circuits_t, circuit_branch_t, find_circuits, turns_of
 
-   real(wp), parameter :: full_turn = 2.0_wp*pi   !< rad
    !> More than the rounding of an angle, in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie_turns = 1.0e-6_wp
 

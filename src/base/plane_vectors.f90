@@ -5,10 +5,12 @@ module plane_vectors
    use number_types, only: vector_t
    implicit none
    private
-   public :: pi, degree, in_degrees, wrap_angle
+   public :: pi, full_turn, degree, in_degrees, wrap_angle
    public :: vector_t, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
+   !> One turn in radians.
+   real(wp), parameter :: full_turn = 2.0_wp*pi
    !> One degree in radians.
    real(wp), parameter :: degree = pi/180.0_wp
    !> The largest power of 10 without a rounding error: its power of 5 fits in the digits of `wp`.
@@ -43,9 +45,8 @@ contains
    !> Gives an angle without its whole turns, between -pi and pi. An angle in this range stays as it is.
    pure elemental real(wp) function wrap_angle(angle) result(rest)
       real(wp), intent(in) :: angle          !< rad
-      real(wp), parameter :: turn = 2.0_wp*pi
 
-      rest = angle - turn*anint(angle/turn)
+      rest = angle - full_turn*anint(angle/full_turn)
    end function wrap_angle
 
    !> Gives the unit vector (2) at an angle.

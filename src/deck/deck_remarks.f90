@@ -3,7 +3,7 @@
 !> nothing uses, degrees for radians, and in a deck with JOINT cards numbers that contradict the drawing.
 module deck_remarks
    use kinds, only: wp, label_length
-   use plane_vectors, only: pi, in_degrees, wrap_angle
+   use plane_vectors, only: full_turn, in_degrees, wrap_angle
    use mechanism
    use parameters, only: unit_t, parameter_unit, parameter_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_place
@@ -102,7 +102,7 @@ contains
       do k = 1, set%count
          do i = 1, 3
             associate (x => set%cards(k)%real(i))
-               if (abs(x) <= 2.0_wp*pi .or. abs(x) > max_degrees .or. abs(2.0_wp*x - anint(2.0_wp*x)) > 0.0_wp) cycle
+               if (abs(x) <= full_turn .or. abs(x) > max_degrees .or. abs(2.0_wp*x - anint(2.0_wp*x)) > 0.0_wp) cycle
             end associate
             number = number_on_card(set, k, i)
             if (number%kind == 0 .or. set%cards(k)%form == form_add) cycle
@@ -118,7 +118,6 @@ contains
    !> a step of TIME. If VARY cards change a drive or TIME, drives may rest.
    subroutine check_drives(set)
       type(card_set_t), intent(inout) :: set
-      real(wp), parameter :: full_turn = 2.0_wp*pi
       !> One turn but for roundings.
       real(wp), parameter :: about_one = 1.0_wp - 1.0e3_wp*epsilon(1.0_wp)
       real(wp) :: step, rate

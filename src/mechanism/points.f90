@@ -11,7 +11,7 @@ module points
    use columns, only: columns_of_rows, forms, form_of, of_length
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use pair_geometry, only: pair_motion
-   use plane_vectors, only: pi, degree, direction, rotated, point_of, add_rotating, cross
+   use plane_vectors, only: pi, full_turn, degree, direction, rotated, point_of, add_rotating, cross
    use motion, only: motion_t, turned_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
@@ -35,7 +35,6 @@ module points
    real(wp), parameter :: coincidence_limit = 4.0_wp*epsilon(1.0_wp)
    !> Directions that are half a turn apart within this angle (rad) do not say which way a line has turned.
    real(wp), parameter :: half_turn_margin = 1.0e-9_wp
-   real(wp), parameter :: full_turn = 2.0_wp*pi
 
    !> The coordinate of the row of a ratio that searches along the time take.
    integer, parameter :: column_of_ratio = 2
