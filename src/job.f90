@@ -15,7 +15,7 @@ module job
    use writers, only: writers_t, break_off
    use motion_run, only: run_motion
    use variant_runs, only: run_variants, are_together
-   use lane_runs, only: width
+   use lane_runs, only: lane_count
    use listing, only: new_layout, listing_head, remark_text
    use csv, only: csv_head, new_table, table_head
    use solver_log, only: log_head
@@ -72,7 +72,7 @@ contains
       if (.not. allocated(failure)) then
          call watch_signals
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0 .or. sets(i)%requests%drive > 0), o), &
-            i=1, size(sets))])) o%share%unit = width
+            i=1, size(sets))])) o%share%unit = lane_count
          processes = process_count(sets, o)
          if (processes > 1) call run_shares(o, processes, status, message)
          do while (next_part(o))

@@ -20,7 +20,7 @@ module variant_runs
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
    use variant_tables, only: summary_head, summary_row, write_variant, write_variant_heads, write_variant_row, &
       write_variants_end
-   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
+   use lane_runs, only: lane_run_t, begin_run, run_lanes, lane_count
    use lane_state, only: lanes_t
    use phrases, only: text_broken_variant
    use set_motion, only: new_set_motion
@@ -81,13 +81,13 @@ contains
       subroutine run_together()
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
-         type(variant_row_t) :: rows(width)
+         type(variant_row_t) :: rows(lane_count)
          type(lanes_t) :: lanes
          integer :: k, count
 
-         allocate (lane_run_t :: runs(width))
+         allocate (lane_run_t :: runs(lane_count))
          do while (n <= last)
-            count = min(width, last - n + 1)
+            count = min(lane_count, last - n + 1)
             do k = 1, count
                rows(k) = new_row(summary, variation, n + k - 1)
                call start(runs(k), rows(k))

@@ -1,7 +1,7 @@
 !> The equations of a block as a bilinear system in isotropic coordinates (Wampler, J. Mech. Des. 121 (1999) 387-391):
 !> a direction phi is the pair w = exp(i phi), w' = exp(-i phi) with w w' = 1, a slide s along it the pair z = s w,
 !> z' = s w' with z w' = z' w. A vector loop is then linear in (w, z), its conjugate linear in (w', z'): both are
-!> eliminated. What is left is linear in each of the two groups: the products above, projections (a loop times a
+!> eliminated. The rest is linear in each of the two groups: the products above, projections (a loop times a
 !> direction), and single components (a loop and its conjugate).
 module block_bilinear
    use, intrinsic :: iso_fortran_env, only: dp => real64
@@ -28,7 +28,7 @@ module block_bilinear
 
    complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
    !> Coefficients below this part of the largest are rounding.
-   real(wp), parameter :: rounding_part = 4096.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: zero_coefficient = 4096.0_wp*epsilon(1.0_wp)
    !> Equations that are too many agree if they differ by less than this part of their terms. The numbers of the deck
    !> have 11 digits, and the elimination may lose two. Newton's method then decides with the exact equations.
    real(wp), parameter :: surplus_part = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
@@ -84,7 +84,7 @@ contains
          end do
          call add_projections(d)
          call add_pairs(form, d)
-         call reduce(form, d, merge(max(surplus_part, surplus_per_closing*x%closing), rounding_part, rows > n))
+         call reduce(form, d, merge(max(surplus_part, surplus_per_closing*x%closing), zero_coefficient, rows > n))
       end associate
    end subroutine make_form
 
@@ -217,11 +217,11 @@ contains
             do k = j + 1, size(is_done)
                associate (other => draft%projections(k))
                   turn = aimag(conjg(one%factor)*other%factor)
-                  if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(rounding_part)) cycle
+                  if (is_done(j) .or. is_done(k) .or. one%at /= other%at .or. abs(turn) <= sqrt(zero_coefficient)) cycle
                   if (maxval(abs(one%l)) <= 0.0_wp .or. maxval(abs(other%l)) <= 0.0_wp) cycle
                   m = maxloc(abs(one%l), 1)
                   ratio = real(other%l(m)/one%l(m))
-                  if (maxval(abs(other%l - ratio*one%l)) > rounding_part*maxval(abs(other%l))) cycle
+                  if (maxval(abs(other%l - ratio*one%l)) > zero_coefficient*maxval(abs(other%l))) cycle
                   ! The loop is r w, where Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
                   draft%linear = draft%linear + 1
                   draft%a(:, draft%linear) = one%l
@@ -288,7 +288,7 @@ contains
       do j = 1, draft%bilinear
          associate (one => c(:, :, count_of + 1))
             one = matmul(transpose(basis), matmul(draft%c(:, :, j), conjg(basis)))
-            ! What is left may be rounding alone: it is compared with the terms, and with what they are multiplied by.
+            ! The rest may be only rounding: it is compared with the terms and with their factors.
             size_of = max(draft%size_of(j), maxval(abs(draft%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
             if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
             one = one/maxval(abs(one))

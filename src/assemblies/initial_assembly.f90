@@ -41,7 +41,7 @@ module initial_assembly
    real(wp), parameter :: far_place = 0.25_wp
    !> Positions that differ by less are one (rad, characteristic lengths).
    real(wp), parameter :: same_assembly_tolerance = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
-   !> So are singular positions, of which half of all digits is known.
+   !> Singular positions that differ by less are one: half of their digits is known.
    real(wp), parameter :: same_singular_assembly_tolerance = sqrt(same_assembly_tolerance)
    !> Two distances are about equal if one is at least this part of the other.
    real(wp), parameter :: about_equal = 0.8_wp

@@ -19,33 +19,38 @@ module block_diagnostics
    public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, &
       links_of, judge_blocks
 
-   !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
-   !> was meant.
-   real(wp), parameter :: far_angle = 1.0_wp
-   !> A limit is reported where it is no further than this part of the step that could not be made.
-   real(wp), parameter, public :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   !> An estimated angle that is off by more, in rad, is worth a diagnostic: the assembly may not be the one that was
+   !> meant.
+   real(wp), parameter :: far_estimate = 1.0_wp
+   !> A limit is reported if it is no further than this part of the step that could not be made.
+   real(wp), parameter, public :: near_limit_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
-   real(wp), parameter :: near_pivot = 0.05_wp
+   real(wp), parameter :: near_singular_pivot = 0.05_wp
    !> And an unknown is faster than the drives, by more than this factor.
-   real(wp), parameter :: fast = 10.0_wp
-   !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
-   real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
+   real(wp), parameter :: much_faster = 10.0_wp
+   !> A slide on its way to infinity is so many units of its loop long,
+   real(wp), parameter :: far_slide = 10.0_wp
+   !> and s s''/s'^2, which is 2 at a pole, differs from 2 by no more than this.
+   real(wp), parameter :: pole_tolerance = 0.2_wp
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
    !> its distance in time.
-   real(wp), parameter :: parallel = 1.0e-3_wp
+   real(wp), parameter :: in_line_sine = 1.0e-3_wp
 
 contains
 
-   !> Tells what there is to say of the first motion `found`: which equations are redundant; what can still move
-   !> where the Jacobian is `singular`; where another assembly is about as near to the initial guess or may be
-   !> nearer; and the angle that was estimated the worst.
+   !> Lists the diagnostics of the first motion:
+   !>
+   !> - the redundant equations,
+   !> - the links that can still move, if the Jacobian has no inverse,
+   !> - the blocks of which another assembly is about as near to the initial guess, or may be nearer,
+   !> - the angle that was estimated the worst.
    function start_diagnostics(b, x, guess, s, found, singular) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(guess_t), intent(in) :: guess
-      type(state_t), intent(in) :: s
-      type(motion_t), intent(in) :: found
-      logical, intent(in) :: singular
+      type(state_t), intent(in) :: s         !< of the first motion
+      type(motion_t), intent(in) :: found    !< of its links
+      logical, intent(in) :: singular        !< some Jacobian has no inverse
       type(diagnostic_t), allocatable :: list(:)
       real(wp) :: off(size(found%position, 2))
       type(diagnostic_t) :: r
@@ -57,13 +62,13 @@ contains
          ! Each pair and drive with redundant equations, once, and how many it has.
          rows = redundant_rows(b, x, 1, s)
          do k = size(rows), 1, -1
-            r = diagnostic_t(kind=diagnostic_redundant, pair=b%rows(rows(k))%pair, &
-               drive=b%rows(rows(k))%drive)
+            r = diagnostic_t(kind=diagnostic_redundant, pair=b%rows(rows(k))%pair, drive=b%rows(rows(k))%drive)
             same = findloc(list%pair == r%pair .and. list%drive == r%drive, .true., dim=1)
             if (same > 0) list(same)%equations = list(same)%equations + 1
             if (same == 0) list = [list, r]
          end do
       end if
+
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
             if (b%list(i)%direct) cycle
@@ -75,19 +80,20 @@ contains
             if (guess%choice(i)%is_incomplete) list = [list, new_diagnostic(diagnostic_incomplete, links_of(b, x, i))]
          end associate
       end do
+
       off = wrap_angle(found%position(3, :) - guess%links(3, :))
       link = maxloc(abs(off), mask=b%is_found, dim=1)
       if (link == 0) return
-      if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
+      if (abs(off(link)) > far_estimate) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
 
-   !> The links of block `i` that can move, and those that are moved by them.
+   !> Adds the links that can move in a block, and those that are moved by them, if there are any.
    subroutine add_mobility(b, x, s, i, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      integer, intent(in) :: i
+      type(state_t), intent(in) :: s         !< with a singular position
+      integer, intent(in) :: i               !< the number of the block
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       logical, allocatable :: moves(:), moved(:)
       integer :: k
@@ -105,11 +111,11 @@ contains
       list = [list, new_diagnostic(diagnostic_mobile, moved)]
    end subroutine add_mobility
 
-   !> (links) Those whose angle is an unknown of block `i`; of a block of slides alone those that slide.
+   !> Tells which links a block moves (links): those whose angle is its unknown; if there is none, those that slide.
    pure function links_of(b, x, i) result(chosen)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       logical :: chosen(size(b%tree%orientation))
       integer :: k
 
@@ -122,10 +128,10 @@ contains
       end associate
    end function links_of
 
-   !> (links) Those whose angle is among the `unknowns`.
+   !> Tells which links have their angles among some unknowns (links).
    pure function links_with(b, unknowns) result(chosen)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknowns(:)
+      integer, intent(in) :: unknowns(:)     !< (any number) their numbers
       logical :: chosen(size(b%tree%orientation))
       integer :: k
 
@@ -135,17 +141,16 @@ contains
       end do
    end function links_with
 
-   !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
-   !> that comes to one; blocks that build on it come to it as well. `creeps`: the motion has come so near in so many
-   !> substeps that the infinity of a slide is its limit, before `t` or after.
+   !> Finds the limit of the motion that is followed, none or one. It is the limit of the first block, in solving order,
+   !> that comes to one; blocks that build on it come to it as well.
    function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(history_t), intent(in) :: history
       type(state_t), intent(in) :: s
-      real(wp), intent(in) :: t
-      logical, intent(in) :: creeps
+      real(wp), intent(in) :: t              !< time before which the limit is looked for
+      logical, intent(in) :: creeps          !< many substeps have come so near that a slide's infinity may be after `t`
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left, f(3)
@@ -168,7 +173,7 @@ contains
       end do
       if (k > size(b%moving)) return
 
-      ! The first drive that moves the block there, itself or through what it builds on; where all stand still, the
+      ! The first drive that moves the block there, itself or through those on which it builds; if all stand still, the
       ! first that could.
       moves = .false.
       associate (below => blocks_below(b, b%moving(k)))
@@ -191,33 +196,32 @@ contains
 
    contains
 
-      !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
-      !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order. A
-      !> block far from singular only follows another with such accelerations, beside a change point perhaps; there they
-      !> may be those of rounding, while no velocity is much larger than those of the drives.
+      !> Gives the time from the motion that is followed to the limit t* of a block, if it is near; otherwise 0. Close
+      !> to t* the fastest unknown is x* + c sqrt(t* - t): t* - t = x'/(2 x''), with an error of higher order. A block
+      !> far from singular with such accelerations only follows another, perhaps near a change point. There
+      !> accelerations may be rounding, while no velocity is much larger than those of the drives.
       pure real(wp) function time_to_limit(i) result(left)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< the number of the block
          integer :: fastest
 
          left = 0.0_wp
-         if (history%jacobian(i)%pivot > near_pivot*x%blocks(i)%lipschitz) return
-         associate (past => history%past, step => t - history%t(0), &
-                    u => own_unknowns(b, i))
+         if (history%jacobian(i)%pivot > near_singular_pivot*x%blocks(i)%lipschitz) return
+         associate (past => history%past, step => t - history%t(0), u => own_unknowns(b, i))
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
             if (history%uncertain(0) > 0.0_wp .and. &
-               maxval(abs(past(u)%rate(0))) <= fast*largest_drive_rate(s)) return
+               maxval(abs(past(u)%rate(0))) <= much_faster*largest_drive_rate(s)) return
             left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
-            if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
+            if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_limit_part*abs(step)) left = 0.0_wp
          end associate
       end function time_to_limit
 
-      !> The time from the motion that is followed to the instant t*, `t` itself or before it, at which a slide of block
-      !> `i` is infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is
-      !> c/(t* - t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide tells best.
+      !> Gives the time from the motion that is followed to the instant t*, at `t` or before, at which a slide of a
+      !> block is infinite, since its guide comes to be parallel to another; 0: none is. Close to t* the slide s is
+      !> c/(t* - t) and a constant: t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide is the best guide.
       pure real(wp) function time_to_infinity(i) result(left)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< the number of the block
          real(wp) :: to_go, longest
          integer :: k
 
@@ -227,10 +231,10 @@ contains
             associate (slide => history%past(b%unknown(k)), step => t - history%t(0))
                if (b%unknown(k) <= b%orientations .or. .not. abs(slide%rate(0)) > 0.0_wp) cycle
                if (abs(slide%value) < longest) cycle
-               if (abs(slide%value*slide%acceleration(0)/slide%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
+               if (abs(slide%value*slide%acceleration(0)/slide%rate(0)**2 - 2.0_wp) > pole_tolerance) cycle
                to_go = 2.0_wp*slide%rate(0)/slide%acceleration(0)
                if (to_go*sign(1.0_wp, step) <= 0.0_wp) cycle
-               if (abs(to_go) > (1.0_wp + near_part)*abs(step) .and. .not. creeps) cycle
+               if (abs(to_go) > (1.0_wp + near_limit_part)*abs(step) .and. .not. creeps) cycle
                left = to_go
                longest = abs(slide%value)
             end associate
@@ -239,14 +243,14 @@ contains
 
    end function limit_diagnostic
 
-   !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
-   !> is: a dead point if some block has one, else a change point if some block has one; its links, of the first such
-   !> block, and whether they are in line. `all_at_once`: all equations are solved at once, and have one Jacobian.
+   !> Finds which links have velocities in a singular position, and its kind. It is a dead point if some block has one,
+   !> otherwise a change point if some block has one. With its links, of the first such block, and whether they are in
+   !> line.
    subroutine get_link_flags(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      logical, intent(in) :: all_at_once
+      type(state_t), intent(in) :: s         !< with the singular position
+      logical, intent(in) :: all_at_once     !< all equations are solved at once, and have one Jacobian
       type(motion_t), intent(inout) :: found
       type(diagnostic_t) :: r
       integer :: kinds(size(b%list)), i
@@ -261,12 +265,12 @@ contains
       found%singular_links = r
    end subroutine get_link_flags
 
-   !> (blocks) Judges the position `s` for each block: one of singular_...; -1 if the block is not
-   !> singular, or builds on a singular one and so has no right-hand side of its own.
+   !> Judges a position for each block (blocks): one of singular_unclear, ...; -1 if the block is not singular, or
+   !> builds on a singular one, and has no right-hand side of its own for this reason.
    function judge_blocks(b, x, s) result(found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s         !< with the position
       integer :: found(size(b%list))
       integer :: missing(0:b%unknowns), before, k
 
@@ -281,13 +285,13 @@ contains
       end do
    end function judge_blocks
 
-   !> A diagnostic for each block that has its change point at the instant `t`, at which the motion found last has no
-   !> velocities: each of the two branches has its own. None if a block is singular there in another way.
+   !> Lists a diagnostic for each block that has its change point at an instant without velocities: each of the two
+   !> branches has its own. There is none if a block is singular there in another way.
    function change_diagnostics(b, x, s, t) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: t
+      type(state_t), intent(in) :: s         !< the motion found last, without velocities
+      real(wp), intent(in) :: t              !< its time
       type(diagnostic_t), allocatable :: list(:)
       integer :: kinds(size(b%list)), i
 
@@ -299,26 +303,26 @@ contains
       end do
    end function change_diagnostics
 
-   !> The diagnostic of the change point of block `i` at the instant `t`.
+   !> Makes the diagnostic of a change point at an instant.
    type(diagnostic_t) function diagnostic_at_change(b, x, i, t) result(r)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
+      integer, intent(in) :: i               !< the number of its block
+      real(wp), intent(in) :: t              !< its time
 
       r = new_diagnostic(diagnostic_change, links_of(b, x, i))
       r%t = t
       r%here = .true.
    end function diagnostic_at_change
 
-   !> The two links of `diagnostic`, all that block `i` moves, share a revolute pair, and their body vectors are
-   !> parallel where the unknowns have the values `value` (0:unknowns).
+   !> Tells whether the two links of a diagnostic are in line: a block moves only these, they share a revolute pair, and
+   !> their body vectors are parallel.
    pure logical function is_in_line(b, x, i, diagnostic, value)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(diagnostic_t), intent(in) :: diagnostic
-      real(wp), intent(in) :: value(0:)
+      real(wp), intent(in) :: value(0:)      !< (0:unknowns) rad or unit of the loop
       real(wp), allocatable :: angle(:)
       integer :: m, k
 
@@ -327,12 +331,11 @@ contains
       allocate (angle(0))
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          do k = b%loops(m)%first_own, b%loops(m)%last_vector
-            angle = [angle, value(b%body_vectors(k)%orientation) &
-               + atan2(x%d(k)%y, x%d(k)%x)]
+            angle = [angle, value(b%body_vectors(k)%orientation) + atan2(x%d(k)%y, x%d(k)%x)]
          end do
       end do
       do k = 2, size(angle)
-         is_in_line = is_in_line .and. abs(sin(angle(k) - angle(1))) <= parallel
+         is_in_line = is_in_line .and. abs(sin(angle(k) - angle(1))) <= in_line_sine
       end do
    end function is_in_line
 end module block_diagnostics

@@ -1,12 +1,12 @@
 !> The equations of one block at a state: residual and Jacobian; and the right-hand sides for velocities and
-!> accelerations, that part of the first and second derivatives of the equations with respect to time that is known.
-!> Their text is equations.inc, here compiled for reals.
+!> accelerations, the known part of the first and second derivatives of the equations with respect to time. Their text
+!> is equations.inc, here compiled for reals.
 !>
 !> With u_k = R(phi_k) d_k and u_k' its quarter turn, a loop has the closure error
 !>    g = g_0 + sum_k u_k + sum_m s_m R e_m,      dg/dphi_k = u_k',  dg/ds_m = R e_m
 !>    g'  = sum phi_k' u_k' + ...
 !>    g'' = sum phi_k'' u_k' - phi_k'^2 u_k + ...
-!> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
+!> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `closure_equations`.
 #define NUMBER real(wp)
 #define LIST(list) list(*)
 #define AT(list,k) list(k)
@@ -29,23 +29,24 @@ module block_equations
 
 contains
 
-   !> Finds what earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   !> Finds what earlier blocks give to the loops of a block: place, velocity, acceleration.
    pure subroutine find_known_parts(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s
 
       call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, x%loops, b%body_vectors, x%d, s%u, s%loop)
    end subroutine find_known_parts
 
-   !> All of the Jacobian of block `i` at the state, zeros as well, `a` (rows, n), and its residual `residuals` (rows).
+   !> Assembles all of the Jacobian of a block at a state, zeros as well, and its residual.
    pure subroutine assemble_dense(b, x, i, s, a, residuals)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), residuals(*)
+      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *)   !< (rows, n)
+      real(wp), intent(inout) :: residuals(*)   !< (rows) unit of the loop or rad
       real(wp) :: v(b%list(i)%shape%rows)
       real(wp), allocatable :: entries(:)
       integer :: c, k
@@ -71,15 +72,16 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> Finds the right-hand side `right_side` (rows) for the velocities (`order` 1) or, once these are known, the
-   !> accelerations (2) of block `i`: the derivatives of the drives less what is given. Closure errors, directions and
-   !> rotated body vectors are those of the last assembly.
+   !> Finds the right-hand side for the velocities of a block or, once these are known, its accelerations: the
+   !> derivatives of the drives less the known part. Closure errors, directions and rotated body vectors are those of
+   !> the last assembly.
    pure subroutine right_hand_side(b, x, i, order, s, right_side)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, order
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: order           !< 1: velocities, 2: accelerations
       type(state_t), intent(in) :: s
-      real(wp), intent(inout) :: right_side(*)
+      real(wp), intent(inout) :: right_side(*)   !< (rows) unit of the loop or rad, by time or its square
       integer :: m
 
       associate (block => b%list(i))

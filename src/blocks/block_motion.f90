@@ -21,12 +21,11 @@ module block_motion
 
 contains
 
-   !> Finds which of the blocks `b` of `m`, with the geometry `x`, are solved for its requests, and the chain of the
-   !> links that these ask for.
+   !> Finds which blocks are solved for the requests of a mechanism, and the chain of the links that these ask for.
    subroutine select_solved_blocks(m, b, x)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(inout) :: b
-      type(geometry_t), intent(inout) :: x
+      type(geometry_t), intent(inout) :: x   !< of the mechanism
       logical :: need(0:b%unknowns)
       integer :: i
 
@@ -36,7 +35,9 @@ contains
          [(any(m%requests%drive == i), i=1, size(m%drives))])
       if (.not. b%solvable) return
       x%chain = new_chain(m, b, x, wanted_links(m))
-      ! Needed is what moves the links asked for, and where redundant equations could contradict one another.
+
+      ! Needed are the blocks that move the links asked for, and those whose redundant equations could contradict one
+      ! another.
       need = .false.
       do i = 1, x%chain%wanted
          associate (h => x%chain%links(i))
@@ -55,14 +56,14 @@ contains
       end associate
    end subroutine select_solved_blocks
 
-   !> Gives the geometry `x` and the `path` the numbers of `m`, a mechanism with the links, points, pairs and drives of
-   !> that of which the blocks `b` were made. `fits`: see `evaluate_geometry`.
+   !> Gives a geometry and the path of its drives the numbers of a mechanism. If the numbers do not fit, the geometry is
+   !> as `evaluate_geometry` leaves it.
    subroutine assign_geometry(m, b, x, path, fits)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< with the links, points, pairs and drives of which the blocks were made
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(inout) :: x
       type(drive_path_t), intent(inout) :: path
-      logical, intent(out) :: fits   !< the structure serves for them, see `evaluate_geometry`
+      logical, intent(out) :: fits           !< the structure serves for them
 
       call evaluate_geometry(m, b, x, fits)
       x%tolerance = m%tolerance
@@ -70,7 +71,7 @@ contains
       call assign_path(m, b, x, path)
    end subroutine assign_geometry
 
-   !> Puts the laws of the drives of `m`, and the units of their values, into its `path`.
+   !> Puts the laws of the drives of a mechanism, and the units of their values, into its path.
    subroutine assign_path(m, b, x, path)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -87,14 +88,14 @@ contains
       end do
    end subroutine assign_path
 
-   !> Finds the motions found%by in which one of the drives by which ratios are asked for has the rate 1 and the others
-   !> rest, at the position `here`: as the motion itself, with other values of drives.
+   !> Finds the motions found%by at a position: one of the drives by which ratios are asked for has the rate 1, and the
+   !> others rest. They are solved as the motion itself, with other values of drives.
    subroutine get_ratios(b, x, path, is_lost, here, w, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       logical, intent(in) :: is_lost(:)      !< (blocks) without a position, or without unique rates
-      type(state_t), intent(in) :: here
+      type(state_t), intent(in) :: here      !< the position
       type(workspace_t), intent(inout) :: w
       type(motion_t), intent(inout) :: found
       type(motion_t) :: unit
@@ -103,7 +104,7 @@ contains
       integer :: missing(0:b%unknowns), j, k
       logical :: has_rates, finite
 
-      ! Whoever calls has asked whether there are any: a call that does nothing is a part of a step.
+      ! Callers have made sure that there are some: a call that does nothing is a part of a step.
       if (.not. allocated(found%by)) allocate (found%by(size(path%laws)))
       unit = new_motion(size(found%position, 2))
       do j = 1, size(b%ratios)
@@ -122,6 +123,7 @@ contains
                if (.not. has_rates) call record_missing(b, i, missing_rates, missing)
             end associate
          end do
+
          call move_links(x%chain, x%chain%wanted, s, unit, finite)
          call flag_links(x%chain, missing, unit)
          associate (by => found%by(b%ratios(j)))
@@ -133,13 +135,13 @@ contains
       end do
    end subroutine get_ratios
 
-   !> Tells which links have velocities in the motion `found` last, where not all have. `all_at_once`: with one Jacobian
-   !> for all equations, which has no inverse; then those alone that drives move.
+   !> Finds which links have velocities in the motion found last, if not all have. If all equations have one Jacobian
+   !> without an inverse, only links that drives move have velocities.
    subroutine flag_singular_links(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
-      logical, intent(in) :: all_at_once   !< all equations have one Jacobian
+      logical, intent(in) :: all_at_once     !< all equations have one Jacobian
       type(motion_t), intent(inout) :: found
       integer :: missing(0:b%unknowns), k
 
@@ -153,13 +155,13 @@ contains
       call flag_links(x%chain, missing, found)
    end subroutine flag_singular_links
 
-   !> Finds what is certain at `t`, where there is no position: the motion of the links that drives alone move. `found`
-   !> has its mark already.
+   !> Finds the motion that is certain at a time without a position: of the links that only drives move. `found` has its
+   !> mark already.
    subroutine get_driven_links(b, x, path, t, w, s, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t   !< time
+      real(wp), intent(in) :: t              !< time
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(motion_t), intent(inout) :: found
@@ -174,8 +176,7 @@ contains
          i = b%needed(k)
          call record_missing(b, i, merge(missing_nothing, missing_all, b%list(i)%direct), missing)
          if (.not. b%list(i)%direct) cycle
-         if (missing(b%unknown(b%list(i)%first)) == missing_nothing) &
-            call solve_explicit(b, x, i, s)
+         if (missing(b%unknown(b%list(i)%first)) == missing_nothing) call solve_explicit(b, x, i, s)
       end do
       driven = s
       do k = 1, b%unknowns
@@ -186,21 +187,22 @@ contains
       if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%direct, s, w, found)
    end subroutine get_driven_links
 
-   !> Notes what is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on
-   !> lacks.
+   !> Records what is missing of the unknowns of a block: what its own equations leave out, and what the blocks on which
+   !> it builds lack.
    subroutine record_missing(b, i, own, missing)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, own   !< number of the block; what its own equations leave out
-      integer, intent(inout) :: missing(0:)   !< (0:unknowns) of missing_nothing, ...
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: own             !< what its own equations leave out: missing_nothing, ...
+      integer, intent(inout) :: missing(0:)  !< (0:unknowns) missing_nothing, ...
 
       missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
    end subroutine record_missing
 
-   !> The unit of unknown number `k` in the deck's, if it is a slide; 1 of an angle.
+   !> Gives the unit of a slide in the deck's; 1 of an angle.
    pure real(wp) function slide_unit(b, x, k) result(unit)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: k   !< number of the unknown
+      integer, intent(in) :: k               !< the number of the unknown
 
       unit = x%unit(k)
       if (k > b%orientations) unit = unit*x%equations%length

@@ -1,6 +1,5 @@
-!> The rank of a block's Jacobian by its singular values (DGESVD), where equations are too many or where it has no
-!> inverse: redundant equations, and unknowns that can still move. With y J = 0 the equations in y depend on one
-!> another.
+!> The rank of a block's Jacobian by its singular values (DGESVD), if equations are too many or if it has no inverse:
+!> redundant equations, and unknowns that can still move. With y J = 0 the equations in y depend on one another.
 module block_rank
    use kinds, only: wp
    use lapack, only: geqrf, getrf, gesvd, ormqr
@@ -14,43 +13,48 @@ module block_rank
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
-   real(wp), parameter :: zero_level = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
-   !> A mechanism with a degree of freedom left is moved by this to see whether it follows.
-   real(wp), parameter :: trial = 1.0e-3_wp
-   !> The step of second differences, whose roundings and whose neglected terms are then alike.
-   real(wp), parameter, public :: difference = sqrt(sqrt(epsilon(1.0_wp)))
-   !> A residual below the first leaves nothing to correct; below the second it is that of a position.
-   real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
+   real(wp), parameter :: zero_singular_value = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
+   !> A block with a degree of freedom left is moved by this, in rad and units of the loop, to see whether it follows.
+   real(wp), parameter :: trial_move = 1.0e-3_wp
+   !> The step of second differences, in rad and units of the loop: their roundings are then as large as the terms that
+   !> they neglect.
+   real(wp), parameter, public :: difference_step = sqrt(sqrt(epsilon(1.0_wp)))
+   !> A residual below this, in rad or units of the loop, leaves nothing to correct.
+   real(wp), parameter :: corrected_residual = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp))
+   !> A residual below this is the residual of a position.
+   real(wp), parameter :: position_residual = max(1.0e-12_wp, 100.0_wp*corrected_residual)
    !> The decompositions take the cube of this number of operations.
-   integer, parameter :: max_rows = 1500
+   integer, parameter :: max_decomposed_rows = 1500
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: svd_t
-      integer :: rows = 0, n = 0, rank = 0        !< equations, unknowns, singular values that are not small
+      integer :: rows = 0, n = 0                  !< equations, unknowns
+      integer :: rank = 0                         !< singular values that are not small
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type svd_t
 
-   !> The cosine between columns of two Jacobians, and the product of those between their ranges, that are not too far.
+   !> The columns of two Jacobians are near one another if the cosine between them is larger, and so are their ranges if
+   !> the product of the cosines is larger.
    real(wp), parameter :: min_cosine = 0.7_wp
 
 contains
 
-   !> The rows of block `i`, counted in b%rows, that could be spared at the position of `s`: of those that depend on one
-   !> another the last ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left
-   !> null vectors, its rows taken in that order.
+   !> Lists the rows of a block, counted in b%rows, that could be spared: of those that depend on one another the last
+   !> ones of the deck. Pairs go before drives. They are the pivots of Gauss's elimination of the left null vectors, its
+   !> rows taken in that order. A block too large for a decomposition has none.
    pure function redundant_rows(b, x, i, s) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(in) :: s         !< with a position
       integer, allocatable :: list(:)
       type(svd_t) :: v
       integer, allocatable :: order(:)
       integer :: k, n, c, at
 
       allocate (list(0), order(0))
-      if (b%list(i)%shape%rows > max_rows) return
+      if (b%list(i)%shape%rows > max_decomposed_rows) return
       v = decomposed(b, x, i, s)
       associate (rows => b%rows(b%list(i)%first_row:b%list(i)%last_row))
          do n = max(maxval(rows%pair), 0), 1, -1
@@ -60,12 +64,13 @@ contains
             order = [order, pack([(k, k=1, size(rows))], rows%pair == 0 .and. rows%drive == n)]
          end do
       end associate
+
       associate (y => v%left)
          c = v%rank + 1
          do k = 1, size(order)
             if (c > v%rows) exit
             at = c - 1 + maxloc(abs(y(order(k), c:)), dim=1)
-            if (abs(y(order(k), at)) <= zero_level) cycle
+            if (abs(y(order(k), at)) <= zero_singular_value) cycle
             list = [list, b%list(i)%first_row + order(k) - 1]
             y(:, [c, at]) = y(:, [at, c])
             do n = c + 1, v%rows
@@ -76,22 +81,22 @@ contains
       end associate
    end function redundant_rows
 
-   !> Tells of which of so many `drives` one may be too many, where the equations of all blocks are one block, redundant
-   !> and inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations
-   !> y J = 0 between the rows of the Jacobian J.
+   !> Tells of which drives one may be too many (drives), if the equations of all blocks are one block, redundant and
+   !> inconsistent. Without such a drive one redundant equation fewer is left: it has a part in the equations y J = 0
+   !> between the rows of the Jacobian J.
    pure function surplus_drives(b, x, drives, s) result(are)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives          !< how many drives there are
       type(state_t), intent(in) :: s
-      !> A smaller part of a drive, of 1 at most, is that of lengths that do not quite fit.
+      !> A smaller part of a drive, of 1 at most, comes from lengths that do not quite fit.
       real(wp), parameter :: least_part = 1.0e-3_wp
       logical :: are(drives)
       type(svd_t) :: v
       integer :: k
 
       are = .false.
-      if (b%redundant == 0 .or. b%list(1)%shape%rows > max_rows) return
+      if (b%redundant == 0 .or. b%list(1)%shape%rows > max_decomposed_rows) return
       v = decomposed(b, x, 1, s)
       do k = 1, v%rows
          associate (row => b%rows(b%list(1)%first_row + k - 1))
@@ -100,13 +105,12 @@ contains
       end do
    end function surplus_drives
 
-   !> (unknowns of block `i`) Those that can move although everything the block builds on stands still, by
-   !> `try_to_move`.
+   !> Tells which unknowns of a block can move (unknowns of the block) although all on which it builds stands still.
    pure function moving_unknowns(b, x, i, s) result(moves)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(in) :: s         !< with a singular position
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(state_t) :: trial_state
 
@@ -114,40 +118,40 @@ contains
       call try_to_move(b, x, i, trial_state, moves)
    end function moving_unknowns
 
-   !> Finds which unknowns of block `i` can move (unknowns) although everything the block builds on stands still. The
-   !> block is moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a
-   !> dead point they lead back to where it was, and none can move. `s` becomes the state they lead to.
+   !> Finds which unknowns of a block can move although all on which it builds stands still. The block is moved a little
+   !> along a direction that the Jacobian leaves open, and its equations are solved again: at a dead point they lead
+   !> back to the place it came from, and none can move.
    pure subroutine try_to_move(b, x, i, s, moves)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      logical, intent(out) :: moves(b%list(i)%last - b%list(i)%first + 1)
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(inout) :: s      !< with a singular position; then the state to which the equations lead
+      logical, intent(out) :: moves(b%list(i)%last - b%list(i)%first + 1)   !< (unknowns of the block) it can move
       type(svd_t) :: v
       real(wp) :: start(size(moves)), direction(size(moves)), residual
       integer :: k
 
       moves = .false.
-      if (b%list(i)%shape%rows > max_rows .or. size(moves) == 0) return
+      if (b%list(i)%shape%rows > max_decomposed_rows .or. size(moves) == 0) return
       v = decomposed(b, x, i, s)
       if (v%rank == v%n) return
       start = values_of(b, i, s)
       direction = v%right(v%n, :)
-      call set_values(b, i, start + trial*direction, s)
+      call set_values(b, i, start + trial_move*direction, s)
       do k = 1, 20
          call gauss_newton_step(b, x, i, s, residual)
-         if (residual <= closed) exit
+         if (residual <= corrected_residual) exit
       end do
       direction = values_of(b, i, s) - start
-      if (residual <= near .and. norm2(direction) > 0.5_wp*trial) &
+      if (residual <= position_residual .and. norm2(direction) > 0.5_wp*trial_move) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
    end subroutine try_to_move
 
-   !> (rows*n) The Jacobian of block `i`, column by column.
+   !> Gives the Jacobian (rows*n) of a block, column by column.
    pure function jacobian_of(b, x, i, s) result(a)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s
       real(wp) :: a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows)
       type(state_t) :: there
@@ -156,15 +160,16 @@ contains
       call assemble_dense(b, x, i, there, a, r)
    end function jacobian_of
 
-   !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
-   !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. It is -1 also where
-   !> columns or ranges of the two have turned so far that this alone could have changed the sign. With both Jacobians
-   !> factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the ranges.
+   !> Tells on which side of its change points a block with more rows than unknowns is: 1 on the side of an earlier
+   !> Jacobian, -1 on the other. This is the sign of the determinant of the earlier Jacobian, transposed, times the
+   !> present one. It is -1 also if columns or ranges of the two have turned so far that the turn could have changed the
+   !> sign. With both Jacobians factored as Q R, |det(Q_before^T Q_now)| is the product of the cosines between the
+   !> ranges.
    pure integer function relative_sign(b, x, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: before(:)
+      integer, intent(in) :: i               !< the number of the block
+      real(wp), intent(in) :: before(:)      !< (rows*n) the earlier Jacobian, column by column
       type(state_t), intent(in) :: s
       real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new, both
       real(wp) :: reflections(size(old, 2)), work(64*size(old, 2) + 1), cosines
@@ -190,13 +195,13 @@ contains
       if (.not. cosines >= min_cosine) side = -1
    end function relative_sign
 
-   !> (rows) The residual of the equations of block `i` with the `values` (n) in the place of those of `s`.
+   !> Finds the residual (rows) of the equations of a block at other values of its unknowns.
    pure function residual_of(b, x, i, values, s) result(r)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: values(:)
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: i               !< the number of the block
+      real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
+      type(state_t), intent(in) :: s         !< with the values of the other blocks
       real(wp) :: r(b%list(i)%shape%rows), a(b%list(i)%shape%rows*b%list(i)%shape%n)
       type(state_t) :: there
 
@@ -205,30 +210,31 @@ contains
       call assemble_dense(b, x, i, there, a, r)
    end function residual_of
 
-   !> w . r''[k, k] of the equations r of block `i` at the `values` (n), by a second difference; w = `left` (rows),
-   !> k = `right` (n).
+   !> Finds w . r''[k, k] of the equations r of a block, by a second difference.
    pure real(wp) function curvature_of(b, x, i, values, left, right, s) result(curvature)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: values(:), left(:), right(:)
-      type(state_t), intent(in) :: s
-      real(wp) :: ahead, behind, here
+      integer, intent(in) :: i               !< the number of the block
+      real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
+      real(wp), intent(in) :: left(:)        !< (rows) w, a unit vector
+      real(wp), intent(in) :: right(:)       !< (n) k, a unit vector
+      type(state_t), intent(in) :: s         !< with the values of the other blocks
+      real(wp) :: ahead, back, here
 
-      ahead = dot_product(left, residual_of(b, x, i, values + difference*right, s))
-      behind = dot_product(left, residual_of(b, x, i, values - difference*right, s))
+      ahead = dot_product(left, residual_of(b, x, i, values + difference_step*right, s))
+      back = dot_product(left, residual_of(b, x, i, values - difference_step*right, s))
       here = dot_product(left, residual_of(b, x, i, values, s))
-      curvature = (ahead - here + (behind - here))/difference**2
+      curvature = (ahead - here + (back - here))/difference_step**2
    end function curvature_of
 
-   !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
-   !> Jacobian leaves open; `residual`: the largest before it.
+   !> Makes one step of least length towards the equations of a block (Gauss and Newton), none along a direction that
+   !> the Jacobian leaves open.
    pure subroutine gauss_newton_step(b, x, i, s, residual)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: residual
+      real(wp), intent(out) :: residual      !< the largest before the step, in rad or units of the loop
       type(svd_t) :: v
       real(wp), allocatable :: values(:)
       integer :: k
@@ -242,11 +248,11 @@ contains
       call set_values(b, i, values, s)
    end subroutine gauss_newton_step
 
-   !> The singular values of the Jacobian of block `i`.
+   !> Finds the singular values of the Jacobian of a block.
    pure function decomposed(b, x, i, s) result(v)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s
       type(svd_t) :: v
       type(state_t) :: there
@@ -268,7 +274,7 @@ contains
       call assemble_dense(b, x, i, there, a, v%r)
       allocate (v%s(min(v%rows, v%n)), v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
-      ! A block of one unknown has nothing but its own body vectors to be compared with.
-      v%rank = count(v%s > zero_level*max(v%s(1), x%blocks(i)%lipschitz, tiny(1.0_wp)))
+      ! A block of one unknown has only its own body vectors to be compared with.
+      v%rank = count(v%s > zero_singular_value*max(v%s(1), x%blocks(i)%lipschitz, tiny(1.0_wp)))
    end function decomposed
 end module block_rank

@@ -1,15 +1,14 @@
-!> One block: its position by Newton's method, its velocities and accelerations from the factors of the same
-!> Jacobian.
+!> One block: its position by Newton's method, its velocities and accelerations from the factors of its last Jacobian.
 !>
-!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once; a larger
-!> one gives a correction first, and where that is at the rounding level the velocities follow from its factors.
-!> So one assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one
-!> correction d away leaves errors of order d in the rates: no larger d is accepted. After a larger, but small one the
-!> factors serve again for two unknowns, with the difference of the Jacobians mended: a coarse step needs no second
-!> DGESV.
+!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once. A larger
+!> residual gives a correction first. If this is at the rounding level, the velocities follow from its factors: one
+!> assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one correction d
+!> away leaves errors of order d in the rates: no larger d is accepted. After a larger, but small one the factors serve
+!> again for two unknowns, with the difference of the Jacobians mended: a coarse step needs no second DGESV.
 !>
-!> Where equations are too many, all of them are solved, in the sense of least squares (Gauss and Newton): which of
-!> them could be spared changes along the motion. By how much they contradict one another is the closure error.
+!> If equations are too many, all of them are solved, in the sense of least squares (Gauss and Newton): the equation
+!> that could be spared changes along the motion. The residual that is left, by which they contradict one another, is
+!> the closure error.
 module block_solver
    use kinds, only: wp
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
@@ -28,43 +27,47 @@ module block_solver
    public :: workspace_t, new_workspace, solve_blocks, solve_block, solve_explicit, second_order_bounds
    public :: closed_level, step_tolerance, suspicious_pivot
 
-   !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
-   !> rounding of angles and of their sines alone explains no residual.
+   !> Residuals below this part of the largest value have nothing to correct.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
+   !> Residuals above this part of the largest value are more than rounding of angles and of their sines.
    real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
+   !> Corrections below this part of their values are at the rounding level.
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
-   !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
+   !> rad: a smaller change of direction is applied without a new sine and cosine: its square is lost in rounding.
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
-   !> A pivot this much smaller than the largest is worth an estimate of the inverse.
+   !> If the least pivot is below this part of the largest, the inverse is estimated.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
    !> Kantorovich ratio from which the inverse is estimated. The ratio takes 1/(least pivot) for |J^-1|: with more than
    !> two unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
-   !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
-   real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_amplification = 0.1_wp
-   !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.
-   real(wp), parameter :: largest_error = 0.05_wp
-   !> Angles beyond have few digits after the point.
+   real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp
+   !> The part that excursions of the drives add goes with the square of |J^-1|: it is small below this value over the
+   !> fourth power of the number of unknowns.
+   real(wp), parameter :: small_amplification = 0.1_wp
+   !> Velocities of which rounding of the position leaves open more than this part are not printed.
+   real(wp), parameter :: largest_velocity_error = 0.05_wp
+   !> rad: larger angles have few digits after the point.
    real(wp), parameter, public :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
-   !> 1 over this squared is within the range of reals.
+   !> 1 over this, squared, is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
-   !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
-   !> first values, and the residual of equations that are too many; room for the widest block. Nothing in it outlives
-   !> the solution of a block.
+   !> Room for the widest block. Nothing in it outlives the solution of a block.
    type :: scratch_t
-      real(wp), allocatable :: start(:), gap(:), work(:)
+      real(wp), allocatable :: start(:)           !< the values before the iteration
+      real(wp), allocatable :: surplus(:)         !< the residuals of a block with too many equations
+      real(wp), allocatable :: work(:)
       integer, allocatable :: pivots(:), iwork(:)
-      type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
+      type(nearby_t) :: near                      !< the Jacobian, if `a` holds the factors of a nearby one
       type(sparse_factors_t) :: sparse            !< of a sparse Jacobian, instead of `a`
    end type scratch_t
    type, extends(scratch_t) :: workspace_t
-      real(wp), allocatable :: a(:), r(:)
+      real(wp), allocatable :: a(:)               !< the Jacobian of a block, then its factors, or those of a nearby one
+      real(wp), allocatable :: r(:)               !< (2 rows) two right-hand sides, the first one residuals at first
    end type workspace_t
 
 contains
 
-   !> Room for every block of `b`.
+   !> Makes room for every block.
    pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
       type(workspace_t) :: w
@@ -73,20 +76,19 @@ contains
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
-      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%gap(rows), w%work(length), source=0.0_wp)
+      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%surplus(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
-   !> Solves the blocks of the `list` in turn, up to the first without a position, at the drive values that `s` has; the
-   !> values of unknowns start from those of `s`. `convergence`: how that ended in the worst block. A block whose
-   !> Jacobian there has no inverse keeps its rates and accelerations.
+   !> Solves the blocks of a list in turn, up to the first without a position. A block whose Jacobian has no inverse
+   !> there keeps its rates and accelerations.
    subroutine solve_blocks(b, x, list, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in), contiguous :: list(:)
+      integer, intent(in), contiguous :: list(:)           !< (any number) numbers of blocks, in solving order
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(out) :: convergence
+      type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
+      type(convergence_t), intent(out) :: convergence      !< how the worst block ended
       real(wp) :: ratio
       integer :: k
 
@@ -98,16 +100,16 @@ contains
       end do
    end subroutine solve_blocks
 
-   !> Solves block `i` for rate and acceleration of its unknowns and, if it `moves`, first for their values, which start
-   !> from those of `s`. If its Jacobian there has no inverse, c%singular says so, and rates and accelerations stay.
+   !> Solves a block for the rates and accelerations of its unknowns and, if it moves, first for their values. If its
+   !> Jacobian has no inverse there, convergence%singular says so, and rates and accelerations stay.
    subroutine solve_block(b, x, i, moves, w, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      logical, intent(in) :: moves
+      integer, intent(in) :: i                             !< the number of the block
+      logical, intent(in) :: moves                         !< its values are solved for
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(out) :: convergence      !< how it ended
+      type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
+      type(convergence_t), intent(out) :: convergence      !< how the block ended
       real(wp) :: ratio
       integer :: k
 
@@ -117,16 +119,16 @@ contains
       convergence%kantorovich_ratio = ratio
    end subroutine solve_block
 
-   !> Solves blocks of the `list` after number `k`, up to the first without a position or without rates.
+   !> Solves the next blocks of a list, up to the first without a position or without rates.
    subroutine solve_next(b, x, list, moves, w, s, k, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in), contiguous :: list(:)
-      logical, intent(in) :: moves               !< their values are solved for
+      integer, intent(in), contiguous :: list(:)           !< (any number) numbers of blocks, in solving order
+      logical, intent(in) :: moves                         !< their values are solved for
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
-      integer, intent(inout) :: k                !< the number in the list of the block solved last
-      real(wp), intent(out) :: ratio             !< the Kantorovich ratio of that
+      integer, intent(inout) :: k                          !< the place in the list of the block solved last
+      real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
       type(convergence_t), intent(inout) :: convergence    !< how all have ended
 
       call solve_list(b, x, size(list), list, moves, b%list, x%blocks, b%unknown, b%loops, x%loops, b%body_vectors, &
@@ -134,11 +136,11 @@ contains
          s%is_singular, w%a, w%r, w%scratch_t, k, ratio, convergence)
    end subroutine solve_next
 
-   !> Solves block `i`, a drive's own unknown: nothing to iterate.
+   !> Solves a direct block, the own unknown of a drive: nothing to iterate.
    pure subroutine solve_explicit(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i                             !< the number of the block
       type(state_t), intent(inout) :: s
 
       associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
@@ -147,36 +149,42 @@ contains
       end associate
    end subroutine solve_explicit
 
-   !> Solves blocks of the `list` (`n`) as `solve_next` does, which shows what the arrays are of: on plain arrays, whose
-   !> descriptors are read once for all blocks.
+   !> Solves the next blocks of a list on plain arrays, whose descriptors are read once for all blocks.
    subroutine solve_list(b, x, n, list, moves, blocks, numbers, unknown, loops, loop_numbers, vectors, unrotated, &
       slides, unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, jacobian, &
       is_singular, a, right_sides, scratch, k, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: n, list(n)
-      logical, intent(in) :: moves
-      type(block_t), intent(in) :: blocks(*)
-      type(block_numbers_t), intent(in) :: numbers(*)
-      integer, intent(in) :: unknown(*)
-      type(block_loop_t), intent(in) :: loops(*)
-      type(loop_numbers_t), intent(in) :: loop_numbers(*)
-      type(body_vector_t), intent(in) :: vectors(*)
-      type(slide_t), intent(in) :: slides(*)
-      type(vector_t), intent(in) :: unrotated(*), unrotated_guide(*)
-      type(equation_row_t), intent(in) :: equations(*)
-      type(row_numbers_t), intent(in) :: constants(*)
-      real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
-      type(unknown_t), intent(inout) :: unknowns(0:*)
-      type(vector_t), intent(inout) :: own(*), guide(*)
-      type(loop_state_t), intent(inout) :: now(*)
-      type(jacobian_t), intent(inout) :: jacobian(*)
-      logical, intent(inout) :: is_singular(*)
-      real(wp), intent(inout) :: a(*), right_sides(*)
+      integer, intent(in) :: n                             !< the length of the list
+      integer, intent(in) :: list(n)                       !< numbers of blocks, in solving order
+      logical, intent(in) :: moves                         !< their values are solved for
+      type(block_t), intent(in) :: blocks(*)               !< (blocks)
+      type(block_numbers_t), intent(in) :: numbers(*)      !< (blocks)
+      integer, intent(in) :: unknown(*)                    !< (unknowns) their numbers, block by block
+      type(block_loop_t), intent(in) :: loops(*)           !< (loops)
+      type(loop_numbers_t), intent(in) :: loop_numbers(*)  !< (loops)
+      type(body_vector_t), intent(in) :: vectors(*)        !< (body vectors)
+      type(vector_t), intent(in) :: unrotated(*)           !< (body vectors) in their axes, unit of the loop
+      type(slide_t), intent(in) :: slides(*)               !< (slides)
+      type(vector_t), intent(in) :: unrotated_guide(*)     !< (slides) directions, in their axes
+      type(equation_row_t), intent(in) :: equations(*)     !< (rows)
+      type(row_numbers_t), intent(in) :: constants(*)      !< (rows)
+      real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
+      real(wp), intent(in) :: excursion                    !< off the chords (rad, characteristic lengths)
+      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
+
+      ! Scratch of the equations, then findings.
+      type(vector_t), intent(inout) :: own(*)              !< (body vectors) rotated by angles of their block
+      type(vector_t), intent(inout) :: guide(*)            !< (slides) directions, rotated
+      type(loop_state_t), intent(inout) :: now(*)          !< (loops)
+      type(jacobian_t), intent(inout) :: jacobian(*)       !< (blocks)
+      logical, intent(inout) :: is_singular(*)             !< (blocks) without rates
+      real(wp), intent(inout) :: a(*)                      !< room for the widest Jacobian
+      real(wp), intent(inout) :: right_sides(*)            !< room for two right-hand sides
       type(scratch_t), intent(inout) :: scratch
-      integer, intent(inout) :: k
-      real(wp), intent(out) :: ratio
-      type(convergence_t), intent(inout) :: convergence
+      integer, intent(inout) :: k                          !< the place in the list of the block solved last
+      real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
+      type(convergence_t), intent(inout) :: convergence    !< how all have ended
       integer :: i
 
       ratio = 0.0_wp
@@ -194,6 +202,7 @@ contains
                end associate
                cycle
             end if
+
             call solve_arrays(b, x, i, block, numbers(i), moves, unknown(block%first), loops, loop_numbers, vectors, &
                unrotated, slides, unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, &
                a, right_sides, scratch, jacobian(i), is_singular(i), ratio, convergence)
@@ -204,33 +213,39 @@ contains
       end do
    end subroutine solve_list
 
-   !> Solves `block`, number `i`, which is not direct, by Newton's method.
+   !> Solves a block that is not direct by Newton's method.
    subroutine solve_arrays(b, x, i, block, numbers, moves, unknown, loops, loop_numbers, vectors, unrotated, slides, &
       unrotated_guide, equations, constants, values, excursion, unknowns, own, guide, now, a, right_sides, scratch, &
       jacobian, is_singular, ratio, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i                             !< the number of the block
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
-      logical, intent(in) :: moves
-      integer, intent(in) :: unknown(*)
-      type(block_loop_t), intent(in) :: loops(*)
-      type(loop_numbers_t), intent(in) :: loop_numbers(*)
-      type(body_vector_t), intent(in) :: vectors(*)
-      type(slide_t), intent(in) :: slides(*)
-      type(vector_t), intent(in) :: unrotated(*), unrotated_guide(*)
-      type(equation_row_t), intent(in) :: equations(*)
-      type(row_numbers_t), intent(in) :: constants(*)
-      real(wp), intent(in) :: values(0:2, 0:*), excursion      !< of the drives
-      type(unknown_t), intent(inout) :: unknowns(0:*)
-      type(vector_t), intent(inout) :: own(*), guide(*)
-      type(loop_state_t), intent(inout) :: now(*)
-      real(wp), intent(inout) :: a(*), right_sides(block%shape%rows, 2)
+      logical, intent(in) :: moves                         !< its values are solved for
+      integer, intent(in) :: unknown(*)                    !< (n) numbers of its unknowns
+      type(block_loop_t), intent(in) :: loops(*)           !< (loops of all blocks)
+      type(loop_numbers_t), intent(in) :: loop_numbers(*)  !< (loops of all blocks)
+      type(body_vector_t), intent(in) :: vectors(*)        !< (body vectors of all blocks)
+      type(vector_t), intent(in) :: unrotated(*)           !< (body vectors) in their axes, unit of the loop
+      type(slide_t), intent(in) :: slides(*)               !< (slides of all blocks)
+      type(vector_t), intent(in) :: unrotated_guide(*)     !< (slides) directions, in their axes
+      type(equation_row_t), intent(in) :: equations(*)     !< (rows of all blocks)
+      type(row_numbers_t), intent(in) :: constants(*)      !< (rows of all blocks)
+      real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
+      real(wp), intent(in) :: excursion                    !< off the chords (rad, characteristic lengths)
+      type(unknown_t), intent(inout) :: unknowns(0:*)      !< (0:unknowns)
+
+      ! Scratch of the equations, then findings.
+      type(vector_t), intent(inout) :: own(*)              !< (body vectors) rotated by angles of the block
+      type(vector_t), intent(inout) :: guide(*)            !< (slides) directions, rotated
+      type(loop_state_t), intent(inout) :: now(*)          !< (loops of all blocks)
+      real(wp), intent(inout) :: a(*)                      !< room for the Jacobian; then its factors
+      real(wp), intent(inout) :: right_sides(block%shape%rows, 2)   !< residuals, then accelerations; velocities
       type(scratch_t), intent(inout) :: scratch
-      type(jacobian_t), intent(inout) :: jacobian   !< stays if it has no inverse, but for the sign
-      logical, intent(inout) :: is_singular      !< stays if there is no position
-      real(wp), intent(out) :: ratio             !< Kantorovich ratio
+      type(jacobian_t), intent(inout) :: jacobian          !< stays if it has no inverse, but for the sign
+      logical, intent(inout) :: is_singular                !< stays if there is no position
+      real(wp), intent(out) :: ratio                       !< Kantorovich ratio
       type(convergence_t), intent(inout) :: convergence    !< how the blocks so far have ended
       real(wp) :: before, size_of, own_size, cosine, residual, step, change, least, bound
       integer :: rows, n, info, ended, iteration, iterations, side, sign_of, k
@@ -251,6 +266,7 @@ contains
             end associate
          end do
       end if
+
       call find_known(block%first_loop, block%last_loop, loops, loop_numbers, vectors, unrotated, unknowns, now)
       before = huge(before)
       scratch%near%distance = 0.0_wp
@@ -262,6 +278,7 @@ contains
       residual = 0.0_wp
       step = 0.0_wp
       iterations = 0
+
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
             ended = ended_diverged
@@ -271,14 +288,16 @@ contains
          call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, unrotated, slides, &
             unrotated_guide, equations, constants, values, unknowns, own, guide, now, a, right_sides, &
             right_sides(1, 2))
+
          if (scratch%near%distance > 0.0_wp) then
             scratch%near%a = a(:4)
             a(:4) = scratch%near%factors
          end if
          residual = largest_size(rows, right_sides)
-         if (rows > n) scratch%gap(:rows) = right_sides(:, 1)
+         if (rows > n) scratch%surplus(:rows) = right_sides(:, 1)
          is_closed = residual <= closed_level*max(size_of, numbers%coarse) .or. .not. moves
          side = merge(2, 1, is_closed)
+
          info = 0
          if (scratch%near%distance > 0.0_wp) then
             call solve_nearby(scratch%near, right_sides(1, side))
@@ -297,15 +316,16 @@ contains
             ended = merge(ended_stalled, ended_singular, singular)
             exit
          end if
+
          step = largest_size(n, right_sides)
-         ! Rounding is all that is left to correct, and the position stays; among equations that contradict one another
-         ! it is their gap. A step so small that no longer falls is rounding, whatever sums have left it.
+         ! Only rounding is left to correct, and the position stays; among equations that contradict one another this is
+         ! their residual. A step so small that no longer falls is rounding, whatever sums have left it.
          if (step > 0.5_wp*before .and. (step <= small_turn .or. &
             residual <= rounding_level*max(size_of, numbers%coarse))) then
             ended = ended_stalled
          else
-            ! The correction was right if it was at the rounding level of each value, or within the tolerance: beside a
-            ! long slide an angle is not.
+            ! The correction was right if it was at the rounding level of each value, or within the tolerance. An angle
+            ! is not, if a slide is long.
             size_of = 1.0_wp
             is_right = .true.
             do k = 1, n
@@ -316,6 +336,7 @@ contains
                   is_right = is_right .and. &
                      abs(turn) <= max(step_tolerance*max(own_size, numbers%coarse), x%tolerance)
                   if (unknown(k) > b%orientations) cycle
+
                   if (step > small_turn) then
                      f%c = cos(f%value)
                      f%s = sin(f%value)
@@ -328,11 +349,13 @@ contains
             end do
             if (is_right) ended = ended_converged
          end if
+
          before = step
          if (ended == ended_limit) then
             call stay_near(block%shape, a, scratch%pivots, numbers%lipschitz*step, scratch%near)
             cycle
          end if
+
          do k = block%first_loop, block%last_loop
             call velocity_rows(loops(k), slides, unknowns, guide, now(k), right_sides(1, 2))
          end do
@@ -342,22 +365,25 @@ contains
             right_sides(1, 2))
          exit
       end do
+
       if ((iterations > 1 .or. step > 0.0_wp) .and. ended /= ended_diverged) then
          do k = 1, n
             change = max(change, abs(unknowns(unknown(k))%value - scratch%start(k)))
          end do
       end if
       if (rows > n .and. moves) then
-         if (iterations > 0) call record_closure_error(b, x, i, scratch%gap, convergence)
+         if (iterations > 0) call record_closure_error(b, x, i, scratch%surplus, convergence)
          if (any(ended == [ended_converged, ended_stalled]) .and. &
             convergence%open%value > max(inconsistent_level*convergence%open%level, x%closing)) &
             ended = ended_inconsistent
       end if
+
       if (ended /= ended_converged) convergence%ended = ended
       convergence%iterations = max(convergence%iterations, iterations)
       convergence%residual = max(convergence%residual, residual)
       convergence%step = max(convergence%step, step)
       convergence%change = max(convergence%change, change)
+
       if (.not. any(ended == [ended_converged, ended_stalled])) return
       if (moves .and. .not. singular) call judge()
       is_singular = singular
@@ -383,17 +409,17 @@ contains
 
    contains
 
-      !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
-      !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
-      !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one
-      !> root only where B L change is below 1/2.
+      !> Finds the sign of the determinant and the Kantorovich ratio, and whether rounding leaves the velocities open.
+      !> With B = |J^-1| and the residual known to h, the position is known to B h, the Jacobian to B h times its
+      !> Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: there is one root only if B L
+      !> change is below 1/2.
       subroutine judge()
          real(wp) :: largest, inverse
          logical :: suspicious
 
          call pivot_range(block%shape, a, scratch%pivots, least, largest, sign_of, scratch%sparse)
          if (block%shape%pattern > 0) then
-            ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
+            ! No pivot of a wide block tells how near the Jacobian is to having no inverse.
             inverse = inverse_norm(block%shape, a, scratch%pivots, scratch%work, scratch%iwork, scratch%sparse)
             least = 1.0_wp/inverse
          end if
@@ -401,7 +427,7 @@ contains
          if (n == 0) least = 1.0_wp
          if (n == 0) return
          if (n == 1) largest = numbers%lipschitz
-         ! All pivots may be small, where links are much shorter than the mechanism.
+         ! All pivots may be small, if links are much shorter than the mechanism.
          suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
          if (n > 2) then
             bound = 1.0_wp/max(least, min_inverse)
@@ -409,27 +435,28 @@ contains
             if (.not. suspicious .and. ratio <= small_kantorovich_ratio .and. &
                excursion*numbers%lipschitz*bound**2*real(n, wp)**4 <= small_amplification) return
          end if
+
          if (block%shape%pattern == 0) inverse = inverse_norm(block%shape, a, scratch%pivots, scratch%work, &
             scratch%iwork, scratch%sparse)
          bound = min(inverse, 1.0_wp/min_inverse)
          ratio = change*numbers%lipschitz*inverse
          if (.not. suspicious) return
          size_of = max(numbers%coarse, maxval(abs(unknowns(unknown(:n))%value)))
-         singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
+         singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_velocity_error
          if (singular) singular = is_beyond_linear(b, x, i, n, unknowns, now, a, scratch%pivots, scratch%work, &
             scratch%sparse)
       end subroutine judge
    end subroutine solve_arrays
 
-   !> Solves for another right-hand side `right_side` (rows), from the factors.
+   !> Solves for another right-hand side from the factors.
    subroutine solve_next_side(shape, a, pivots, work, near, sparse, right_side)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      integer, intent(in) :: pivots(*)
-      real(wp), intent(inout) :: work(*)
-      type(nearby_t), intent(in) :: near
-      type(sparse_factors_t), intent(inout) :: sparse
-      real(wp), intent(inout) :: right_side(*)
+      real(wp), intent(in) :: a(*)                         !< the factors
+      integer, intent(in) :: pivots(*)                     !< (n) of the factors
+      real(wp), intent(inout) :: work(*)                   !< scratch
+      type(nearby_t), intent(in) :: near                   !< the Jacobian, if the factors are those of a nearby one
+      type(sparse_factors_t), intent(inout) :: sparse      !< of a sparse Jacobian
+      real(wp), intent(inout) :: right_side(*)             !< (rows) then the solution (n)
 
       if (near%distance > 0.0_wp) then
          call solve_nearby(near, right_side)
@@ -438,10 +465,10 @@ contains
       end if
    end subroutine solve_next_side
 
-   !> The largest of the sizes of `n` `numbers`; no number where the last of them is none.
+   !> Gives the largest |number|; no number if the last of them is none.
    pure real(wp) function largest_size(n, numbers) result(largest)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: numbers(*)
+      integer, intent(in) :: n                             !< how many numbers there are
+      real(wp), intent(in) :: numbers(*)                   !< (n)
       integer :: k
 
       largest = 0.0_wp
@@ -450,36 +477,40 @@ contains
       end do
    end function largest_size
 
-   !> Tells the same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the
-   !> rows hold beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
+   !> Tells whether rounding leaves the velocities open, with rows and unknowns in sizes of their own, for blocks of
+   !> very different ones. The part of the rows beyond their linear part moves an unknown by a part of its uncertainty
+   !> |J^-1| h that is too large.
    logical function is_beyond_linear(b, x, i, n, unknowns, now, a, pivots, work, sparse) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, n, pivots(*)
+      integer, intent(in) :: i                             !< the number of the block
+      integer, intent(in) :: n                             !< its unknowns
       type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
-      type(loop_state_t), intent(in) :: now(*)
-      real(wp), intent(in) :: a(*)
-      real(wp), intent(inout) :: work(*)
-      type(sparse_factors_t), intent(inout) :: sparse
+      type(loop_state_t), intent(in) :: now(*)             !< (loops)
+      real(wp), intent(in) :: a(*)                         !< the factors of its Jacobian
+      integer, intent(in) :: pivots(*)                     !< (n) of the factors
+      real(wp), intent(inout) :: work(*)                   !< scratch
+      type(sparse_factors_t), intent(inout) :: sparse      !< of a sparse Jacobian
       real(wp) :: off(n), more(n)
 
       associate (shape => b%list(i)%shape)
          call spread_by_inverse(shape, a, pivots, work, rounding_level*rounded_sizes(b, x, i, unknowns), off, sparse)
          call spread_by_inverse(shape, a, pivots, work, second_order_bounds(b, x, i, unknowns, now, off), more, sparse)
       end associate
-      is = .not. all(more < largest_error*off)
+      is = .not. all(more < largest_velocity_error*off)
    end function is_beyond_linear
 
-   !> Tells whether the redundant equations of block `i` contradict its rates or accelerations, by what both columns of
-   !> `left_over` leave of them; beside the largest rate and acceleration of anything that goes into the equations:
-   !> angles, slides, drives, known or not.
+   !> Tells whether the redundant equations of a block contradict its rates or accelerations. Their residuals are
+   !> compared with the largest rate and acceleration of all that goes into the equations: angles, slides, drives, known
+   !> or not.
    pure logical function contradict_rates(b, i, values, unknowns, left_over, coarse, closing) result(do)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: values(0:2, 0:*)
+      integer, intent(in) :: i                             !< the number of the block
+      real(wp), intent(in) :: values(0:2, 0:*)             !< (0:2, 0:drives) value, rate, acceleration of each drive
       type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
-      real(wp), intent(in) :: left_over(b%list(i)%shape%rows, 2), coarse
-      real(wp), intent(in) :: closing        !< the closing tolerance (characteristic lengths, rad)
+      real(wp), intent(in) :: left_over(b%list(i)%shape%rows, 2)   !< accelerations and rates, then their residuals
+      real(wp), intent(in) :: coarse                       !< of the block
+      real(wp), intent(in) :: closing                      !< the closing tolerance (characteristic lengths, rad)
       real(wp) :: largest(2)
       integer :: k
 
@@ -494,11 +525,11 @@ contains
       end associate
    end function contradict_rates
 
-   !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
+   !> Gives the size (rows) of the numbers that each row of a block rounds, in the unit of its loop.
    pure function rounded_sizes(b, x, i, unknowns) result(sizes)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i                             !< the number of the block
       type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
       real(wp) :: sizes(b%list(i)%shape%rows), size_of
       integer :: m, k
@@ -521,16 +552,15 @@ contains
       end do
    end function rounded_sizes
 
-   !> (rows) Bounds of d . r'' d for `changes` (n, none negative) of the unknowns of block `i` from the
-   !> values of `unknowns`, whose loops are `now`: twice what the rows r hold beyond their linear part. A projection
-   !> that turns with an angle of the block turns its loop.
+   !> Bounds d . r'' d (rows) for changes d of the unknowns of a block: twice the part of the rows r beyond their linear
+   !> part. A projection that turns with an angle of the block turns its loop.
    pure function second_order_bounds(b, x, i, unknowns, now, changes) result(bounds)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)
-      type(loop_state_t), intent(in) :: now(*)
-      real(wp), intent(in) :: changes(:)
+      integer, intent(in) :: i                             !< the number of the block
+      type(unknown_t), intent(in) :: unknowns(0:b%unknowns)   !< at which the changes begin
+      type(loop_state_t), intent(in) :: now(*)             !< (loops) at these unknowns
+      real(wp), intent(in) :: changes(:)                   !< (n) none negative, in rad and the unit of the loop
       real(wp) :: bounds(b%list(i)%shape%rows), change(0:size(changes)), first, second
       integer :: m, k
 

@@ -10,32 +10,34 @@ module block_state
    public :: unknown_t, loop_state_t, jacobian_t, state_t, new_state, set_drive_values, set_direction, set_values, &
       values_of, given, add_turns, largest_drive_rate
 
-   !> What the factors of a block's Jacobian say.
+   !> Findings from the factors of a block's Jacobian.
    type :: jacobian_t
       integer :: sign_of = 1                         !< of the determinant
       real(wp) :: pivot = 1.0_wp                     !< the least; 1 of a direct block
       real(wp) :: inverse = 0.0_wp                   !< |J^-1|
    end type jacobian_t
 
-   !> The motion found last: values alone, no factors, no scratch. A checkpoint is an assignment.
+   !> The motion found last: only values, no factors, no scratch. A checkpoint is an assignment.
    type :: state_t
-      real(wp) :: t = 0.0_wp, change = 0.0_wp        !< its time; of a predicted value, at most
+      real(wp) :: t = 0.0_wp                         !< its time
+      real(wp) :: change = 0.0_wp                    !< the largest change of a predicted value, rad or unit of length
       type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's angle
       type(loop_state_t), allocatable :: loop(:)     !< (loops)
-      type(vector_t), allocatable :: own(:)          !< (body vectors) R d, where the block's own angles rotate it
+      type(vector_t), allocatable :: own(:)          !< (body vectors) R d, if an angle of its own block rotates it
       type(vector_t), allocatable :: guide(:)        !< (slides) R e, their directions
       real(wp), allocatable :: drive_value(:, :)     !< (0:2, 0:drives) value, rate and acceleration of each drive
-      real(wp) :: excursion = 0.0_wp                 !< of the drives from their straight lines in a substep, at most
+      real(wp) :: excursion = 0.0_wp                 !< of the drives off their chords (rad, characteristic lengths)
       type(jacobian_t), allocatable :: jacobian(:)   !< (blocks)
-      logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without rates; with a new sign of determinant
+      logical, allocatable :: is_singular(:)         !< (blocks) without rates
+      logical, allocatable :: crossed(:)             !< (blocks) the determinant has a new sign
    end type state_t
 
 contains
 
-   !> Room for the state of `b` with this number of `drives`.
+   !> Makes room for the state of a mechanism.
    pure function new_state(b, drives) result(s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives
+      integer, intent(in) :: drives                  !< how many drives there are
       type(state_t) :: s
 
       allocate (s%u(0:b%unknowns), s%loop(size(b%loops)), s%own(size(b%body_vectors)), s%guide(size(b%slides)))
@@ -44,11 +46,10 @@ contains
       allocate (s%crossed(size(b%list)), s%is_singular(size(b%list)), source=.false.)
    end function new_state
 
-   !> Puts the time of the state at `t`, the parameter of the `path` of its drives, with value, rate and acceleration of
-   !> each.
+   !> Puts the state at a parameter of the path of its drives, with value, rate and acceleration of each.
    pure subroutine set_drive_values(path, t, s)
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                      !< the parameter, in the deck's unit of time
       type(state_t), intent(inout) :: s
       real(wp) :: f(3)
       integer :: i
@@ -60,10 +61,10 @@ contains
       end do
    end subroutine set_drive_values
 
-   !> Cosine and sine of `unknown`, if it is an angle.
+   !> Finds cosine and sine of an unknown, if it is an angle.
    pure subroutine set_direction(b, unknown, s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: unknown
+      integer, intent(in) :: unknown                 !< the number of the unknown
       type(state_t), intent(inout) :: s
 
       if (unknown > b%orientations) return
@@ -71,11 +72,11 @@ contains
       s%u(unknown)%s = sin(s%u(unknown)%value)
    end subroutine set_direction
 
-   !> Gives the unknowns of block `i` the `values` (n).
+   !> Gives the unknowns of a block their values.
    pure subroutine set_values(b, i, values, s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: i                       !< the number of the block
+      real(wp), intent(in) :: values(:)              !< (n) rad or unit of the loop
       type(state_t), intent(inout) :: s
       integer :: k
 
@@ -85,21 +86,22 @@ contains
       end do
    end subroutine set_values
 
-   !> (n) The values of the unknowns of block `i`.
+   !> Gives the values (n) of the unknowns of a block.
    pure function values_of(b, i, s) result(x)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      integer, intent(in) :: i                       !< the number of the block
       type(state_t), intent(in) :: s
       real(wp) :: x(b%list(i)%last - b%list(i)%first + 1)
 
       x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
    end function values_of
 
-   !> The value that row `row` of block `i` requires: its constant and its drive's value.
+   !> Gives the value that a row of a block requires: its constant and the value of its drive.
    pure real(wp) function given(b, x, i, row, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i, row
+      integer, intent(in) :: i                       !< the number of the block
+      integer, intent(in) :: row                     !< the number of the row in the block
       type(state_t), intent(in) :: s
 
       associate (k => b%list(i)%first_row + row - 1)
@@ -107,17 +109,17 @@ contains
       end associate
    end function given
 
-   !> Adds to the angles of block `i` the whole turns that its drives ask for between two of them. Angles that are
-   !> joined by such drives turn together.
+   !> Adds to the angles of a block the whole turns that its drives ask for between two of them. Angles that such drives
+   !> join turn together.
    pure subroutine add_turns(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
+      integer, intent(in) :: i                       !< the number of the block
       type(state_t), intent(inout) :: s
       real(wp) :: turns(0:b%list(i)%shape%n), off
       integer :: group(0:b%list(i)%shape%n), joins, to, m, k
 
-      ! By column; those of column 0 are known, and of group 0 what is joined to these.
+      ! By column: angles of column 0 are known, and group 0 holds all that is joined to these.
       turns = 0.0_wp
       group = [(k, k=0, b%list(i)%shape%n)]
       do m = b%list(i)%first_loop, b%list(i)%last_loop
@@ -128,6 +130,7 @@ contains
             joins = group(g%orientation_column)
             to = group(g%less_column)
          end associate
+
          if (joins == 0) then
             off = -off
             joins = to
@@ -142,7 +145,7 @@ contains
       call set_values(b, i, values_of(b, i, s) + turns(1:), s)
    end subroutine add_turns
 
-   !> The largest rate of a drive, in radians or its block's unit of length by time; 0 without drives.
+   !> Gives the largest rate of a drive, in rad or its block's unit of length by time; 0 without drives.
    pure real(wp) function largest_drive_rate(s) result(rate)
       type(state_t), intent(in) :: s
 

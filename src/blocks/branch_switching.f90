@@ -1,12 +1,12 @@
-!> Branches of a block's motion that cross at a change point: how a change point is known, and the other branch beyond
+!> Branches of a block's motion that cross at a change point: the signs of a change point, and the other branch beyond
 !> it.
 !>
 !> Just beyond a change point, at the position x on the branch that goes on smoothly, the Jacobian J has one small
-!> singular value s, with w and k on its left and right: to second order along k
+!> singular value s, with w and k on its left and right. To second order along k
 !>    w . r(x + a k) = a s + a^2 q/2,   q = w . r''[k, k],
 !> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
 !>
-!> The motion goes smoothly on, but where a BRANCH card asks for the other branch. A change point passed once is passed
+!> The motion goes smoothly on, unless a BRANCH card asks for the other branch. A change point passed once is passed
 !> on the same branch again, in either direction: the motion is a function of time.
 module branch_switching
    use kinds, only: wp
@@ -24,29 +24,34 @@ module branch_switching
    private
    public :: pass, switch_branch, is_short_and_right, branch_requests_t, new_branch_requests, decide
 
-   !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
-   !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
-   !> distance d are distinguished from crossing ones where d^2 is above the product of the two, 1E-14.
-   real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
-   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
-   !> A substep may be longer where the pivots at its ends are together less than this part of the Lipschitz
-   !> constant: where a crank in line with a base is almost as long, the coupler is so fast that short substeps
-   !> would all end where rounding leaves no velocities. Three widths of that zone are enough; of more, circuits that
-   !> do not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
-   real(wp), parameter :: short_pivots = 0.02_wp*short_step
-   real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
-   !> The largest distance at which the other branch is looked for.
-   real(wp), parameter :: furthest = 0.05_wp
-   !> Redundant equations are satisfied there to more than the second order in the distance.
+   !> A determinant that changes its sign over a substep this short, in rad and lengths, may indicate a change point. It
+   !> does if the prediction was right to so small a part of the substep. Circuits that pass each other at the distance
+   !> d are distinguished from crossing ones if d^2 is above the product of the two, 1E-14.
+   real(wp), parameter :: short_substep = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
+   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp)
+   !> A prediction that is off by more than this part of the substep is wrong, whatever rounding may explain.
+   real(wp), parameter :: wrong_part = 1.0e-2_wp
+   !> A substep may be longer if the pivots at its ends are together less than this part of the Lipschitz constant. If a
+   !> crank in line with a base is almost as long, the coupler is so fast that short substeps would all end in the zone
+   !> in which rounding leaves no velocities. Three widths of that zone are enough. With more of them, circuits that do
+   !> not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
+   real(wp), parameter :: short_pivots = 0.02_wp*short_substep
+   !> Rounding of a prediction near a change point, over the Lipschitz constant and the change and times the square of
+   !> the pivot.
+   real(wp), parameter :: prediction_rounding = 500.0_wp*epsilon(1.0_wp)
+   !> The largest distance at which the other branch is looked for, in rad and units of the loop.
+   real(wp), parameter :: furthest_branch = 0.05_wp
+   !> The closure error of redundant equations on the other branch, over the second order in its distance, at most.
    real(wp), parameter :: max_closure_part = 0.01_wp
 
    !> The listing gives the time of a change point to six digits; so may a card.
-   real(wp), parameter :: digits_of_time = 1.0e-5_wp
+   real(wp), parameter :: card_time_part = 1.0e-5_wp
 
-   !> A change point of a block at `t`, known to `width`.
+   !> A change point of a block that was passed.
    type :: branch_switch_t
       integer :: block = 0                        !< its number
-      real(wp) :: t = 0.0_wp, width = 0.0_wp      !< times, in the deck's unit
+      real(wp) :: t = 0.0_wp                      !< time, in the deck's unit
+      real(wp) :: width = 0.0_wp                  !< the time is known to this
       logical :: other = .false.                  !< the other branch was taken
    end type branch_switch_t
 
@@ -55,12 +60,12 @@ module branch_switching
       type(branch_request_t), allocatable :: cards(:)   !< in the deck's order
       logical, allocatable :: used(:)             !< (cards)
       type(branch_switch_t), allocatable :: branch_switches(:)
-      real(wp), allocatable :: stood_until        !< until then the motion stood on a singular position, the last time
+      real(wp), allocatable :: stood_until        !< time to which it stood on a singular position last
    end type branch_requests_t
 
 contains
 
-   !> The BRANCH cards of `m`, none of them used yet.
+   !> Takes the BRANCH cards of a mechanism, none of them used yet.
    pure function new_branch_requests(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(branch_requests_t) :: c
@@ -70,15 +75,16 @@ contains
       allocate (c%used(size(c%cards)), source=.false.)
    end function new_branch_requests
 
-   !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
-   !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended. Of the cards not used
-   !> yet that name one of the links, or none, that counts whose time was passed first on the way there.
+   !> Decides whether a block takes the other branch at its change point between two times. A change point on which the
+   !> motion stood is at the time at which that ended. Of the cards not used yet that name one of the links, or none,
+   !> the one counts whose time was passed first on the way there.
    pure subroutine decide(requests, block, links, before, t, at, other)
       type(branch_requests_t), intent(inout) :: requests
-      integer, intent(in) :: block
-      logical, intent(in) :: links(:)
-      real(wp), intent(in) :: before, t, at
-      logical, intent(out) :: other
+      integer, intent(in) :: block                !< its number
+      logical, intent(in) :: links(:)             !< (links) the block moves it
+      real(wp), intent(in) :: before, t           !< times, in the deck's unit
+      real(wp), intent(in) :: at                  !< time of the change point, about
+      logical, intent(out) :: other               !< it takes the other branch
       real(wp) :: way, here
       integer :: i, best
 
@@ -88,6 +94,7 @@ contains
             if (p%block == block .and. abs(p%t - at) <= p%width + abs(t - before)) return
          end associate
       end do
+
       way = sign(1.0_wp, t - before)
       here = at
       if (allocated(requests%stood_until)) here = way*max(way*at, way*requests%stood_until)
@@ -95,31 +102,32 @@ contains
       do i = 1, size(requests%cards)
          associate (card => requests%cards(i))
             if (requests%used(i) .or. (card%link > 0 .and. .not. links(max(card%link, 1)))) cycle
-            if (way*(card%t - here) > abs(t - before) + digits_of_time*max(abs(card%t), abs(here))) cycle
+            if (way*(card%t - here) > abs(t - before) + card_time_part*max(abs(card%t), abs(here))) cycle
             if (best > 0) then
                if (way*(card%t - requests%cards(best)%t) >= 0.0_wp) cycle
             end if
             best = i
          end associate
       end do
+
       other = best > 0
       if (other) requests%used(best) = .true.
       requests%branch_switches = [requests%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
    end subroutine decide
 
-   !> Passes the change points before the time of `s`, each as the BRANCH cards have it: `requests`. `list`: one for
-   !> each. c%keeps_signs: the motion found last, with its record `convergence`, is that which goes on; otherwise the
-   !> list says why there is none, or is empty where a determinant has changed its sign without a change point.
+   !> Passes the change points before the time of the state, each as the BRANCH cards ask for it. If
+   !> convergence%keeps_signs, the motion found last is the one that goes on. Otherwise the list says why there is none;
+   !> it is empty if a determinant has changed its sign without a change point.
    subroutine pass(b, x, path, history, w, s, requests, convergence, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(history_t), intent(inout) :: history
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s                      !< the motion found last
       type(branch_requests_t), intent(inout) :: requests
-      type(convergence_t), intent(inout) :: convergence
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      type(convergence_t), intent(inout) :: convergence      !< of that motion
+      type(diagnostic_t), allocatable, intent(out) :: list(:)   !< one for each change point
       type(diagnostic_t) :: r
       logical :: crossed(size(b%list)), passed
       integer :: k
@@ -134,8 +142,8 @@ contains
             if (.not. crossed(i)) cycle
             r = new_diagnostic(diagnostic_change, links_of(b, x, i))
             ! The least pivot goes through zero in proportion to the values of the drives.
-            r%t = time_at_part(path, before, t, history%jacobian(i)%pivot/(history%jacobian(i)%pivot + &
-               s%jacobian(i)%pivot))
+            r%t = time_at_part(path, before, t, &
+               history%jacobian(i)%pivot/(history%jacobian(i)%pivot + s%jacobian(i)%pivot))
             if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(b, x, i), before, t, r%t, r%other)
                if (r%other) call switch_branch(b, x, history, w, s, i, convergence, passed)
@@ -147,46 +155,45 @@ contains
       convergence%keeps_signs = passed
    end subroutine pass
 
-   !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
-   !> found last is on the branch that goes on smoothly, beyond change points too. Close to them rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of what drives move by, where that is more
-   !> than what is predicted does. A longer substep has to be right to a part that is smaller as its square, by which
-   !> the same circuits are distinguished.
+   !> Tells whether the motion found last is on the branch that goes on smoothly, also beyond change points. It is if
+   !> the substep was short, and its prediction right to a small part of it. Near a change point rounding has made the
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of the change of the drives, if this is more
+   !> than the predicted change. A longer substep has to be right to a part that is smaller as its square; this
+   !> distinguishes the same circuits.
    pure logical function is_short_and_right(b, x, history, s, correction) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(history_t), intent(in) :: history
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: correction
+      type(state_t), intent(in) :: s                         !< the motion found last
+      real(wp), intent(in) :: correction                     !< of its prediction, in rad or units of the loop
       real(wp), dimension(size(b%moving)) :: lipschitz, rounded
       real(wp) :: right, driven
       logical, dimension(size(b%moving)) :: crosses, is_short
 
       crosses = s%crossed(b%moving)
       lipschitz = x%blocks(b%moving)%lipschitz
-      is_short = s%change <= short_step &
+      is_short = s%change <= short_substep &
          .or. history%jacobian(b%moving)%pivot + s%jacobian(b%moving)%pivot <= short_pivots*lipschitz
       is = merge(all(is_short .or. .not. crosses), any(is_short), any(crosses))
       if (.not. is) return
       driven = abs(s%t - history%t(0))*largest_drive_rate(s)
-      rounded = rounding*lipschitz/history%jacobian(b%moving)%pivot**2*max(s%change, driven)
-      right = right_part*(short_step/max(short_step, s%change))**2*s%change &
+      rounded = prediction_rounding*lipschitz/history%jacobian(b%moving)%pivot**2*max(s%change, driven)
+      right = right_part*(short_substep/max(short_substep, s%change))**2*s%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
-      is = correction <= min(right, max_wrong*s%change)
+      is = correction <= min(right, wrong_part*s%change)
    end function is_short_and_right
 
-   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it;
-   !> `convergence`: how that ended, `found`: it is there. On that branch the determinant has the other sign. The
-   !> motions before are no guide to what comes.
+   !> Puts a block on its other branch, close to a change point or dead point, and then all that builds on it. On that
+   !> branch the determinant has the other sign. The motions before are no guide from there.
    subroutine switch_branch(b, x, history, w, s, i, convergence, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(history_t), intent(inout) :: history
       type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      integer, intent(in) :: i
-      type(convergence_t), intent(inout) :: convergence
-      logical, intent(out) :: found
+      type(state_t), intent(inout) :: s                      !< the motion found last; then the one on that branch
+      integer, intent(in) :: i                               !< the number of the block
+      type(convergence_t), intent(inout) :: convergence      !< how the solution there ended
+      logical, intent(out) :: found                          !< it is on that branch
       type(svd_t) :: v
       real(wp), dimension(b%list(i)%shape%n) :: direction, here
       real(wp) :: curvature, away, correction
@@ -197,13 +204,13 @@ contains
       v = decomposed(b, x, i, s)
       direction = v%right(v%n, :)
       curvature = curvature_of(b, x, i, here, v%left(:, v%n), direction, s)
-      found = abs(curvature)*furthest > 2.0_wp*v%s(v%n)
+      found = abs(curvature)*furthest_branch > 2.0_wp*v%s(v%n)
       if (.not. found) return
       away = -2.0_wp*v%s(v%n)/curvature
       call set_values(b, i, here + away*direction, s)
       call solve_blocks(b, x, b%moving, w, s, convergence)
       if (is_solved(convergence)) call compare(b, x, b%moving, history, s, convergence)
-      ! By the correction of this block alone: what builds on it moves by any multiple of that.
+      ! Only the correction of this block counts: all that builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(b, i, s) - (here + away*direction)))
       crossed(i) = .not. crossed(i)
       same = .not. any(s%crossed .and. .not. crossed)

@@ -1,5 +1,5 @@
-!> How an iteration for a position ended: the record that all methods give back; and by how much the equations of a
-!> redundant block contradict one another, in position and in its derivatives.
+!> How an iteration for a position ended: the record that all methods give back; and the closure error by which the
+!> equations of a redundant block contradict one another, in position and in its derivatives.
 module convergence
    use kinds, only: wp
    use blocks, only: blocks_t, geometry_t
@@ -13,24 +13,25 @@ module convergence
    !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
    !> with the sign of the determinant that this one had before.
    real(wp), parameter, public :: max_kantorovich_ratio = 0.1_wp
-   !> Closure errors that differ by less than this part are alike.
-   real(wp), parameter :: alike = 1.0e-4_wp
+   !> Closure errors that differ by less than this part are equal.
+   real(wp), parameter :: equal_opening_part = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
    real(wp), parameter, public :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
-   !> Rates may by this part of them, which a condition makes larger.
-   real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
-   !> Within a closing tolerance rates contradict one another by more, by so many times that tolerance and never by more
-   !> than the second: equations that differ so much in their rates hold the mechanism.
-   real(wp), parameter :: rates_of_closing = 100.0_wp, held_rates = 0.1_wp
-   !> Beside what is known the body vectors of a loop may be so short that rounding opens it by more: by so many
-   !> roundings of what is known.
-   real(wp), parameter :: roundings = 64.0_wp, rate_roundings = 4096.0_wp
+   !> Rates may contradict one another by this part of them, which a condition makes larger.
+   real(wp), parameter :: open_rate_part = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Within a closing tolerance rates may contradict one another by more: by so many times that tolerance.
+   real(wp), parameter :: rates_per_closing = 100.0_wp
+   !> They never do by more than this part: equations that differ so much in their rates hold the mechanism.
+   real(wp), parameter :: held_rate_part = 0.1_wp
+   !> The body vectors of a loop may be so short, compared with the known part, that rounding opens the loop by more: by
+   !> so many roundings of the known part.
+   real(wp), parameter :: loop_roundings = 64.0_wp, rate_roundings = 4096.0_wp
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
    integer, parameter :: ended_singular = 3    !< the matrix has no inverse
    integer, parameter :: ended_limit = 4       !< too many iterations
-   integer, parameter :: ended_diverged = 5    !< the residual left all bounds
+   integer, parameter :: ended_diverged = 5    !< the values left all bounds
    integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
    integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
    integer, parameter :: ended_elsewhere = 8   !< at another assembly; open%pair: the cylinder below 0
@@ -39,8 +40,8 @@ module convergence
    type :: closure_error_t
       real(wp) :: value = 0.0_wp               !< in the unit of length or rad
       logical :: is_angle = .false.
-      real(wp) :: unit = 1.0_wp                !< that unit of length, in the one of the mechanism
-      real(wp) :: level = 1.0_wp               !< how many times as coarse as usual its rows are rounded, 1 at least
+      real(wp) :: unit = 1.0_wp                !< the loop's unit of length, in the one of the mechanism
+      real(wp) :: level = 1.0_wp               !< its rows are rounded so many times as coarsely as usual, 1 at least
       integer :: pair = 0, drive = 0           !< whose equation it is; 0: none
    end type closure_error_t
 
@@ -52,12 +53,12 @@ module convergence
       real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
       integer :: determinant = 0               !< its sign
       real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: of its factors, over the largest
-      real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
-      real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
+      real(wp) :: change = 0.0_wp              !< the largest change of a value from the initial guess
+      real(wp) :: kantorovich_ratio = 0.0_wp   !< that change over the distance within which the root is the only one
       real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
       logical :: keeps_signs = .true.          !< the determinants have those of the motion that is followed
-      logical :: singular = .false.            !< position found where the Jacobian has no inverse
+      logical :: singular = .false.            !< a position was found, and its Jacobian has no inverse
       type(closure_error_t) :: open            !< the equation that is open the most
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
    end type convergence_t
@@ -67,17 +68,17 @@ module convergence
 
 contains
 
-   !> A position was found.
+   !> Tells whether a position was found.
    pure logical function is_solved(convergence)
       type(convergence_t), intent(in) :: convergence
 
       is_solved = convergence%ended == ended_converged .or. convergence%ended == ended_stalled
    end function is_solved
 
-   !> The record of the whole: the largest of each count, the worst of each ending.
+   !> Adds a record to the record of the whole: the largest of each count, the worst of each ending.
    pure subroutine gather(one, convergence)
-      type(convergence_t), intent(in) :: one
-      type(convergence_t), intent(inout) :: convergence
+      type(convergence_t), intent(in) :: one                !< of a block
+      type(convergence_t), intent(inout) :: convergence     !< of all blocks so far
 
       if (one%ended /= ended_converged) convergence%ended = one%ended
       convergence%iterations = max(convergence%iterations, one%iterations)
@@ -89,7 +90,7 @@ contains
       convergence%rates_open = convergence%rates_open .or. one%rates_open
    end subroutine gather
 
-   !> The word for how it ended.
+   !> Gives the word for how an iteration ended.
    pure function ending(convergence) result(word)
       type(convergence_t), intent(in) :: convergence
       character(9) :: word
@@ -99,14 +100,14 @@ contains
       word = words(convergence%ended)
    end function ending
 
-   !> The pair or drive that is open the most by the `residuals`: a revolute pair by the distance of its points. Of
-   !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
+   !> Finds the pair or drive that is open the most, a revolute pair by the distance of its points. If closure errors
+   !> are equal, it is the last pair of the deck, or the last drive: rounding shall not choose.
    pure subroutine record_closure_error(b, x, i, residuals, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: residuals(*)
-      type(convergence_t), intent(inout) :: convergence
+      integer, intent(in) :: i                              !< the number of the block
+      real(wp), intent(in) :: residuals(*)                  !< (rows of the block) unit of the loop or rad
+      type(convergence_t), intent(inout) :: convergence     !< convergence%open is set
       real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
       real(wp) :: largest
       integer :: m
@@ -116,30 +117,31 @@ contains
          associate (g => b%loops(m))
             if (g%row_x > 0) opening(m) = abs(residuals(g%row_x))
             if (g%row_y > 0) opening(m) = hypot(opening(m), residuals(g%row_y))
-            level(m) = max(1.0_wp, x%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
+            level(m) = max(1.0_wp, x%loops(m)%coarse*(loop_roundings*epsilon(1.0_wp)/inconsistent_level))
          end associate
       end do
+
       largest = maxval(opening/level)
       convergence%open%value = 0.0_wp
       convergence%open%pair = 0
       convergence%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (opening(m)/level(m) < (1.0_wp - alike)*largest) cycle
+            if (opening(m)/level(m) < (1.0_wp - equal_opening_part)*largest) cycle
             if (row%pair < convergence%open%pair .or. (row%pair == 0 .and. row%drive < convergence%open%drive)) cycle
             convergence%open = closure_error_t(opening(m), row%angular, x%loops(m)%unit, level(m), row%pair, row%drive)
          end associate
       end do
    end subroutine record_closure_error
 
-   !> Tells whether equations that leave `open` of their rates contradict one another.
+   !> Tells whether equations contradict one another in their rates.
    pure logical function contradict(open, size_of, coarse, closing)
-      real(wp), intent(in) :: open(:)        !< (redundant equations)
-      real(wp), intent(in) :: size_of        !< numbers of this size have gone into them
-      real(wp), intent(in) :: coarse         !< of the block
+      real(wp), intent(in) :: open(:)        !< (redundant equations) residuals of their rates
+      real(wp), intent(in) :: size_of        !< numbers of this size have gone into them, in their unit
+      real(wp), intent(in) :: coarse         !< how much larger the known part of the block is than its own, 1 at least
       real(wp), intent(in) :: closing        !< closing tolerance (unit of the loop, rad)
 
-      contradict = norm2(open) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse, &
-         min(rates_of_closing*min(closing, 1.0_wp), held_rates))*size_of
+      contradict = norm2(open) > max(open_rate_part, rate_roundings*epsilon(1.0_wp)*coarse, &
+         min(rates_per_closing*min(closing, 1.0_wp), held_rate_part))*size_of
    end function contradict
 end module convergence

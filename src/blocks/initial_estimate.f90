@@ -4,9 +4,9 @@
 !> For fixed places the sum of the squared closure errors of the pairs is, as a function of the angle u of one
 !> orientation class, but for a constant,
 !>    c cos u + s sin u + p cos 2u + q sin 2u
-!> Five values give it. It is minimized over one class after another, until no angle changes. Only those pairs count
-!> whose point on the other link has a known place: its origin, or a point of a link whose angle is known already.
-!> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
+!> Five values give it. It is minimized over one class after another, until no angle changes. A pair counts only if its
+!> point on the other link has a known place: its origin, or a point of a link whose angle is known already. Two links
+!> that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
@@ -20,18 +20,22 @@ module initial_estimate
    private
    public :: guess_t, choice_t, assign_guess, estimated_values, estimated_directions
 
-   !> Angles from the places are taken where their largest closure error is below `closed_part` of the characteristic
-   !> length and below `better_part` of that of the deck's angles, and where an angle differs by more than `far_angle`
-   !> (rad). A link that lies so differently is open at its pairs by about its size: by `open_part` of that at least.
-   real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp, open_part = 0.25_wp
-   !> A deck with closure errors below this part of the length needs no other angles.
+   !> Angles from the places are taken if their largest closure error is below this part of the characteristic length,
+   real(wp), parameter :: closed_part = 0.1_wp
+   !> and below this part of the closure error of the deck's angles,
+   real(wp), parameter :: better_part = 0.2_wp
+   !> and if an angle differs by more than this, in rad.
+   real(wp), parameter :: differing_angle = 1.0_wp
+   !> A link that lies so differently is open at its pairs by about its size: by this part of the size at least.
+   real(wp), parameter :: open_part = 0.25_wp
+   !> A deck with closure errors below this part of the characteristic length needs no other angles.
    real(wp), parameter :: good_part = 1.0e-3_wp
-   !> Body vectors this short, squared, give no direction.
+   !> Coefficients of the form below this part of the squared characteristic length give no direction.
    real(wp), parameter :: min_form_part = 1.0e-6_wp
-   !> A point so near to the origin of its link has its place.
-   real(wp), parameter :: short_part = 1.0e-3_wp
-   !> Values of the form that differ by less than this part of its coefficients are alike.
-   real(wp), parameter :: alike = 1.0e-9_wp
+   !> A point nearer to the origin of its link than this part of the characteristic length has the place of the origin.
+   real(wp), parameter :: short_offset_part = 1.0e-3_wp
+   !> Values of the form that differ by less than this part of its coefficients are equal.
+   real(wp), parameter :: equal_form_part = 1.0e-9_wp
    integer, parameter :: max_sweeps = 20, samples = 36
 
    !> How the position of a block at the first instant was chosen.
@@ -42,15 +46,15 @@ module initial_estimate
 
    !> Where the first position is searched for.
    type :: guess_t
-      real(wp), allocatable :: values(:)         !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: values(:)         !< (0:unknowns) from the deck's positions, rad or unit of the loop
       real(wp), allocatable :: links(:, :)       !< (3, links) places from the chain's origin, angles of the deck
       type(choice_t), allocatable :: choice(:)   !< (blocks)
-      type(kept_start_t), allocatable :: starts(:)   !< (blocks) near which the paths to all positions begin
+      type(kept_start_t), allocatable :: starts(:)   !< (blocks) from which the paths to all positions begin
    end type guess_t
 
 contains
 
-   !> Makes `guess` that of `m`; paths that it has from a mechanism of the same structure stay.
+   !> Makes the guess of a mechanism. Starts of paths from a mechanism of equal structure stay.
    subroutine assign_guess(m, b, x, guess)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -68,7 +72,7 @@ contains
       guess%values(:) = estimated_values(m, b, x)
    end subroutine assign_guess
 
-   !> Values (0:unknowns) of angles and slides of `m`, in the units of its blocks `b`.
+   !> Estimates the values (0:unknowns) of angles and slides, in rad and the units of their loops.
    function estimated_values(m, b, x) result(value)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -96,21 +100,21 @@ contains
       value = value/x%unit
    end function estimated_values
 
-   !> Finds where link number `i` is at the deck's place with its angle of `phi` (links).
+   !> Gives the position (3) of a link: the place of the deck, and its angle of a list.
    pure function turned(m, i, phi) result(position)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-      real(wp), intent(in) :: phi(:)         !< rad
+      integer, intent(in) :: i               !< the number of the link
+      real(wp), intent(in) :: phi(:)         !< (links) rad
       real(wp) :: position(3)
 
       position = [m%links(i)%position(:2), phi(i)]
    end function turned
 
-   !> Finds the distance by which pair `k` is open there.
+   !> Gives the distance by which a pair is open at the places of the deck, in the deck's unit.
    pure real(wp) function distance_open(m, k, phi) result(open)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
-      real(wp), intent(in) :: phi(:)         !< rad, of the links
+      integer, intent(in) :: k               !< the number of the pair
+      real(wp), intent(in) :: phi(:)         !< (links) rad
 
       associate (pair => m%pairs(k))
          open = abs(opening_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
@@ -118,15 +122,16 @@ contains
       end associate
    end function distance_open
 
-   !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
+   !> Estimates the angles (links) in rad: those of the deck, or better ones that follow from the places.
    function estimated_directions(m, tree, axes, span) result(phi)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(axes_t), intent(in) :: axes
-      real(wp), intent(in) :: span
+      real(wp), intent(in) :: span           !< characteristic length, in the deck's unit
       real(wp), dimension(size(m%links)) :: phi, u, v, w
       real(wp) :: before, after
-      logical :: placed(size(m%points)), is_far(size(m%links))      ! points with known places; links that turn far
+      logical :: placed(size(m%points))      ! points with known places
+      logical :: is_far(size(m%links))       ! links that turn far
       type(sorted_t) :: classes
       integer, allocatable :: list(:)
       integer :: i, sweep
@@ -141,7 +146,9 @@ contains
       end do
       placed = .true.
       if (largest_opening(u) <= good_part*span) return
-      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*span
+      placed = m%links(m%points%link)%ground .or. &
+         hypot(m%points%offset(1), m%points%offset(2)) <= short_offset_part*span
+
       v = u
       do sweep = 1, max_sweeps
          w = v
@@ -149,10 +156,11 @@ contains
          if (maxval(abs(wrap_angle(v - w))) <= good_part) exit
       end do
       v = u + wrap_angle(v - u)
-      is_far = abs(v - u) > far_angle
+      is_far = abs(v - u) > differing_angle
       if (.not. any(is_far)) return
-      ! Of what is open, only what small changes of other angles do not close contradicts an angle; what they open does
-      ! not.
+
+      ! Small changes of other angles close some pairs that are open: only the rest contradicts an angle. Pairs that
+      ! they open do not.
       w = merge(u, v, is_far)
       before = min(largest_opening(u), largest_opening(w))
       after = largest_opening(v)
@@ -161,8 +169,8 @@ contains
 
    contains
 
-      !> Gives each of the `classes` in `v` the angle of the least closure errors, unless the form is small at all
-      !> angles. Then the places of its points are known as well. `w`: the angles before.
+      !> Gives each class in `v` the angle of the least closure errors, unless the form is small at all angles. Then the
+      !> places of its points are known as well.
       subroutine minimize_closure_errors()
          real(wp) :: e(4), angle, sum_of
          integer :: i, j, k, class, pair, points(2)
@@ -184,6 +192,7 @@ contains
                end do
                e = e + 0.4_wp*sum_of*[direction(angle), direction(2.0_wp*angle)]
             end do
+
             angle = w(list(1)) - axes%angle_offset(list(1))
             if (maxval(abs(e)) > min_form_part*span**2) then
                angle = least(e, angle)
@@ -193,11 +202,11 @@ contains
          end do
       end subroutine minimize_closure_errors
 
-      !> A link that turns far has a pair, both sides of which have their places, that is open by more than a part of
-      !> that link's size, from the places of the deck and the `angles`. Its size is the longest vector to such a
-      !> pair: how far a pair beside its origin is open says nothing of its angle.
+      !> Tells whether closure errors contradict angles. A link that turns far has a pair, both sides of which have
+      !> their places, that is open by more than a part of that link's size. Its size is the longest vector to such a
+      !> pair: the closure error of a pair near its origin says nothing of its angle.
       pure logical function is_contradicted(angles) result(is)
-         real(wp), intent(in) :: angles(:)
+         real(wp), intent(in) :: angles(:)   !< (links) rad
          real(wp) :: size_of, open, arm
          integer :: link, k
 
@@ -221,10 +230,9 @@ contains
          end do
       end function is_contradicted
 
-      !> The largest distance, from the places of the deck and the `angles`, by which a pair is open of which both
-      !> sides are `placed` (points).
+      !> Gives the largest distance by which a pair is open that has known places on both sides, in the deck's unit.
       pure real(wp) function largest_opening(angles) result(largest)
-         real(wp), intent(in) :: angles(:)
+         real(wp), intent(in) :: angles(:)   !< (links) rad
          integer :: k
 
          largest = 0.0_wp
@@ -235,15 +243,15 @@ contains
       end function largest_opening
    end function estimated_directions
 
-   !> The angle at which the form `coefficients` is least: of two sides of a guide, which fit alike, the nearer to
-   !> `start`.
+   !> Finds the angle at which the form is least. Two sides of a guide fit equally well: then it is the nearer one.
    pure real(wp) function least(coefficients, start) result(u)
-      real(wp), intent(in) :: coefficients(4), start
+      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the head of this file
+      real(wp), intent(in) :: start             !< rad: the angle that is nearer
       real(wp), parameter :: step = 2.0_wp*pi/real(samples, wp)
       real(wp) :: lowest, slope, lipschitz
       integer :: i
 
-      if (maxval(abs(coefficients(3:))) <= alike*sum(abs(coefficients))) then
+      if (maxval(abs(coefficients(3:))) <= equal_form_part*sum(abs(coefficients))) then
          u = atan2(-coefficients(2), -coefficients(1))
          return
       end if
@@ -252,8 +260,8 @@ contains
          u = start + merge(step, -step, modulo(i, 2) == 0)*real(i/2, wp)
          if (form(coefficients, u) > lowest + better_part**2*sum(abs(coefficients))) cycle
          ! Rounding shall not choose.
-         if (form(coefficients, u) <= min(form(coefficients, u - step), form(coefficients, u + step)) + &
-            alike*sum(abs(coefficients))) exit
+         if (form(coefficients, u) <= min(form(coefficients, u - step), form(coefficients, u + step)) &
+            + equal_form_part*sum(abs(coefficients))) exit
       end do
       do i = 1, 3
          slope = form([coefficients(2), -coefficients(1), 2.0_wp*coefficients(4), -2.0_wp*coefficients(3)], u)
@@ -262,9 +270,10 @@ contains
       end do
    end function least
 
-   !> The trigonometric form with `coefficients` at the `angle`.
+   !> Evaluates the form at an angle.
    pure real(wp) function form(coefficients, angle)
-      real(wp), intent(in) :: coefficients(4), angle
+      real(wp), intent(in) :: coefficients(4)   !< c, s, p, q of the head of this file
+      real(wp), intent(in) :: angle             !< rad
 
       form = dot_product(coefficients, [direction(angle), direction(2.0_wp*angle)])
    end function form

@@ -1,6 +1,6 @@
 !> A block assembled from a distant estimate: the sum of squares of its residuals is reduced step by step (Levenberg
-!> 1944, Marquardt 1963), where Newton's method alone would jump to another branch. What is left in the end is the
-!> block's closure error.
+!> 1944, Marquardt 1963). Newton's method by itself would jump to another branch. The residual that is left in the end
+!> is the block's closure error.
 module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, work_length, solve_first
@@ -13,41 +13,44 @@ module levenberg_marquardt
    private
    public :: levenberg_marquardt_solve, find_closure_error
 
-   !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
+   !> No unknown goes further than this in one iteration: half a radian, half the unit of its loop.
    real(wp), parameter :: longest_step = 0.5_wp
-   !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
-   real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   !> A larger residual is not made small by steps of that length; the square of this one is well below overflow.
+   real(wp), parameter :: largest_start_residual = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
-   !> With a residual below the first no other start is tried; below the second there is nothing to correct. Shorter
-   !> steps than the third are rounding.
-   real(wp), parameter :: near = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
-   real(wp), parameter :: closed = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
+   !> With a smaller residual no other start is tried.
+   real(wp), parameter :: good_residual = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   !> A smaller residual has nothing to correct.
+   real(wp), parameter :: least_residual = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
+   !> Shorter steps are rounding, in rad or units of the loop.
    real(wp), parameter :: min_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
-   integer, parameter :: max_iterations = 200
-   !> Starts: the values given, then others around them, where these end in a local minimum.
+   integer, parameter :: max_damped_steps = 200
+   !> Starts: the values given, then others around them, if these end in a local minimum.
    integer, parameter :: starts = 6
-   !> Multiples of it, less their whole part, fill an interval evenly.
+   !> Multiples of this, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
-   !> The matrices are dense: larger blocks are left as they are.
-   integer, parameter :: max_unknowns = 600
-   !> Wider blocks are not asked for what is open alone: that is one number, and not worth minutes.
-   integer, parameter :: max_alone = 150
-   !> Equations that shall close count so many times as much as others: what is left of them goes with the square.
+   !> The matrices are dense: blocks of more unknowns are left as they are.
+   integer, parameter :: max_damped_unknowns = 600
+   !> For blocks of more unknowns the closure error of one equation is not found while all others are closed: that is
+   !> one number, and not worth minutes.
+   integer, parameter :: max_single_unknowns = 150
+   !> Equations that shall close count so many times as much as others: the residual that is left goes with the square.
    real(wp), parameter :: stiff(2) = [30.0_wp, 1.0e3_wp]
 
 contains
 
-   !> Brings block `i` from the values of `s` to where the sum of the squares of its residuals is least.
+   !> Brings a block to the values at which the sum of the squares of its residuals is least. A block that is too large
+   !> stays.
    subroutine levenberg_marquardt_solve(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(inout) :: s      !< with the values from which it begins; then those found
       real(wp), dimension(b%list(i)%shape%n) :: start, best
       real(wp) :: least, square
       integer :: k
 
-      if (size(start) == 0 .or. size(start) > max_unknowns) return
+      if (size(start) == 0 .or. size(start) > max_damped_unknowns) return
       call find_known_parts(b, x, i, s)
       start = values_of(b, i, s)
       best = start
@@ -58,38 +61,38 @@ contains
          square = sum(residual_of(b, x, i, values_of(b, i, s), s)**2)
          if (square < least) best = values_of(b, i, s)
          least = min(least, square)
-         if (least <= near**2) exit
+         if (least <= good_residual**2) exit
       end do
       call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> Puts into `convergence` the pair or drive of block `i` that is open the most where the sum of squares is least, as
-   !> in `s`, and by how much that one is open at least while all others are closed; 0: no such position is found. Of
-   !> equations that are too many: its part of the least sum, since they share what is lacking.
+   !> Finds the pair or drive of a block that is open the most where the sum of squares is least, and its closure error
+   !> while all others are closed; 0: no such position is found. If equations are too many, it is its part of the least
+   !> sum, since they share the closure error.
    subroutine find_closure_error(b, x, i, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: convergence
+      integer, intent(in) :: i               !< the number of the block
+      type(state_t), intent(inout) :: s      !< with the values of the least sum
+      type(convergence_t), intent(inout) :: convergence   !< convergence%open is set
       type(convergence_t) :: one
       logical :: own(0:b%list(i)%shape%rows)
       real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
       integer :: k, m
 
-      if (size(best) == 0 .or. size(best) > max_unknowns) return
+      if (size(best) == 0 .or. size(best) > max_damped_unknowns) return
       best = values_of(b, i, s)
       call record_closure_error(b, x, i, residual_of(b, x, i, best, s), convergence)
       if (size(r) > size(best)) return
 
       convergence%open%value = 0.0_wp
-      if (size(best) > max_alone) return
+      if (size(best) > max_single_unknowns) return
+
       own = .false.
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m), row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (row%pair == convergence%open%pair .and. row%drive == &
-               convergence%open%drive .and. (row%angular .eqv. convergence%open%is_angle)) &
-               own([g%row_x, g%row_y]) = .true.
+            if (row%pair == convergence%open%pair .and. row%drive == convergence%open%drive .and. &
+               (row%angular .eqv. convergence%open%is_angle)) own([g%row_x, g%row_y]) = .true.
          end associate
       end do
       do k = 0, starts - 1
@@ -104,10 +107,10 @@ contains
       end do
    end subroutine find_closure_error
 
-   !> Start number `k` around `values`: off by nothing at first, then by more and more, up to half a turn.
+   !> Gives a start (n) around given values: off by nothing at first, then by more and more, up to half a turn.
    pure function around(values, k) result(y)
-      real(wp), intent(in) :: values(:)
-      integer, intent(in) :: k
+      real(wp), intent(in) :: values(:)      !< (n) rad or unit of the loop
+      integer, intent(in) :: k               !< number of the start, from 0
       real(wp) :: y(size(values))
       integer :: m
 
@@ -115,13 +118,13 @@ contains
       y = values + 3.0_wp*real(k, wp)/real(starts, wp)*y
    end function around
 
-   !> Reduces the sum of squares of the residuals, each times one of the `weights` (rows), from the values of `s`.
+   !> Reduces the sum of the squares of weighted residuals.
    subroutine descend(b, x, i, weights, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: weights(:)
-      type(state_t), intent(inout) :: s
+      integer, intent(in) :: i               !< the number of the block
+      real(wp), intent(in) :: weights(:)     !< (rows) factors of the residuals
+      type(state_t), intent(inout) :: s      !< with the values from which it begins; then those found
       type(shape_t) :: damped                     ! the Jacobian with a row more for each unknown
       real(wp) :: values(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(values)), &
          d(size(r) + size(values)), a(size(d), size(values)), damping, square, step, largest
@@ -132,9 +135,9 @@ contains
       allocate (work(work_length(damped)))
       damping = first_damping
       call assemble_dense(b, x, i, s, jacobian, r)
-      do iteration = 1, max_iterations
+      do iteration = 1, max_damped_steps
          largest = maxval(weights*abs(r))
-         if (largest <= closed .or. damping > max_damping .or. .not. largest <= bound) exit
+         if (largest <= least_residual .or. damping > max_damping .or. .not. largest <= largest_start_residual) exit
          square = sum((weights*r)**2)
          values = values_of(b, i, s)
 

@@ -1,4 +1,4 @@
-!> From the motion of the unknowns to that of the links, along the tree. A link's origin is
+!> The motion of the links from the motion of the unknowns, along the tree. A link's origin is
 !>
 !>    origin = parent's origin + R_p r + s R_p e - R d,
 !>
@@ -16,18 +16,18 @@ module link_motion
    public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, &
       missing_all
 
-   !> What is missing of an unknown, the worst last: nothing, its derivatives, its value as well.
+   !> The worst last: nothing is missing of an unknown, its derivatives are, its value is as well.
    integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2
 
 contains
 
-   !> The chain of the links of `m`, whose blocks are `b`, in the deck's unit of length; first those `wanted` (links),
-   !> and their parents.
+   !> Makes the chain of the links of a mechanism, in the deck's unit of length: first the wanted ones and their
+   !> parents.
    function new_chain(m, b, x, wanted) result(c)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      logical, intent(in) :: wanted(:)
+      logical, intent(in) :: wanted(:)       !< (links) the motion of the link is asked for
       type(chain_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
@@ -48,12 +48,12 @@ contains
       call assign_chain(m, b, x, c)
    end function new_chain
 
-   !> Gives the `chain` the numbers of `m`, whose blocks are `b`.
+   !> Gives a chain the numbers of a mechanism.
    subroutine assign_chain(m, b, x, chain)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(chain_t), intent(inout) :: chain
+      type(chain_t), intent(inout) :: chain   !< as `new_chain` makes it
       integer :: i
 
       do i = 1, size(chain%links)
@@ -65,6 +65,7 @@ contains
                h%root_unit = x%unit(h%root:h%root + 1)
                cycle
             end if
+
             h%place = place_on_tree(m, t, a, link)
             h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
             h%parent_orientation = t%orientation(t%parent(link))
@@ -82,14 +83,13 @@ contains
       chain%length = x%equations%length
    end subroutine assign_chain
 
-   !> Puts the motion of the first `n` links of the `chain` at state `s` into `q`. `finite`: no number is out of
-   !> range; false may be said of sums alone.
+   !> Finds the motion of the first links of a chain.
    pure subroutine move_links(chain, n, s, q, finite)
       type(chain_t), intent(in) :: chain
-      integer, intent(in) :: n               !< c%wanted, or all
+      integer, intent(in) :: n               !< how many links: chain%wanted, or all
       type(state_t), intent(in) :: s
-      type(motion_t), intent(inout) :: q
-      logical, intent(out) :: finite
+      type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; x and y from the chain's origin
+      logical, intent(out) :: finite         !< no number is out of range, and no sum of them
       integer :: i, k
 
       q%origin = chain%origin
@@ -103,14 +103,16 @@ contains
       call move_chain(n, chain%links, s%u, chain%length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> Puts the motion of the `n` moving `links` into that of all links, on plain arrays, which cost no descriptors.
+   !> Finds the motion of moving links on plain arrays, which cost no descriptors.
    pure subroutine move_chain(n, links, unknowns, length, positions, velocities, accelerations, finite)
-      integer, intent(in) :: n
-      type(chain_link_t), intent(in) :: links(n)
-      type(unknown_t), intent(in) :: unknowns(0:*)
-      real(wp), intent(in) :: length
-      real(wp), intent(inout) :: positions(3, *), velocities(3, *), accelerations(3, *)
-      logical, intent(out) :: finite
+      integer, intent(in) :: n                              !< how many links are moved
+      type(chain_link_t), intent(in) :: links(n)            !< parents before their children
+      type(unknown_t), intent(in) :: unknowns(0:*)          !< (0:unknowns)
+      real(wp), intent(in) :: length                        !< the unit of slides in the deck's
+      real(wp), intent(inout) :: positions(3, *)            !< (3, links) x, y, phi, in the deck's unit and rad
+      real(wp), intent(inout) :: velocities(3, *)           !< (3, links) by time
+      real(wp), intent(inout) :: accelerations(3, *)        !< (3, links) by time squared
+      logical, intent(out) :: finite                        !< no number is out of range
       real(wp), dimension(2) :: x, x_t, x_tt, e, e_t
       real(wp) :: check
       integer :: i, k
@@ -128,6 +130,7 @@ contains
                   x_t = parent%rate*quarter_turn(x)
                   x_tt = parent%acceleration*quarter_turn(x) - parent%rate**2*x
                end if
+
                if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
                   f%acceleration, x, x_t, x_tt)
                if (h%slide > 0) then
@@ -142,6 +145,7 @@ contains
                   end associate
                end if
             end associate
+
             ! A link that no pair joins to the ground has unknowns of its own for x and y.
             if (h%root > 0) then
                x = length*h%root_unit*unknowns(h%root:h%root + 1)%value
@@ -153,6 +157,7 @@ contains
                x_t = x_t + velocities(:2, h%parent)
                x_tt = x_tt + accelerations(:2, h%parent)
             end if
+
             k = h%link
             positions(:, k) = [x, f%value + h%angle_offset]
             velocities(:, k) = [x_t, f%rate]
@@ -163,11 +168,11 @@ contains
       finite = abs(check) <= huge(check)
    end subroutine move_chain
 
-   !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
-   !> unknowns by which it and its parents move; links that are not wanted count as known.
+   !> Finds how much of each link of a motion is known, and why no more, from the unknowns by which it and its parents
+   !> move. Links that are not wanted count as known.
    subroutine flag_links(chain, missing, found)
       type(chain_t), intent(in) :: chain
-      integer, intent(in) :: missing(0:)
+      integer, intent(in) :: missing(0:)     !< (0:unknowns) missing_nothing, ...
       type(motion_t), intent(inout) :: found
       integer :: of_link(0:size(found%position, 2)), k
 

@@ -5,13 +5,13 @@
 !> and accelerations (Hermite),
 !>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
-!> many times over, and a start that is wrong by rounding alone costs a second factorization. And four motions instead
+!> many times over, and a start that is wrong only by rounding costs a second factorization. And four motions instead
 !> of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of 1.6, but take
 !> as long to 3 per cent, and so do steps of ten degrees.
 !>
-!> Beside a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
+!> Near a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
 !>
-!> For comparison (--study) the order can be given: x_0 alone, with its velocity, with its acceleration as well, and
+!> For comparison (--study) the order can be given: x_0 only, with its velocity, with its acceleration as well, and
 !> with the third derivative as the difference of two accelerations.
 module predictor
    use kinds, only: wp
@@ -31,41 +31,42 @@ module predictor
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
    !> change may end at another assembly and still look right.
    real(wp), parameter :: largest_predicted_change = 1.0_wp
-   real(wp), parameter, public :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
-   real(wp), parameter, public :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
-   !> An acceleration does not serve a prediction that it makes uncertain by more than this part of the change: that
+   !> Of velocities and of accelerations, from the latest on, in the formula for three motions.
+   real(wp), parameter, public :: rate_weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
+   real(wp), parameter, public :: acceleration_weight(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
+   !> An acceleration does not serve a prediction if it makes more than this part of the change uncertain: such a start
    !> could come nearer to another branch than to its own.
-   real(wp), parameter :: largest_part = 0.01_wp
+   real(wp), parameter :: max_uncertain_part = 0.01_wp
    !> Accelerations that are uncertain by less than this part of the largest are known.
-   real(wp), parameter :: known_part = 0.01_wp
+   real(wp), parameter :: known_acceleration_part = 0.01_wp
    !> With a pivot above, rounding leaves no acceleration uncertain by a part that a substep can feel.
    real(wp), parameter :: certain_pivot = epsilon(1.0_wp)**0.2_wp
-   !> Steps that differ by less, relatively, count as equal: instants are rounded too.
-   real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Steps that differ by less than this part count as equal: instants are rounded too.
+   real(wp), parameter :: equal_step_part = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
-   !> One unknown in the last three motions, the latest first; of its values the latest alone.
+   !> One unknown in the last three motions, the latest first; only the latest of its values.
    type :: unknown_history_t
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
    end type unknown_history_t
 
-   !> The last three motions accepted, and what the Jacobians of the latest say.
+   !> The last three motions accepted, and the findings from the Jacobians of the latest.
    type :: history_t
       integer, allocatable :: predicted(:)              !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
-      real(wp) :: uncertain(0:2) = 0.0_wp               !< their accelerations, in parts of velocities in a unit of time
+      real(wp) :: uncertain(0:2) = 0.0_wp               !< parts of their accelerations, in velocities per unit of time
       type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns)
       type(jacobian_t), allocatable :: jacobian(:)      !< (blocks) of the latest
-      real(wp), allocatable :: entries(:)               !< there, of the block with too many rows: (rows*n)
+      real(wp), allocatable :: entries(:)               !< (rows*n) of the latest Jacobian of a block with too many rows
    end type history_t
 
 contains
 
-   !> The history of the blocks `b` before their first motion, for predictions of this `order`.
+   !> Makes the history before the first motion.
    pure function new_history(b, order) result(h)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: order                      !< 0 to 3, or own_predictor
+      integer, intent(in) :: order                      !< of predictions, 0 to 3, or own_predictor
       type(history_t) :: h
 
       h%predicted = iterated_unknowns(b, b%moving)
@@ -73,11 +74,11 @@ contains
       allocate (h%past(0:b%unknowns), h%jacobian(size(b%list)))
    end function new_history
 
-   !> Makes the motion `s` the latest: the one that is followed.
+   !> Makes a motion the latest: the one that is followed.
    subroutine accept(b, x, s, history)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(state_t), intent(in) :: s
+      type(state_t), intent(in) :: s                    !< the motion
       type(history_t), intent(inout) :: history
       real(wp) :: uncertain, least
       integer :: k
@@ -94,13 +95,13 @@ contains
       if (b%redundant > 0) history%entries = jacobian_of(b, x, 1, s)
    end subroutine accept
 
-   !> Puts the Jacobians `found` of the blocks of the `list` (`n`) among those `kept`, with their `least` pivot. Plain
-   !> arrays cost no descriptors at each block.
+   !> Keeps the Jacobians of a motion and finds their least pivot. Plain arrays cost no descriptors at each block.
    pure subroutine keep(n, list, found, kept, least)
-      integer, intent(in) :: n, list(n)
-      type(jacobian_t), intent(in) :: found(*)
-      type(jacobian_t), intent(inout) :: kept(*)
-      real(wp), intent(out) :: least
+      integer, intent(in) :: n                          !< the length of the list
+      integer, intent(in) :: list(n)                    !< numbers of the blocks
+      type(jacobian_t), intent(in) :: found(*)          !< (blocks) of the motion
+      type(jacobian_t), intent(inout) :: kept(*)        !< (blocks)
+      real(wp), intent(out) :: least                    !< |pivot| of these blocks
       integer :: k
 
       least = huge(least)
@@ -110,15 +111,15 @@ contains
       end do
    end subroutine keep
 
-   !> Compares the motion `s`, for which the blocks of the `list` are solved, with the latest. `convergence` gets
-   !> whether determinants keep their signs, and how its Kantorovich ratio grows with the excursion of the drives.
+   !> Compares a motion with the latest: whether determinants keep their signs, and how its Kantorovich ratio grows with
+   !> the excursion of the drives.
    subroutine compare(b, x, list, history, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in), contiguous :: list(:)
+      integer, intent(in), contiguous :: list(:)        !< (any number) numbers of the blocks that are solved
       type(history_t), intent(in) :: history
-      type(state_t), intent(inout) :: s
-      type(convergence_t), intent(inout) :: convergence
+      type(state_t), intent(inout) :: s                 !< the motion
+      type(convergence_t), intent(inout) :: convergence !< how the blocks ended
       logical :: crosses
       integer :: k
 
@@ -137,14 +138,15 @@ contains
       end do
    end subroutine compare
 
-   !> Finds which of the blocks of the `list` (`n`) have crossed: their signs are not those `before`. At a change point
-   !> itself the sign is that of rounding.
+   !> Finds which blocks have crossed: the signs of their determinants are others than before. At a change point itself
+   !> the sign is random.
    pure subroutine compare_signs(n, list, before, now, is_singular, crossed, crosses)
-      integer, intent(in) :: n, list(n)
-      type(jacobian_t), intent(in) :: before(*), now(*)
-      logical, intent(in) :: is_singular(*)
-      logical, intent(inout) :: crossed(*)
-      logical, intent(out) :: crosses            !< some block has
+      integer, intent(in) :: n                          !< the length of the list
+      integer, intent(in) :: list(n)                    !< numbers of the blocks
+      type(jacobian_t), intent(in) :: before(*), now(*) !< (blocks)
+      logical, intent(in) :: is_singular(*)             !< (blocks) at a change point
+      logical, intent(inout) :: crossed(*)              !< (blocks) the sign is another
+      logical, intent(out) :: crosses                   !< some block of the list has crossed
       integer :: k
 
       crosses = .false.
@@ -156,15 +158,15 @@ contains
       end do
    end subroutine compare_signs
 
-   !> Makes `s`, the motion found last, the latest that was accepted; before the first that of the `estimated` values,
-   !> but for what drives alone give.
+   !> Puts the latest motion that was accepted into the state. Before the first motion these are the estimated values,
+   !> or the values of drives if only drives give them.
    subroutine recall(b, x, path, history, estimated, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: estimated(0:)             !< (0:unknowns) rad, unit of the block
-      type(state_t), intent(inout) :: s
+      type(state_t), intent(inout) :: s                 !< the motion found last
       integer :: k
 
       if (history%filled > 0) then
@@ -178,6 +180,7 @@ contains
             end associate
          end do
       end if
+
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
             if (b%list(i)%direct) then
@@ -189,12 +192,12 @@ contains
       end do
    end subroutine recall
 
-   !> Makes the motion `unknown` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities
-   !> in a unit of time.
+   !> Remembers a motion as the latest.
    pure subroutine remember(history, t, unknown, uncertain)
       type(history_t), intent(inout) :: history
-      real(wp), intent(in) :: t, uncertain
-      type(unknown_t), intent(in) :: unknown(0:*)
+      real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
+      type(unknown_t), intent(in) :: unknown(0:*)       !< (0:unknowns) of the motion
+      real(wp), intent(in) :: uncertain                 !< part of its accelerations, in velocities per unit of time
       integer :: k
 
       history%t = [t, history%t(0), history%t(1)]
@@ -214,43 +217,44 @@ contains
       history%filled = min(history%filled + 1, 3)
    end subroutine remember
 
-   !> Puts the latest motion at the parameter `t` of another path: the rates remembered are no guide from there.
+   !> Puts the latest motion at a parameter of another path: the rates remembered are no guide from there.
    pure subroutine begin_at(history, t)
       type(history_t), intent(inout) :: history
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                         !< the parameter, in the deck's unit of time
 
       history%t(0) = t
       history%filled = 0
    end subroutine begin_at
 
-   !> Sets the values of `unknown` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`:
-   !> the largest difference from the latest.
+   !> Predicts the values of all unknowns that are iterated. At least one motion is remembered.
    pure subroutine predict(history, t, unknown, change)
       type(history_t), intent(in) :: history
-      real(wp), intent(in) :: t
-      type(unknown_t), intent(inout) :: unknown(0:*)
-      real(wp), intent(out) :: change
+      real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
+      type(unknown_t), intent(inout) :: unknown(0:*)    !< (0:unknowns)
+      real(wp), intent(out) :: change                   !< the largest difference from the latest, rad or unit of length
       real(wp) :: step, d, w(3)
       integer :: i, k, known
 
       change = 0.0_wp
       step = t - history%t(0)
       known = 0
-      if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > largest_part) then
-         known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
+      if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > max_uncertain_part) then
+         known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
       else if (is_even(history, step)) then
          do k = 1, size(history%predicted)
             associate (p => history%past(history%predicted(k)))
-               d = step*(weight(0)*p%rate(0) + weight(1)*p%rate(1) + weight(2)*p%rate(2) + step*(weight2(0) &
-                  *p%acceleration(0) + weight2(1)*p%acceleration(1) + weight2(2)*p%acceleration(2)))
+               d = step*(rate_weight(0)*p%rate(0) + rate_weight(1)*p%rate(1) + rate_weight(2)*p%rate(2) &
+                  + step*(acceleration_weight(0)*p%acceleration(0) + acceleration_weight(1)*p%acceleration(1) &
+                  + acceleration_weight(2)*p%acceleration(2)))
                unknown(history%predicted(k))%value = p%value + d
             end associate
             change = max(change, abs(d))
          end do
          return
       end if
-      if (history%order /= own_predictor) w = order_weights(history%order, step, merge(history%t(0) - history%t(1), &
-         0.0_wp, history%filled > 1))
+
+      if (history%order /= own_predictor) w = order_weights(history%order, step, &
+         merge(history%t(0) - history%t(1), 0.0_wp, history%filled > 1))
       do k = 1, size(history%predicted)
          i = history%predicted(k)
          associate (v => history%past(i)%rate, a => history%past(i)%acceleration)
@@ -266,17 +270,17 @@ contains
       end do
    end subroutine predict
 
-   !> How uncertain the accelerations of block `i` in the motion `s` are, as a part of its velocities in a unit of
-   !> time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the other
-   !> branch is about p/L away: the velocities are uncertain by the quotient of the two, in parts of v, and the
-   !> accelerations by that over p/L, in parts of v^2; v is the largest velocity, of the block or of a drive. At dead
-   !> points the accelerations grow as the velocities do, and are known.
+   !> Estimates how uncertain the accelerations of a block are, as a part of its velocities in a unit of time. With its
+   !> pivot p, and with L the Lipschitz constant of its Jacobian, positions are known to eps/p, and the other branch is
+   !> about p/L away. The velocities are uncertain by the quotient of the two, in parts of v, and the accelerations by
+   !> that over p/L, in parts of v^2; v is the largest velocity, of the block or of a drive. At dead points the
+   !> accelerations grow as the velocities do, and are known.
    pure real(wp) function uncertain_part(b, x, i, pivot, s) result(part)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      integer, intent(in) :: i
-      real(wp), intent(in) :: pivot
-      type(state_t), intent(in) :: s
+      integer, intent(in) :: i                          !< the number of the block
+      real(wp), intent(in) :: pivot                     !< the least of its Jacobian
+      type(state_t), intent(in) :: s                    !< the motion
       real(wp) :: v, fastest
 
       part = 0.0_wp
@@ -287,15 +291,16 @@ contains
          v = max(v, epsilon(1.0_wp)*fastest)
          if (.not. v > 0.0_wp) return
          part = epsilon(1.0_wp)*x%blocks(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
-         if (.not. part*v > known_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
+         if (.not. part*v > known_acceleration_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
       end associate
    end function uncertain_part
 
-   !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given
-   !> `order`, 0 to 3, `step` after the latest motion; `before`: the step that led to it, 0.0 where there was none.
+   !> Gives the weights (3) of the velocity, the acceleration and the last change of the acceleration in a prediction of
+   !> given order.
    pure function order_weights(order, step, before) result(w)
-      integer, intent(in) :: order
-      real(wp), intent(in) :: step, before
+      integer, intent(in) :: order                      !< 0 to 3
+      real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
+      real(wp), intent(in) :: before                    !< the step that led to that motion; 0: there was none
       real(wp) :: w(3)
 
       w = 0.0_wp
@@ -304,14 +309,15 @@ contains
       if (order >= 3 .and. abs(before) > 0.0_wp) w(3) = step**3/(6.0_wp*before)
    end function order_weights
 
-   !> Three motions are remembered, and the next comes after the same step; no other order is asked for.
+   !> Tells whether three motions are remembered at equal steps, the next comes after an equal step, and no other order
+   !> is asked for.
    pure logical function is_even(history, step)
       type(history_t), intent(in) :: history
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
 
       is_even = history%filled == 3 .and. history%order == own_predictor
       if (.not. is_even) return
-      is_even = abs(history%t(0) - history%t(1) - step) <= equal_step*abs(step) &
-         .and. abs(history%t(1) - history%t(2) - step) <= equal_step*abs(step)
+      is_even = abs(history%t(0) - history%t(1) - step) <= equal_step_part*abs(step) &
+         .and. abs(history%t(1) - history%t(2) - step) <= equal_step_part*abs(step)
    end function is_even
 end module predictor

@@ -1,7 +1,7 @@
-!> The analysis of one mechanism, instant by instant: what is found, what is not, and what there is to say of it.
+!> The analysis of one mechanism, instant by instant: the motion found, and the remarks about it.
 !>
 !> The motion is followed by blocks, whatever the method: they give the limits, the certificate and the remarks. METHOD
-!> DENSE and METHOD MATRIX solve for the motion at each instant where the blocks have found one.
+!> DENSE and METHOD MATRIX solve for the motion at each instant at which the blocks have found one.
 !>
 !> After an instant the analysis is in one of five phases. The motion may stand on a singular position (`singular`).
 !>
@@ -11,20 +11,20 @@
 !> | at_start  | none had a motion              | begin; rest, if it stands and no drive moves                      |
 !> | on_motion | had a position                 | follow; if it stands leave_position, or rest if no drive moves    |
 !> | lost      | was not reached                | follow                                                            |
-!> | beyond    | lay beyond a limit             | as before that                                                    |
+!> | beyond    | lay beyond a limit             | as from the phase before                                          |
 !>
 !> | from         | the instant          | `advance` | to        | remarks                                           |
 !> |--------------|----------------------|-----------|-----------|---------------------------------------------------|
 !> | not_begun    | has a motion         | arrive    | on_motion | redundant equations, other assemblies, estimate   |
-!> | not_begun    | has a position alone | arrive    | at_start  | redundant equations, links that can move          |
+!> | not_begun    | has only a position  | arrive    | at_start  | redundant equations, links that can move          |
 !> | not_begun    | has no position      | stop_at   | not_begun | closure error                                     |
 !> | at_start     | has a motion         | arrive    | on_motion | the motion begins                                 |
-!> | at_start     | has a position alone | arrive    | at_start  |                                                   |
+!> | at_start     | has only a position  | arrive    | at_start  |                                                   |
 !> | at_start     | has no position      | stop_at   | at_start  | closure error                                     |
 !> | the others   | has a position       | arrive    | on_motion | change points: passed, here, or returned from     |
-!> | on_motion    | is not reached       | stop_at   | lost      | closure error, or what ends the motion, and where |
+!> | on_motion    | is not reached       | stop_at   | lost      | closure error, or the end of the motion           |
 !> | lost, beyond | is not reached       | stop_at   | lost      | closure error                                     |
-!> | on_motion    | is beyond a limit    | pass_over | beyond    | what ends the motion, and where                   |
+!> | on_motion    | is beyond a limit    | pass_over | beyond    | the end of the motion                             |
 !> | lost, beyond | is beyond a limit    | pass_over | beyond    | that it is beyond                                 |
 module analysis
    use kinds, only: wp
@@ -32,17 +32,16 @@ module analysis
    use structure, only: structure_t
    use drive_path, only: moving_drives, time_beside, drive_at
    use motion, only: motion_t, forget_links, known_of, flag_none, flag_not_converged, flag_singular, flag_overflow, &
-      flag_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end, &
-      diagnostic_stroke, flag_stroke
-   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, &
-      ended_elsewhere
+      flag_inconsistent, flag_stroke, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
+      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, &
+      diagnostic_dead_end, diagnostic_stroke
+   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_state, only: set_drive_values
    use block_solver, only: solve_blocks
    use block_motion, only: assign_geometry, get_ratios, get_driven_links
    use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
-   use block_diagnostics, only: near_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
+   use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: go_by_value, leave
    use scales, only: is_length
    use cylinders, only: cylinder_length, is_out_of_stroke
@@ -55,10 +54,9 @@ module analysis
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
-   real(wp), parameter :: almost_there = 1.0e-3_wp
-   !> Beside a first position that is singular the motion begins where a drive has gone so far, in the units of the
-   !> blocks.
-   real(wp), parameter :: beside_start = 1.0e-3_wp
+   real(wp), parameter :: creeping_part = 1.0e-3_wp
+   !> Near a singular first position the motion begins after a drive has gone so far, in rad or units of its block.
+   real(wp), parameter :: start_offset = 1.0e-3_wp
 
    !> The phases.
    enum, bind(c)
@@ -68,12 +66,12 @@ module analysis
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
       integer :: phase = not_begun
-      logical, allocatable :: singular(:)                  !< (blocks) that are, if it stands on such a position
+      logical, allocatable :: singular(:)                  !< (blocks) the block is, if the motion stands on a position
       real(wp) :: last = 0.0_wp                            !< time of the last instant, but for those beyond a limit
       type(branch_t) :: branch                             !< of the last instant
       type(certificate_counts_t) :: certificate_counts     !< of all instants
       type(limit_t) :: limits(2)                           !< of the motion that is followed
-      type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
+      type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
       !> The motion followed is at a time that is no instant (`look_at`); its place and iterations at the last instant.
@@ -84,12 +82,11 @@ module analysis
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
-   !> `begin_following`.
+   !> Makes the analysis of a mechanism ready for its first instant.
    subroutine make_analysis(analysis, m, structure)
       type(analysis_t), intent(out) :: analysis
-      type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(inout), optional :: structure
+      type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
+      type(structure_t), intent(inout), optional :: structure   !< of the mechanism: its blocks are taken over
 
       if (m%method == method_newton) then
          call begin_following(analysis%following_t, m, structure)
@@ -100,12 +97,11 @@ contains
       end if
    end subroutine make_analysis
 
-   !> Makes `analysis`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the
-   !> structure that it has. `is_done`: that fits; otherwise `analysis` is of no use.
+   !> Makes an analysis by METHOD NEWTON ready for a variant with the same structure; of no use if that does not fit.
    subroutine renew_analysis(analysis, m, is_done)
-      type(analysis_t), intent(inout) :: analysis
+      type(analysis_t), intent(inout) :: analysis          !< of another variant
       type(mechanism_t), intent(in) :: m
-      logical, intent(out) :: is_done
+      logical, intent(out) :: is_done                      !< the structure fits
       type(following_t) :: kept
 
       call move_memory(analysis%following_t, kept)
@@ -116,12 +112,11 @@ contains
       if (is_done) call begin_motion(analysis%following_t, m)
    end subroutine renew_analysis
 
-   !> Solves for the instant `t`; `found` is its motion in the deck's units, with what could not be found flagged. Links
-   !> that no request needs may be left out.
+   !> Solves for an instant. Links that no request needs may be left out.
    subroutine advance(analysis, t, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
-      type(motion_t), intent(inout) :: found
+      real(wp), intent(in) :: t                            !< its time
+      type(motion_t), intent(inout) :: found               !< in the deck's units; flagged if it is not found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
@@ -135,6 +130,7 @@ contains
          call pass_over(analysis, t, found)
          return
       end if
+
       call reach(analysis, t, step, list)
       if (step%ending >= step_there) then
          call arrive(analysis, step, list, found)
@@ -143,18 +139,17 @@ contains
          call stop_at(analysis, t, step, found)
       end if
       analysis%certificate_counts%passed = analysis%certificate_counts%passed + passed_of(step)
-      if (allocated(analysis%dense)) analysis%iterations = iterations + merge(analysis%convergence%iterations, 0, &
-         step%ending >= step_there)
+      if (allocated(analysis%dense)) analysis%iterations = iterations &
+         + merge(analysis%convergence%iterations, 0, step%ending >= step_there)
       analysis%last = t
    end subroutine advance
 
-   !> Continues the motion to `t`. `step`: how that went; `list`: what there is to say of it if it stands on a change
-   !> point, or returns from a singular position.
+   !> Continues the motion to an instant.
    subroutine reach(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      real(wp), intent(in) :: t                            !< its time
+      type(step_record_t), intent(inout) :: step           !< how that went
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< if it stands on a change point, or returns
 
       if (allocated(analysis%singular)) then
          if (.not. any(moving_drives(analysis%path, analysis%last, t))) then
@@ -171,43 +166,42 @@ contains
       end if
    end subroutine reach
 
-   !> Finds the first motion, at `t`. From a first position that is singular more than one motion begins: the one to `t`
-   !> begins in the assembly that is the nearest close to that position. At `t` another one may be, if the step is wide.
+   !> Finds the first motion. From a singular first position more than one motion begins: this one begins in the nearest
+   !> assembly close to that position. At the instant another assembly may be nearest, if the step is wide.
    subroutine begin(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< time
       type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      real(wp) :: beside
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
+      real(wp) :: near
 
       if (allocated(analysis%singular)) then
-         beside = time_beside(analysis%path, analysis%last, t, beside_start)
-         call continue_to(analysis%following_t, beside, step)
+         near = time_beside(analysis%path, analysis%last, t, start_offset)
+         call continue_to(analysis%following_t, near, step)
          if (step%ending >= step_there .and. &
             .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
-            call go_on_from(analysis%following_t, beside)
+            call go_on_from(analysis%following_t, near)
       end if
       call follow(analysis, t, step, list)
    end subroutine begin
 
-   !> Follows the motion to `t`, by time or by the value of a drive.
+   !> Follows the motion, by time or by the value of a drive.
    subroutine follow(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< time to which it goes
       type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
 
       call continue_to(analysis%following_t, t, step)
       if (step%ending < step_there) call go_by_value(analysis%following_t, t, step, list)
    end subroutine follow
 
-   !> Follows the motion to `t` from the singular position on which it stands. Back in time it is what it was, unless a
-   !> BRANCH card asks for another branch.
+   !> Follows the motion from a singular position. Back in time it is as it was, unless a BRANCH card asks for another.
    subroutine leave_position(analysis, t, step, list)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< time to which it goes
       type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
       type(diagnostic_t), allocatable :: returns(:)
 
       if ((analysis%t - analysis%last)*(t - analysis%last) < 0.0_wp) then
@@ -224,11 +218,11 @@ contains
          .or. analysis%convergence%singular)) call move_alloc(returns, list)
    end subroutine leave_position
 
-   !> Stays on the singular position on which the motion stands, since no drive moves until `t`. Blocks without
-   !> velocities keep their position; the others find their velocities and accelerations.
+   !> Stays on a singular position, since no drive moves. Blocks without velocities keep their position; the others find
+   !> their velocities and accelerations.
    subroutine rest(analysis, t, step)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< time until which no drive moves
       type(step_record_t), intent(inout) :: step
 
       if (analysis%is_left) call return_to(analysis%following_t, analysis%left)
@@ -241,14 +235,13 @@ contains
       step%ending = step_rests
    end subroutine rest
 
-   !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
-   !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
-   !> until `come_back`. `is_found`: it has a position, velocities and accelerations.
+   !> Finds the motion at a time that is no instant of the deck, by continuity from the last instant, or from a time
+   !> looked at before: of many in a row each costs a short step. The analysis stays there until `come_back`.
    subroutine look_at(analysis, t, found, is_found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< the time
       type(motion_t), intent(inout) :: found
-      logical, intent(out) :: is_found
+      logical, intent(out) :: is_found                     !< it has a position, velocities and accelerations
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
 
@@ -283,12 +276,11 @@ contains
       analysis%is_left = .false.
    end subroutine come_back
 
-   !> Takes the motion at the end of `step` as `found`, with what is verified of it and what there is to say of it; a
-   !> regular one is followed from there on. `list`: what there is to say if it stands on a change point, or returns.
+   !> Takes the motion at the end of a step, with certificate and remarks. A regular motion is followed from there on.
    subroutine arrive(analysis, step, list, found)
       type(analysis_t), intent(inout) :: analysis
       type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
       type(motion_t), intent(inout) :: found
       integer :: was
       logical :: had_missed, crosses, goes_on
@@ -302,6 +294,7 @@ contains
             if (size(list) > 0) step%ending = step_stands
          end if
       end if
+
       call accept_motion(analysis, found)
       analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       crosses = passed_of(step) > 0
@@ -315,7 +308,7 @@ contains
          call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, found%t, analysis%work, &
             analysis%state, found)
          analysis%branch = branch_t()
-         ! Of instants in a row this is said once.
+         ! One remark for instants in a row.
          if (.not. had_missed) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
             other=analysis%convergence%ended == ended_elsewhere)], found)
       else
@@ -339,13 +332,12 @@ contains
       end if
    end subroutine arrive
 
-   !> Notes what is verified of the position at the end of `step`, from the phase `was`; `crosses`: change points lie
-   !> before it.
+   !> Records the certificate of the position at the end of a step.
    subroutine certify(analysis, was, step, crosses)
       type(analysis_t), intent(inout) :: analysis
-      integer, intent(in) :: was
+      integer, intent(in) :: was                           !< the phase before: not_begun, ...
       type(step_record_t), intent(in) :: step
-      logical, intent(in) :: crosses
+      logical, intent(in) :: crosses                       !< change points lie on the step
 
       if (step%ending == step_rests) then
          analysis%branch = branch_t(kind=min(analysis%branch%kind, branch_same))
@@ -361,11 +353,11 @@ contains
       end associate
    end subroutine certify
 
-   !> Says what there is to say of the first position, or of the first motion after such positions: `was`. A motion that
-   !> began beside a singular position is no longer near the deck's estimate.
+   !> Adds the remarks about the first position, or about the first motion after such positions. A motion that began
+   !> near a singular position is no longer near the deck's estimate.
    subroutine tell_first(analysis, was, found)
       type(analysis_t), intent(inout) :: analysis
-      integer, intent(in) :: was
+      integer, intent(in) :: was                           !< the phase before: not_begun or at_start
       type(motion_t), intent(inout) :: found
 
       if (was == at_start) then
@@ -376,12 +368,12 @@ contains
          analysis%guess, analysis%state, found, analysis%convergence%singular), found)
    end subroutine tell_first
 
-   !> No motion was found at `t`, at the end of `step`: which equation is not satisfied, or where the step has ended;
-   !> that is said once. The motion is followed from where it was. `t` lies beyond a limit if no substep could be made
-   !> and it is further behind that place than `near_part` of the step, or if it is only known that it was not reached.
+   !> Ends a step that has found no motion. One remark names the equation that is not satisfied or the end of the step.
+   !> The motion is followed from where it was. The instant lies beyond a limit if no substep could be made and it is
+   !> further on than `near_limit_part` of the step, or if it is only known that it was not reached.
    subroutine stop_at(analysis, t, step, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< time of the instant
       type(step_record_t), intent(in) :: step
       type(motion_t), intent(inout) :: found
       type(diagnostic_t), allocatable :: list(:)
@@ -392,9 +384,9 @@ contains
       analysis%branch = branch_t()
       inconsistent = analysis%convergence%ended == ended_inconsistent
       if (inconsistent) then
-         ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
+         ! A drive is one of these equations: not even links that only drives move have a position.
          call cut(found, -1, flag_inconsistent)
-         ! Not where the last substep has ended, but at the instant itself.
+         ! Measured at the instant itself, not at the end of the last substep.
          if (step%tries > 1) call measure_closure_error(analysis%following_t, t)
          analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
@@ -407,19 +399,19 @@ contains
       if (analysis%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. analysis%follows)) then
          associate (open => analysis%convergence%open)
             call add_diagnostics([diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, &
-               is_angle=open%is_angle, value=open%value *merge(1.0_wp, analysis%geometry%equations%length*open%unit, &
-               open%is_angle))], found)
+               is_angle=open%is_angle, value=open%value &
+               *merge(1.0_wp, analysis%geometry%equations%length*open%unit, open%is_angle))], found)
          end associate
       else
          ahead = t
-         ! To where a slide is infinite there are more substeps than are tried.
-         if (step%ending == step_creeps) &
-            ahead = analysis%t + sign(min(abs(t - analysis%t), almost_there*abs(analysis%t - analysis%place%t)), &
-               t - analysis%t)
+         ! To the infinity of a slide there are more substeps than are tried.
+         if (step%ending == step_creeps) ahead = analysis%t + sign(min(abs(t - analysis%t), &
+            creeping_part*abs(analysis%t - analysis%place%t)), t - analysis%t)
+
          list = limit_diagnostic(analysis%blocks, analysis%geometry, analysis%path, analysis%history, analysis%state, &
             ahead, step%ending == step_creeps)
-         if (.not. analysis%follows .and. analysis%convergence%ended == &
-            ended_elsewhere .and. analysis%convergence%open%pair > 0) &
+         if (.not. analysis%follows .and. analysis%convergence%ended == ended_elsewhere .and. &
+            analysis%convergence%open%pair > 0) &
             list = [diagnostic_t(kind=diagnostic_stroke, pair=analysis%convergence%open%pair)]
          if (analysis%follows .and. size(analysis%geometry%cylinders) > 0) call find_length_limit(analysis, t, list)
          if (size(list) == 0 .and. analysis%follows .and. step%ending == step_blocked) &
@@ -434,16 +426,16 @@ contains
 
       if (analysis%follows .and. .not. inconsistent .and. abs(t - analysis%place%t) > 0.0_wp) &
          analysis%limits(merge(2, 1, t > analysis%place%t)) = limit_t(.true., &
-         merge(analysis%t + near_part*(t - analysis%place%t), t, step%ending == step_blocked), list)
+         merge(analysis%t + near_limit_part*(t - analysis%place%t), t, step%ending == step_blocked), list)
       call go_back(analysis%following_t, step)
       if (analysis%follows) analysis%phase = lost
       if (allocated(analysis%singular)) deallocate (analysis%singular)
    end subroutine stop_at
 
-   !> `t` lies beyond a limit, and nothing is solved for. The first of such instants gets the reason.
+   !> Leaves out an instant beyond a limit: nothing is solved for. The first of such instants gets the reason.
    subroutine pass_over(analysis, t, found)
       type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t                            !< its time
       type(motion_t), intent(inout) :: found
       integer :: side
 
@@ -463,9 +455,9 @@ contains
       analysis%phase = beyond
    end subroutine pass_over
 
-   !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
+   !> Adds diagnostics to those of a motion, which are not allocated if there are none.
    subroutine add_diagnostics(list, found)
-      type(diagnostic_t), intent(in) :: list(:)
+      type(diagnostic_t), intent(in) :: list(:)            !< (any number) those to be added
       type(motion_t), intent(inout) :: found
 
       if (size(list) == 0) return
@@ -473,9 +465,9 @@ contains
       found%diagnostics = [found%diagnostics, list]
    end subroutine add_diagnostics
 
-   !> Takes the motion at found%t, where the blocks have found one, by the method, and flags what does not exist. If all
-   !> drives rest, a motion that has come to a singular position rests there, too. A first position says less: undriven
-   !> links may move.
+   !> Takes the motion at found%t by the method, if the blocks have found one, and flags all that does not exist. If all
+   !> drives rest, a motion that has come to a singular position rests there. This does not hold for a first position,
+   !> since undriven links may move.
    subroutine accept_motion(analysis, found)
       type(analysis_t), intent(inout) :: analysis
       type(motion_t), intent(inout) :: found
@@ -502,12 +494,12 @@ contains
       else
          if (analysis%convergence%singular) call cut(found, 0, flag_singular)
          if (analysis%convergence%rates_open) call cut(found, 0, flag_inconsistent)
-         ! Where rates contradict one another no link has any.
+         ! If rates contradict one another, no link has any.
          if (found%mark == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
             allocated(analysis%dense), found)
       end if
       if (finite) return
-      ! What is out of the range of the real kind is not known.
+      ! Numbers out of the range of the real kind are not known.
       do link = 1, size(found%position, 2)
          last = known_of(found, link)
          if (last == 2 .and. .not. all(abs(found%acceleration(:, link)) <= huge(1.0_wp))) last = 1
@@ -525,10 +517,11 @@ contains
       end do
    end subroutine accept_motion
 
-   !> Keeps only derivatives up to number `known` of all links; `mark` says why.
+   !> Keeps only the first derivatives of all links.
    pure subroutine cut(found, known, mark)
       type(motion_t), intent(inout) :: found
-      integer, intent(in) :: known, mark
+      integer, intent(in) :: known                         !< the last derivative that is known; -1: no position
+      integer, intent(in) :: mark                          !< the reason: flag_singular, ...
 
       call forget_links(found)
       if (found%mark /= flag_none) then
@@ -539,7 +532,8 @@ contains
       found%mark = mark
    end subroutine cut
 
-   !> By how much redundant equations have differed at most, in characteristic lengths or rad; -1 where there are none.
+   !> Gives the largest closure error of redundant equations so far, in characteristic lengths or rad; -1: there are
+   !> none.
    pure real(wp) function redundancy_error(analysis)
       type(analysis_t), intent(in) :: analysis
 
@@ -547,18 +541,17 @@ contains
       if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error
    end function redundancy_error
 
-   !> Puts the limit at which the length of a cylinder comes to its bound in the place of `list`, if the motion that is
-   !> followed on the way to `t` is that near.
+   !> Puts the limit at which the length of a cylinder comes to its bound into the list, if the motion is that near.
    subroutine find_length_limit(analysis, t, list)
       type(analysis_t), intent(in) :: analysis
-      real(wp), intent(in) :: t              !< time
+      real(wp), intent(in) :: t                            !< time to which it goes
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t) :: limit
       real(wp) :: lengths(0:2, size(analysis%geometry%cylinders)), f(3), way, left, nearest
       integer :: d, k, side
 
       lengths = lengths_followed(analysis%following_t)
-      nearest = near_part*abs(t - analysis%place%t)
+      nearest = near_limit_part*abs(t - analysis%place%t)
       do k = 1, size(analysis%geometry%cylinders)
          associate (bounds => analysis%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
             do side = 1, 2
@@ -588,7 +581,7 @@ contains
       list = [limit]
    end subroutine find_length_limit
 
-   !> Flags the motion `found`, which is complete, where a cylinder is out of its stroke.
+   !> Flags a complete motion if a cylinder is out of its stroke.
    subroutine flag_strokes(analysis, found)
       type(analysis_t), intent(in) :: analysis
       type(motion_t), intent(inout) :: found
@@ -597,8 +590,7 @@ contains
       if (found%known < 2 .or. found%mark /= flag_none) return
       do k = 1, size(analysis%geometry%cylinders)
          associate (one => analysis%geometry%cylinders(k), length => cylinder_length(analysis%geometry%cylinders(k), &
-               found%position(:, analysis%geometry%cylinders(k)%i), found%position(:, &
-                  analysis%geometry%cylinders(k)%j)))
+            found%position(:, analysis%geometry%cylinders(k)%i), found%position(:, analysis%geometry%cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
             found%mark = flag_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)

@@ -1,8 +1,8 @@
 !> The values of all drives between two instants: how far they go from the first, and how far they leave the chord from
-!> the first to the second. What a substep of the continuation may rely on.
+!> the first to the second. A substep of the continuation relies on these bounds.
 !>
-!> A position at the end of a substep is the continuation of the one before where the drives follow their chords. Where
-!> one drive moves it may go to and fro between its two values, since the mechanism then comes back through the same
+!> A position at the end of a substep is the continuation of the one before if the drives follow their chords. If one
+!> drive moves, it may go to and fro between its two values, since the mechanism then comes back through the same
 !> positions; beyond them it may go at most as far as the position is certain to exist. Of several drives none may
 !> leave its own chord by more: round a cusp there is another assembly at the same values.
 module drive_deviation
@@ -16,15 +16,17 @@ module drive_deviation
    private
    public :: drive_deviation_t, new_drive_excursion, limit_substep, judge_step, examine
 
-   !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
-   !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
+   !> The largest excursion off the chord, in rad or characteristic lengths. A position mostly allows less, as its
+   !> Jacobian says; this bounds the effect on links far down a chain.
    real(wp), parameter :: max_deviation = 0.03_wp
    !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
-   real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
+   real(wp), parameter :: min_factor = 1.0e-3_wp
+   !> The change of a shortened substep over the largest that is allowed: it shall not be a rounding too long.
+   real(wp), parameter :: a_little_less = 0.98_wp
 
    !> Bounds of the drives by time, in the deck's unit.
    type :: drive_deviation_t
-      !> (drives) Of the value: 1 over the characteristic length, or 1; none where no position depends on those before.
+      !> (drives) Of the value: 1 over the characteristic length, or 1; none if no position depends on those before.
       real(wp), allocatable :: unit(:)
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_predicted_change`
@@ -33,10 +35,10 @@ module drive_deviation
 
 contains
 
-   !> The drives of `m`; `depends`: there are positions that depend on those before.
+   !> Bounds the drives of a mechanism between its instants.
    function new_drive_excursion(m, depends) result(p)
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: depends
+      logical, intent(in) :: depends         !< there are positions that depend on those before
       type(drive_deviation_t) :: p
       type(bounds_t) :: b
       real(wp) :: largest(2)
@@ -48,6 +50,7 @@ contains
       end associate
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
+
       ! First and second derivatives, in radians or characteristic lengths; huge: no bound.
       largest = 0.0_wp
       do i = 1, size(p%unit)
@@ -63,13 +66,14 @@ contains
       p%curve = largest(2)
    end function new_drive_excursion
 
-   !> Finds the part `allowed` of the `substep` from the parameter `t` on that the drives allow at once. `away`: how far
-   !> they leave their chords in it, in radians or characteristic lengths, at most; see `examine`.
+   !> Finds the part of a substep that the drives allow at once.
    pure subroutine limit_substep(deviation, path, t, substep, allowed, away)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t, substep
-      real(wp), intent(out) :: allowed, away
+      real(wp), intent(in) :: t              !< the parameter of the path from which the substep goes
+      real(wp), intent(in) :: substep        !< the wanted one, in the unit of the parameter
+      real(wp), intent(out) :: allowed       !< the part of it that is allowed
+      real(wp), intent(out) :: away          !< excursion of the drives in it, as `examine`
       real(wp) :: change
       logical :: inside, is_plain
 
@@ -92,13 +96,12 @@ contains
       if (inside .and. deviation%curve < huge(1.0_wp)) away = 0.125_wp*allowed**2*deviation%curve
    end subroutine limit_substep
 
-   !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
-   !> `away`: bounds their `excursion`.
+   !> Finds whether steps, anywhere between the instants, need not be divided because of the drives.
    pure subroutine judge_step(deviation, step, away, is_plain)
       type(drive_deviation_t), intent(in) :: deviation
-      real(wp), intent(in) :: step
-      real(wp), intent(out) :: away
-      logical, intent(out) :: is_plain
+      real(wp), intent(in) :: step           !< of time
+      real(wp), intent(out) :: away          !< excursion of the drives in a plain step, as `examine`
+      logical, intent(out) :: is_plain       !< such steps need not be divided
 
       away = 0.0_wp
       is_plain = abs(step) <= deviation%longest .and. deviation%curve < huge(1.0_wp)
@@ -107,13 +110,14 @@ contains
       is_plain = away <= max_deviation
    end subroutine judge_step
 
-   !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
-   !> a chord being off its curve by h^2/8 times the second derivative at most.
+   !> Bounds the change of the drives between two parameters of their path, and their excursion off the chords. A chord
+   !> is off its curve by h^2/8 times the second derivative at most.
    pure subroutine examine(deviation, path, t1, t2, change, away)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2
-      real(wp), intent(out) :: change, away
+      real(wp), intent(in) :: t1, t2         !< the parameters
+      real(wp), intent(out) :: change        !< of every drive from its value at `t1`, in rad or characteristic lengths
+      real(wp), intent(out) :: away          !< their excursion, in rad or characteristic lengths
       type(bounds_t) :: b
       real(wp) :: f1(3), f2(3), h, rate, bow, off, beyond, off_one, off_all
       integer :: i, moving
@@ -130,6 +134,7 @@ contains
             away = huge(1.0_wp)
             return
          end if
+
          f1 = drive_at(path, i, t1)
          f2 = drive_at(path, i, t2)
          rate = max(-b%low(1), b%high(1))
@@ -145,11 +150,11 @@ contains
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
 
-   !> `t1` and `t2` lie within the time of all instants, and are times.
+   !> Tells whether two parameters lie within the time of all instants, and are times.
    pure logical function is_within(deviation, path, t1, t2)
       type(drive_deviation_t), intent(in) :: deviation
       type(drive_path_t), intent(in) :: path
-      real(wp), intent(in) :: t1, t2
+      real(wp), intent(in) :: t1, t2         !< the parameters
 
       is_within = min(t1, t2) >= deviation%first .and. max(t1, t2) <= deviation%last .and. .not. allocated(path%leg)
    end function is_within

@@ -1,11 +1,11 @@
 !> The motion that is followed, and its continuation to another instant, in as many substeps as that takes: an
-!> assembly is never changed in silence. And its limits on either side: an instant beyond one is not reached by
-!> continuity, whatever is asked for in between, and need not be searched for again.
+!> assembly is never changed in silence. And its limits on either side: no continuity reaches an instant beyond one,
+!> whatever is asked for in between, and it need not be searched for again.
 !>
-!> The branch of an instant is what has been verified on the step to it. SAME: on every substep the prediction was off
-!> by less than a tenth of the distance within which there is one root only (Newton and Kantorovich), and the
-!> determinants of all blocks have kept their signs. CROSSED: as SAME, but for change points that were passed, each
-!> within a short substep, and listed.
+!> The branch of an instant is verified on the step to it. SAME: on every substep the prediction was off by less than a
+!> tenth of the distance within which there is one root only (Newton and Kantorovich), and the determinants of all
+!> blocks have kept their signs. CROSSED: as SAME, but for change points that were passed, each within a short substep,
+!> and listed.
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -33,28 +33,29 @@ module following
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
 
-   !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
-   !> the continuation of the motion; where the prediction is off by more, the step is divided.
+   !> The largest correction, in characteristic lengths and rad, of a predicted position that still counts as the
+   !> continuation of the motion; if the prediction is off by more, the step is divided.
    real(wp), parameter :: largest_correction = 0.1_wp
-   !> A substep smaller than this part of the longest one, or of what is left to go, cannot be made: the motion is
-   !> blocked there. So many substeps at most are tried.
-   real(wp), parameter :: min_substep = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
+   !> A substep smaller than this part of the longest one, or of the way that is left, cannot be made: the motion is
+   !> blocked there.
+   real(wp), parameter :: min_substep_part = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
    integer, parameter :: max_substeps = 200000
-   !> Near a limit a slow iteration creeps, and each substep without a position costs all of its iterations: so many of
+   !> Near a limit a slow iteration creeps, and each substep without a position costs all of its iterations: so many
    !> small substeps end the continuation too.
    integer, parameter :: max_failures = 300
-   real(wp), parameter :: small_substep = 1.0e-3_wp
+   !> A substep below this part of the longest one is small.
+   real(wp), parameter :: small_substep_part = 1.0e-3_wp
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
    integer, parameter :: max_longer = 8
 
    !> Lengths change by so many times as much as drives leave their chords, at most.
-   real(wp), parameter :: off_chord = 2.0_wp
+   real(wp), parameter :: length_by_chord = 2.0_wp
 
    integer, parameter :: branch_none = 0      !< nothing is verified
    integer, parameter :: branch_first = 1     !< chosen by the deck's estimated position
-   integer, parameter :: branch_same = 2      !< that of the motion that is followed
-   integer, parameter :: branch_crossed = 3   !< the same, through change points
+   integer, parameter :: branch_same = 2      !< the branch of the motion that is followed
+   integer, parameter :: branch_crossed = 3   !< this branch, through change points
 
    !> How a step ends. From step_there on it has come to the instant asked for.
    enum, bind(c)
@@ -66,7 +67,7 @@ module following
       enumerator :: step_rests        !< there, on the singular position of the instant before
    end enum
 
-   !> What is certified of one step.
+   !> The certificate of one step.
    type :: branch_t
       integer :: kind = branch_none              !< branch_first, ...
       integer :: substeps = 0                    !< made on the step
@@ -112,25 +113,24 @@ module following
       integer :: ending = step_failed            !< step_failed, ...
       integer :: tries = 0                       !< substeps tried
       type(branch_t) :: branch                   !< what was verified of the substeps made
-      type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< change points; not allocated: none
+      type(diagnostic_t), allocatable :: passed(:)     !< change points passed; not allocated: none
+      type(diagnostic_t), allocatable :: dead_end(:)   !< change points at which it ends; not allocated: none
    end type step_record_t
 
-   !> A limit on one side: instants from `t` on lie beyond it; what there is to say of it. A motion has two, the earlier
-   !> and the later one.
+   !> A limit on one side: instants from `t` on lie beyond it. A motion has two, the earlier and the later one.
    type :: limit_t
       logical :: known = .false.                 !< there is one
       real(wp) :: t = 0.0_wp                     !< time
-      type(diagnostic_t), allocatable :: diagnostics(:)
+      type(diagnostic_t), allocatable :: diagnostics(:)   !< the reason
    end type limit_t
 
 contains
 
-   !> Makes `following` ready for the first instant of `m`. `structure`: that of `m`, whose blocks and geometry it takes
-   !> over; without it one is made.
+   !> Makes a mechanism ready for its first instant. It takes over blocks and geometry of a structure, or makes them.
    subroutine begin_following(following, m, structure)
       type(following_t), intent(out) :: following
       type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(inout), optional :: structure
+      type(structure_t), intent(inout), optional :: structure   !< of the mechanism
       type(structure_t) :: own
 
       if (present(structure)) then
@@ -150,7 +150,7 @@ contains
       call begin_motion(following, m)
    end subroutine begin_following
 
-   !> Moves the structure, and all that has been allocated for it, from `old` to `new`.
+   !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
    subroutine move_memory(old, new)
       type(following_t), intent(inout) :: old, new
 
@@ -160,9 +160,9 @@ contains
       call move_alloc(old%work, new%work)
    end subroutine move_memory
 
-   !> Gives `following`, which has the structure and the geometry of `m`, the state in which nothing is solved yet.
+   !> Puts a mechanism into the state in which nothing is solved yet.
    subroutine begin_motion(following, m)
-      type(following_t), intent(inout) :: following
+      type(following_t), intent(inout) :: following   !< with the structure and the geometry of the mechanism
       type(mechanism_t), intent(in) :: m
       logical :: depends
 
@@ -179,7 +179,7 @@ contains
       following%drives = new_drive_excursion(m, depends)
    end subroutine begin_motion
 
-   !> Solves for the motion at `t`, from the one that is followed or, if none is, nearest to the initial guess.
+   !> Solves for a motion, from the one that is followed or, if none is, nearest to the initial guess.
    subroutine solve_at(following, t)
       type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t              !< parameter of the path: the time, mostly
@@ -194,6 +194,7 @@ contains
             call solve_first(b, x, following%guess, following%work, s, c)
             return
          end if
+
          call predict(following%history, t, s%u, s%change)
          if (s%change > largest_predicted_change) then
             c = nothing_gathered
@@ -208,11 +209,11 @@ contains
       end associate
    end subroutine solve_at
 
-   !> Finds the closure error at `t` itself, from the motion that is followed or, if that is too far, from the initial
+   !> Finds the closure error at an instant, from the motion that is followed or, if that is too far, from the initial
    !> guess. If neither search ends there, the record stays but for its closure error, which is 0.
    subroutine measure_closure_error(following, t)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time of the instant
       type(convergence_t) :: before
 
       before = following%convergence
@@ -225,10 +226,10 @@ contains
       following%convergence%open%value = 0.0_wp
    end subroutine measure_closure_error
 
-   !> Follows the motion to `t`, or finds the first; `step`: how that went.
+   !> Follows the motion in substeps, or finds the first. If no substep can be made, the record says how the step ended.
    subroutine continue_to(following, t, step)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< parameter of the path to which it goes
       type(step_record_t), intent(out) :: step
       real(wp) :: substep, here, longest, allowed, shortest
       integer :: failures, longer
@@ -236,7 +237,7 @@ contains
 
       substep = t - following%t
       longest = abs(substep)
-      shortest = min_substep*longest
+      shortest = min_substep_part*longest
       failures = 0
       longer = 0
       do while (step%tries < max_substeps)
@@ -250,6 +251,7 @@ contains
             substep = allowed
             is_last = abs(substep) >= abs(t - following%t)
          end if
+
          here = merge(t, following%t + substep, is_last)
          call attempt(following, here, step, accepted)
          if (is_last .and. accepted) then
@@ -260,30 +262,32 @@ contains
          grows = accepted .and. (longer < max_longer .or. .not. following%convergence%singular)
          accepted = accepted .and. .not. following%convergence%singular
          if (accepted) call go_on_from(following, here)
+
          if (.not. following%follows) return
-         if (.not. is_solved(following%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
+         if (.not. is_solved(following%convergence) .and. abs(substep) <= small_substep_part*longest) &
+            failures = failures + 1
          longer = merge(merge(0, longer + 1, accepted), max_longer, grows)
          substep = merge(1.5_wp, 0.5_wp, grows)*substep
-         if (abs(substep) <= min_substep*min(longest, abs(t - following%t))) step%ending = step_blocked
+         if (abs(substep) <= min_substep_part*min(longest, abs(t - following%t))) step%ending = step_blocked
          if (step%ending == step_blocked .or. failures > max_failures) return
       end do
       step%ending = step_creeps
    end subroutine continue_to
 
-   !> Solves for the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
+   !> Solves for a motion, and tells whether it is accepted as the continuation of the one that is followed.
    subroutine attempt(following, t, step, accepted)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< parameter of the path
       type(step_record_t), intent(inout) :: step
-      logical, intent(out) :: accepted
+      logical, intent(out) :: accepted       !< it is the continuation, or the first motion
 
       call solve_at(following, t)
       following%iterations = following%iterations + following%convergence%iterations
       accepted = is_solved(following%convergence)
       if (.not. following%follows) return
       accepted = accepted .and. following%convergence%change <= largest_correction
-      ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
-      ! becomes small: no substep would come across.
+      ! Near a change point the inverse grows as substeps shrink, and the part that drives add by leaving their chords
+      ! never becomes small: no substep would come across.
       if (accepted .and. following%state%excursion > 0.0_wp .and. .not. following%convergence%is_certain) &
          call add_excursion(following, t)
       accepted = accepted .and. following%convergence%kantorovich_ratio <= max_kantorovich_ratio
@@ -292,12 +296,13 @@ contains
       if (accepted .and. .not. (following%convergence%keeps_signs .or. following%convergence%singular)) &
          call pass_change_points(following, step)
       accepted = accepted .and. following%convergence%keeps_signs
+
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
       step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, following%convergence%kantorovich_ratio)
    end subroutine attempt
 
-   !> Finds the lengths (0:2, cylinders) at the motion that is followed, with their derivatives.
+   !> Finds the lengths (0:2, cylinders) of the motion that is followed, with their derivatives, in the deck's units.
    function lengths_followed(following) result(lengths)
       type(following_t), intent(in) :: following
       real(wp) :: lengths(0:2, size(following%geometry%cylinders))
@@ -308,7 +313,7 @@ contains
       lengths = lengths_of(following%geometry, s)
    end function lengths_followed
 
-   !> Finds the lengths (0:2, cylinders) in the state `s`.
+   !> Finds the lengths (0:2, cylinders) of a state, with their derivatives, in the deck's units.
    function lengths_of(x, s) result(lengths)
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
@@ -328,12 +333,12 @@ contains
       end do
    end function lengths_of
 
-   !> Finds whether the substep to `t` keeps all cylinders within the bounds of their lengths, also between its ends:
-   !> otherwise it is not `accepted`. A drive that leaves its chord could take a length out of them and back.
+   !> Tells whether a substep keeps all cylinders within the bounds of their lengths, also between its ends: a drive
+   !> that leaves its chord could take a length out of them and back.
    subroutine keep_lengths(following, t, accepted)
       type(following_t), intent(in) :: following
-      real(wp), intent(in) :: t              !< time
-      logical, intent(inout) :: accepted
+      real(wp), intent(in) :: t              !< parameter of the path at the end of the substep
+      logical, intent(inout) :: accepted     !< it keeps them
       real(wp), dimension(0:2, size(following%geometry%cylinders)) :: first, last
       real(wp) :: away
       integer :: k
@@ -341,7 +346,7 @@ contains
       first = lengths_followed(following)
       last = lengths_of(following%geometry, following%state)
       if (following%convergence%singular) last(1:, :) = 0.0_wp
-      away = off_chord*following%state%excursion*following%geometry%equations%length
+      away = length_by_chord*following%state%excursion*following%geometry%equations%length
       do k = 1, size(following%geometry%cylinders)
          associate (bounds => following%geometry%cylinders(k)%bounds)
             accepted = stays_within(bounds, first(:1, k), last(:1, k), t - following%t)
@@ -352,12 +357,12 @@ contains
       end do
    end subroutine keep_lengths
 
-   !> Adds to the Kantorovich ratio of the motion found last at `t` what the drives add by leaving their chords, or by
-   !> not going as they did: a position predicted from their rates is then near another branch, perhaps. A bound at
-   !> hardly any cost is enough mostly.
+   !> Adds to the Kantorovich ratio of the motion found last the part of drives that leave their chords, or do not go as
+   !> they did: a position predicted from their rates may then be near another branch. A bound at hardly any cost is
+   !> enough mostly.
    subroutine add_excursion(following, t)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< parameter of the path of that motion
       real(wp) :: ratio, change, away, off, h, first(3), last(3)
       integer :: i
 
@@ -378,8 +383,8 @@ contains
       end associate
    end subroutine add_excursion
 
-   !> A determinant has changed its sign in the substep. At change points beyond which the motion goes on that is none.
-   !> Apart, since a plain substep has no room to make for the list.
+   !> Passes change points in a substep in which a determinant has changed its sign. Beyond them the motion goes on as
+   !> if the sign were kept. In a procedure of its own, since a plain substep has no room to make for the list.
    subroutine pass_change_points(following, step)
       type(following_t), intent(inout) :: following
       type(step_record_t), intent(inout) :: step
@@ -401,7 +406,7 @@ contains
       end if
    end subroutine pass_change_points
 
-   !> How many change points were passed in the `step`.
+   !> Counts the change points that were passed in a step.
    pure integer function passed_of(step) result(passed)
       type(step_record_t), intent(in) :: step
 
@@ -409,19 +414,18 @@ contains
       if (allocated(step%passed)) passed = size(step%passed)
    end function passed_of
 
-   !> The motion found last, at `t`, is now the one that is followed.
+   !> Makes the motion found last the one that is followed.
    subroutine go_on_from(following, t)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< parameter of the path of that motion
 
       call accept(following%blocks, following%geometry, following%state, following%history)
       following%t = t
       following%follows = .true.
    end subroutine go_on_from
 
-   !> The motion at the place where the `step` began is again the one that is followed: what comes after an instant
-   !> without a motion is as if that had not been asked for. From close to a dead point no step back would be small
-   !> enough.
+   !> Follows the motion again from the place at which a step began: instants after one without a motion are as if that
+   !> had not been asked for. From close to a dead point no step back would be small enough.
    subroutine go_back(following, step)
       type(following_t), intent(inout) :: following
       type(step_record_t), intent(in) :: step
@@ -431,7 +435,7 @@ contains
       following%branch_requests = following%place%branch_requests
    end subroutine go_back
 
-   !> Follows the motion at the `place` again; the motion found last stays.
+   !> Follows the motion at a place again; the motion found last stays.
    subroutine follow_from(following, place)
       type(following_t), intent(inout) :: following
       type(place_t), intent(in) :: place
@@ -440,7 +444,7 @@ contains
       following%history = place%history
    end subroutine follow_from
 
-   !> Notes in `place` where the motion is followed.
+   !> Records the place at which the motion is followed.
    subroutine record_checkpoint(following, place)
       type(following_t), intent(in) :: following
       type(place_t), intent(inout) :: place
@@ -452,7 +456,7 @@ contains
       place%convergence = following%convergence
    end subroutine record_checkpoint
 
-   !> Follows the motion again from the `place`, to which a later step can go back.
+   !> Follows the motion again from a place, to which a later step can go back.
    subroutine return_to(following, place)
       type(following_t), intent(inout) :: following
       type(place_t), intent(in) :: place
@@ -465,10 +469,10 @@ contains
       call record_checkpoint(following, following%place)
    end subroutine return_to
 
-   !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.
+   !> Gives the side of the limit beyond which an instant lies, 1 or 2; 0: beyond none that is known.
    pure integer function limit_before(limits, t) result(k)
-      type(limit_t), intent(in) :: limits(2)
-      real(wp), intent(in) :: t
+      type(limit_t), intent(in) :: limits(2)   !< the earlier and the later one
+      real(wp), intent(in) :: t              !< time of the instant
 
       k = 0
       if (limits(1)%known .and. t <= limits(1)%t) k = 1

@@ -5,8 +5,9 @@
 !>
 !> A configuration can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi.
 !> Here h, the angle that multiplies them, is counted from the nearest zero of the cosine or sine itself, for each row
-!> its own: cos psi = c(h) h with c(h) = -+ sin(h)/h,  sin psi = s(h) h with s(h) = +- sin(h)/h. So h = 0, at which
-!> the print divides by zero and the iteration has a false attractor, is an ordinary position: sin(h)/h is 1 there.
+!> its own: cos psi = c(h) h with c(h) = -+ sin(h)/h,  sin psi = s(h) h with s(h) = +- sin(h)/h. For this reason h = 0,
+!> at which the print divides by zero and the iteration has a false attractor, is an ordinary position: sin(h)/h is 1
+!> there.
 module configuration
    use kinds, only: wp
    use plane_vectors, only: rotated, quarter_turn, pi

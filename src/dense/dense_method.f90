@@ -84,7 +84,7 @@ contains
       type(state_t), intent(in) :: s              !< the motion that the blocks have found
       type(motion_t), intent(inout) :: found      !< at the time found%t, in the deck's units
       !> How the last try ended; the first one if all failed. Iterations are those of all tries. If it is singular, only
-      !> links that drives alone move have velocities.
+      !> links that only drives move have velocities.
       type(convergence_t), intent(out) :: convergence
       type(convergence_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start

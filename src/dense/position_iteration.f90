@@ -40,8 +40,8 @@ module position_iteration
 
 contains
 
-   !> Moves all links to a position where the drives have given values: by Newton's method or by the iteration of 1987,
-   !> (20). If the position is found, the factors are those of the Jacobian, for (21) and (22). They belong to the
+   !> Moves all links to a position at which the drives have given values: by Newton's method or by the iteration of
+   !> 1987, (20). If the position is found, the factors are those of the Jacobian, for (21) and (22). They belong to the
    !> position or, by Newton's method, to one a step of the tolerance's size before. Otherwise they are the factors of
    !> the last matrix.
    subroutine solve_position(system, driven, tolerance, is_matrix, configuration, factors, convergence)

@@ -3,7 +3,7 @@
 !>
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
 !> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles only are
-!> linear: R is 0 there, and links that a prismatic pair ties together turn by the same angle. So
+!> linear: R is 0 there, and links that a prismatic pair ties together turn by one angle. The bounds are
 !>    revolute pair        L = |u| + |w|      body vectors of links that turn
 !>    X, Y drive           L = |u|
 !>    (9), SLIDE drive     L = 2 W + |x_i - x_j|, if the guide turns, otherwise 0

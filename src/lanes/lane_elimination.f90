@@ -6,7 +6,7 @@
 module lane_elimination
    use kinds, only: wp
    use block_solver, only: closed_level, step_tolerance
-   use lane_sines, only: width
+   use lane_sines, only: lane_count
    implicit none
    private
    public :: max_order, make_room, correct, substitute, judge_factors
@@ -22,10 +22,10 @@ contains
 
    !> Makes the second of two equations idle. It stays so in all iterations.
    pure subroutine make_room(values, a, corrections, right_sides)
-      real(wp), intent(inout) :: values(width, max_order)        !< of the unknowns (rad, unit of the loop)
-      real(wp), intent(inout) :: a(width, max_order**2)          !< the Jacobian (2, 2), by columns
-      real(wp), intent(inout) :: corrections(width, max_order)   !< (lanes, unknowns) of the values
-      real(wp), intent(inout) :: right_sides(width, max_order)   !< (lanes, rows) for the velocities
+      real(wp), intent(inout) :: values(lane_count, max_order)        !< of the unknowns (rad, unit of the loop)
+      real(wp), intent(inout) :: a(lane_count, max_order**2)          !< the Jacobian (2, 2), by columns
+      real(wp), intent(inout) :: corrections(lane_count, max_order)   !< (lanes, unknowns) of the values
+      real(wp), intent(inout) :: right_sides(lane_count, max_order)   !< (lanes, rows) for the velocities
 
       values(:, 2) = 0.0_wp
       a(:, 2:3) = 0.0_wp
@@ -37,17 +37,17 @@ contains
    !> Finds the corrections, to be subtracted from the values, and tells which lanes need another iteration. Residuals
    !> of rounding have nothing to correct: their corrections are 0.
    pure subroutine correct(coarse, values, a, exchanged, corrections, right_sides, going)
-      real(wp), intent(in) :: coarse(width)                      !< the least size that the values count as
-      real(wp), intent(in) :: values(width, max_order)           !< of the unknowns (rad, unit of the loop)
-      real(wp), intent(inout) :: a(width, max_order**2)          !< the Jacobian (2, 2) by columns; then its factors
-      real(wp), intent(inout) :: exchanged(width)                !< 1: the two rows were exchanged; otherwise 0
-      real(wp), intent(inout) :: corrections(width, max_order)   !< the residuals; then the corrections
-      real(wp), intent(inout) :: right_sides(width, max_order)   !< other right-hand sides; then their solutions
-      real(wp), intent(out) :: going(width)                      !< above 0: another iteration is needed
+      real(wp), intent(in) :: coarse(lane_count)                      !< the least size that the values count as
+      real(wp), intent(in) :: values(lane_count, max_order)           !< of the unknowns (rad, unit of the loop)
+      real(wp), intent(inout) :: a(lane_count, max_order**2)          !< the Jacobian (2, 2), by columns; then factors
+      real(wp), intent(inout) :: exchanged(lane_count)                !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(inout) :: corrections(lane_count, max_order)   !< the residuals; then the corrections
+      real(wp), intent(inout) :: right_sides(lane_count, max_order)   !< other right-hand sides; then their solutions
+      real(wp), intent(out) :: going(lane_count)                      !< above 0: another iteration is needed
       real(wp) :: p1, p2, q1, q2, x, y, first, second, residual, rounding
       integer :: l
 
-      do l = 1, width
+      do l = 1, lane_count
          residual = max(abs(corrections(l, 1)), abs(corrections(l, 2)))
          rounding = closed_level*max(coarse(l), abs(values(l, 1)), abs(values(l, 2)))
 
@@ -86,13 +86,13 @@ contains
 
    !> Solves the equations with their factors.
    pure subroutine substitute(a, exchanged, right_sides)
-      real(wp), intent(in) :: a(width, max_order**2)             !< the factors, as `correct` leaves them
-      real(wp), intent(in) :: exchanged(width)                   !< 1: the two rows were exchanged; otherwise 0
-      real(wp), intent(inout) :: right_sides(width, max_order)   !< the right-hand sides; then their solutions
+      real(wp), intent(in) :: a(lane_count, max_order**2)             !< the factors, as `correct` leaves them
+      real(wp), intent(in) :: exchanged(lane_count)                   !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(inout) :: right_sides(lane_count, max_order)   !< the right-hand sides; then their solutions
       real(wp) :: first, second
       integer :: l
 
-      do l = 1, width
+      do l = 1, lane_count
          first = merge(right_sides(l, 2), right_sides(l, 1), exchanged(l) > 0.5_wp)
          second = merge(right_sides(l, 1), right_sides(l, 2), exchanged(l) > 0.5_wp)
          second = (second - first*a(l, 2))/a(l, 4)
@@ -103,15 +103,15 @@ contains
 
    !> Finds from the factors the pivots, the sign of the determinant and the size of the inverse.
    pure subroutine judge_factors(a, exchanged, least, largest, sign_of, inverse)
-      real(wp), intent(in) :: a(width, max_order**2)   !< the factors, as `correct` leaves them
-      real(wp), intent(in) :: exchanged(width)         !< 1: the two rows were exchanged; otherwise 0
-      real(wp), intent(out) :: least(width)            !< |pivot|, the smaller one
-      real(wp), intent(out) :: largest(width)          !< |pivot|, the larger one
-      real(wp), intent(out) :: sign_of(width)          !< of the determinant: 1 or -1
-      real(wp), intent(out) :: inverse(width)          !< |A^-1|: the largest sum of |elements| of a row
+      real(wp), intent(in) :: a(lane_count, max_order**2)   !< the factors, as `correct` leaves them
+      real(wp), intent(in) :: exchanged(lane_count)         !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(out) :: least(lane_count)            !< |pivot|, the smaller one
+      real(wp), intent(out) :: largest(lane_count)          !< |pivot|, the larger one
+      real(wp), intent(out) :: sign_of(lane_count)          !< of the determinant: 1 or -1
+      real(wp), intent(out) :: inverse(lane_count)          !< |A^-1|: the largest sum of |elements| of a row
       integer :: l
 
-      do l = 1, width
+      do l = 1, lane_count
          least(l) = min(abs(a(l, 1)), abs(a(l, 4)))
          largest(l) = max(abs(a(l, 1)), abs(a(l, 4)))
          sign_of(l) = sign(1.0_wp, a(l, 1))*sign(1.0_wp, a(l, 4))*(1.0_wp - 2.0_wp*exchanged(l))

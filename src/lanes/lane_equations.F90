@@ -1,8 +1,8 @@
 !> The equations of one block in all lanes: the text of equations.inc, compiled for one number a lane.
-#define NUMBER real(wp), dimension(width)
-#define LIST(list) list(width, *)
+#define NUMBER real(wp), dimension(lane_count)
+#define LIST(list) list(lane_count, *)
 #define AT(list,k) list(:, k)
-#define DRIVES(values) values(width, 0:2, 0:*)
+#define DRIVES(values) values(lane_count, 0:2, 0:*)
 #define DRIVE_AT(values,order,k) values(:, order, k)
 #define ZERO 0.0_wp
 #define ONE 1.0_wp
@@ -11,7 +11,7 @@ module lane_equations
    use kinds, only: wp
    use block_matrix, only: entries_of
    use blocks, only: block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
-   use lane_sines, only: width, sines
+   use lane_sines, only: lane_count, sines
    use lane_state, only: lanes_t, vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    implicit none
    private
@@ -57,9 +57,9 @@ contains
       type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i                        !< the number of the block
       integer, intent(in) :: n                        !< its unknowns, as many as its rows
-      real(wp), intent(inout) :: a(width, n*n)        !< the Jacobian, by columns
-      real(wp), intent(inout) :: residuals(width, n)  !< (lanes, rows) in rad or the unit of the loop
-      real(wp), intent(inout) :: right_side(width, n) !< (lanes, rows) the residuals' unit per unit of time
+      real(wp), intent(inout) :: a(lane_count, n*n)        !< the Jacobian, by columns
+      real(wp), intent(inout) :: residuals(lane_count, n)  !< (lanes, rows) in rad or the unit of the loop
+      real(wp), intent(inout) :: right_side(lane_count, n) !< (lanes, rows) the residuals' unit per unit of time
 
       associate (b => lanes%blocks)
          call assemble(b%list(i), lanes%block(i)%has_right_sides, b%loops, lanes%numbers, b%body_vectors, lanes%d, &
@@ -74,7 +74,7 @@ contains
       type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: i                        !< the number of the block
       integer, intent(in) :: n                        !< its unknowns, as many as its rows
-      real(wp), intent(inout) :: right_side(width, n) !< (lanes, rows) rad or unit of the loop, per time squared
+      real(wp), intent(inout) :: right_side(lane_count, n) !< (lanes, rows) rad or unit of the loop, per time squared
       integer :: m
 
       associate (b => lanes%blocks)

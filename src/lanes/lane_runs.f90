@@ -16,12 +16,12 @@ module lane_runs
    use rows, only: finished_row_t
    use counts, only: counts_t, record_flag
    use system_calls, only: signal_received
-   use lane_sines, only: width
+   use lane_sines, only: lane_count
    use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
    use lane_steps, only: step_check_t, solve_lanes, accept_lanes, keep_lane
    implicit none
    private
-   public :: lane_run_t, begin_run, run_lanes, width
+   public :: lane_run_t, begin_run, run_lanes, lane_count
 
    !> Instants that the ordinary analysis solves after a lane is refused for the first time: a prediction takes three.
    !> Each further time they are twice as many.
@@ -65,7 +65,7 @@ contains
       type(lane_run_t), intent(inout) :: runs(:)   !< at most as many as there are lanes; run i has lane i
       type(lanes_t), intent(inout) :: lanes
       type(step_check_t) :: check
-      real(wp), dimension(width) :: t, t0, span, at, all_steps, goes_on
+      real(wp), dimension(lane_count) :: t, t0, span, at, all_steps, goes_on
       integer :: i, k, steps
       logical :: in_simd_lane, searches
 
@@ -76,7 +76,7 @@ contains
       ! Lanes without a variant do what one of the others does: their numbers must be numbers.
       if (any(runs%in_simd_lane)) then
          k = findloc(runs%in_simd_lane, .true., dim=1)
-         do i = 1, width
+         do i = 1, lane_count
             in_simd_lane = .false.
             if (i <= size(runs)) in_simd_lane = runs(i)%in_simd_lane
             if (.not. in_simd_lane) call load_run(runs(k), lanes, i, in_simd_lane)

@@ -9,10 +9,10 @@ module lane_sines
    use kinds, only: wp
    implicit none
    private
-   public :: width, sines, max_angle
+   public :: lane_count, sines, max_angle
 
    !> Lanes. With half as many, the work that is done once for all lanes takes a tenth of a step more.
-   integer, parameter :: width = 16
+   integer, parameter :: lane_count = 16
    !> rad: n has at most 20 digits for an angle up to this one.
    real(wp), parameter :: max_angle = 1.0e6_wp
    !> Whole numbers of the size of a real, whose first bit, at `sign_at`, is its sign.
@@ -34,9 +34,9 @@ contains
 
    !> Finds cosine and sine of angles. Other kinds of reals than double take the run-time library's.
    pure subroutine sines(angles, cosine_of, sine_of)
-      real(wp), intent(in) :: angles(width)      !< rad, at most `max_angle`
-      real(wp), intent(out) :: cosine_of(width)  !< of each angle
-      real(wp), intent(out) :: sine_of(width)    !< of each angle
+      real(wp), intent(in) :: angles(lane_count)      !< rad, at most `max_angle`
+      real(wp), intent(out) :: cosine_of(lane_count)  !< of each angle
+      real(wp), intent(out) :: sine_of(lane_count)    !< of each angle
       real(wp) :: n, t, u, r, rest, z, half, sine, cosine
       integer(bits) :: quadrant, of_sine, of_cosine, exchanged
       integer :: l
@@ -46,7 +46,7 @@ contains
          sine_of = sin(angles)
          return
       end if
-      do l = 1, width
+      do l = 1, lane_count
          n = angles(l)*two_over_pi + whole
          quadrant = transfer(n, quadrant)
          n = n - whole

@@ -1,7 +1,7 @@
 !> The motions of several mechanisms of one structure, each in a lane: `state_t` and `history_t` as arrays whose first
 !> index is the lane. A lane takes over from a mechanism whose last three motions are at equal steps. It gives back the
 !> motion of its last instant.
-#define NUMBER real(wp), dimension(width)
+#define NUMBER real(wp), dimension(lane_count)
 #define IS(value)
 module lane_state
    use kinds, only: wp
@@ -9,14 +9,14 @@ module lane_state
    use drive_path, only: drive_path_t
    use blocks, only: blocks_t
    use following, only: following_t
-   use lane_sines, only: width
+   use lane_sines, only: lane_count
    use lane_elimination, only: max_order
    implicit none
    private
    public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, unload_lane, depth
    public :: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
 
-   ! What equations are made of, one number a lane.
+   ! The parts of equations, one number a lane.
 #include "number_types.inc"
 
    !> Motions that a lane has room for: the last three, for a prediction, and the next.
@@ -24,9 +24,9 @@ module lane_state
 
    !> A block.
    type :: lane_block_t
-      real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
+      real(wp), dimension(lane_count) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
       logical :: has_right_sides = .false.              !< in any lane not all its equations are = 0
-      real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `jacobian_t`, by slots
+      real(wp), dimension(lane_count, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `jacobian_t`, by slots
    end type lane_block_t
 
    !> The lanes of the variants of one set. Lengths of each lane are in the unit of its own analysis. Numbers of the
@@ -35,12 +35,12 @@ module lane_state
       type(blocks_t) :: blocks
       integer, allocatable :: moving(:), predicted(:)
       logical :: is_polynomial = .true.                 !< the laws have no terms
-      type(drive_path_t) :: path(width)                 !< of the drives; its units are as `unit`
+      type(drive_path_t) :: path(lane_count)                 !< of the drives; its units are as `unit`
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
       real(wp), allocatable :: unit(:, :)               !< (lanes, drives) see `drive_path_t`
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
-      real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
-      real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
+      real(wp) :: t(lane_count, 0:depth - 1) = 0.0_wp        !< times, by slots
+      real(wp) :: excursion(lane_count) = 0.0_wp             !< of the drives in a step
       integer :: slot(0:depth - 1) = [0, 1, 2, 3]       !< of the motions, the latest first
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
       !> (lanes, value and rate and acceleration, slots, unknowns) that are remembered
@@ -83,10 +83,10 @@ contains
       lanes%moving = following%blocks%moving
       lanes%predicted = following%history%predicted
       associate (b => lanes%blocks, drives => size(following%path%laws))
-         allocate (lanes%polynomial(width, 3, drives), lanes%unit(width, drives))
-         allocate (lanes%drive(width, 0:2, 0:drives), source=0.0_wp)
+         allocate (lanes%polynomial(lane_count, 3, drives), lanes%unit(lane_count, drives))
+         allocate (lanes%drive(lane_count, 0:2, 0:drives), source=0.0_wp)
          allocate (lanes%block(size(b%list)))
-         allocate (lanes%past(width, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
+         allocate (lanes%past(lane_count, 3, 0:depth - 1, 0:b%unknowns), source=0.0_wp)
          allocate (lanes%u(0:b%unknowns), source=unknown_t(0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp))
          associate (none => vector_t(0.0_wp, 0.0_wp))
             allocate (lanes%rows(size(b%rows)), source=row_numbers_t(0.0_wp, 1.0_wp))

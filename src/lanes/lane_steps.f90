@@ -4,12 +4,12 @@
 !> from which it came solves the instant. No lane depends on another.
 module lane_steps
    use kinds, only: wp
-   use predictor, only: largest_predicted_change, weight, weight2
+   use predictor, only: largest_predicted_change, rate_weight, acceleration_weight
    use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
    use following, only: largest_correction
    use drive_path, only: drive_at
-   use lane_sines, only: width, max_angle
+   use lane_sines, only: lane_count, max_angle
    use lane_elimination, only: max_order, make_room, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, unknown_t, depth
    use lane_equations, only: set_lane_direction, find_lane_direct, find_lane_known, assemble_lanes, lane_accelerations
@@ -19,12 +19,12 @@ module lane_steps
 
    !> A lane that needs more iterations is refused.
    integer, parameter :: max_lane_iterations = 5
-   !> What is certified of each lane's step.
+   !> The certificate of each lane's step.
    type :: step_check_t
-      real(wp) :: refused(width) = 0.0_wp      !< above 0: lanes cannot certify that it continues the motion
-      real(wp) :: correction(width) = 0.0_wp   !< the largest correction of a predicted value, rad or unit of length
-      real(wp) :: ratio(width) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
-      real(wp) :: growth(width) = 0.0_wp       !< of that ratio per excursion of the drives
+      real(wp) :: refused(lane_count) = 0.0_wp      !< above 0: lanes cannot certify that it continues the motion
+      real(wp) :: correction(lane_count) = 0.0_wp   !< the largest of a predicted value, rad or unit of length
+      real(wp) :: ratio(lane_count) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
+      real(wp) :: growth(lane_count) = 0.0_wp       !< of that ratio per excursion of the drives
    end type step_check_t
 
 contains
@@ -32,7 +32,7 @@ contains
    !> Solves all lanes at new times. A lane whose motion is not certified is refused.
    subroutine solve_lanes(lanes, t, check)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)       !< times, each a step after the latest motion of its lane
+      real(wp), intent(in) :: t(lane_count)       !< times, each a step after the latest motion of its lane
       type(step_check_t), intent(out) :: check
       integer :: k, i
 
@@ -54,7 +54,7 @@ contains
    !> Finds value, rate and acceleration of the drives.
    subroutine set_drives(lanes, t)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)       !< times
+      real(wp), intent(in) :: t(lane_count)       !< times
       integer :: i, lane
 
       do i = 1, size(lanes%unit, 2)
@@ -65,7 +65,7 @@ contains
                lanes%drive(:, 2, i) = c(:, 3)*unit
             end associate
          else
-            do lane = 1, width
+            do lane = 1, lane_count
                lanes%drive(lane, :, i) = drive_at(lanes%path(lane), i, t(lane))*lanes%unit(lane, i)
             end do
          end if
@@ -75,9 +75,9 @@ contains
    !> Predicts all unknowns that are iterated, from the last three motions, with the weights of `predictor`.
    subroutine predict_lanes(lanes, t, check)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)       !< times
+      real(wp), intent(in) :: t(lane_count)       !< times
       type(step_check_t), intent(inout) :: check
-      real(wp) :: step(width)
+      real(wp) :: step(lane_count)
       integer :: k, u
 
       step = t - lanes%t(:, lanes%slot(0))
@@ -91,18 +91,19 @@ contains
 
    !> Predicts an unknown from its last three motions. Too large a change is refused, and too large a value.
    pure subroutine predict_one(step, latest, second, third, values, refused)
-      real(wp), intent(in) :: step(width)       !< time from the latest motion
-      real(wp), intent(in) :: latest(width, 3)  !< value, rate, acceleration (rad or unit of length, unit of time)
-      real(wp), intent(in) :: second(width, 3)  !< of the motion before
-      real(wp), intent(in) :: third(width, 3)   !< of the motion before `second`
-      real(wp), intent(inout) :: values(width)  !< the prediction, in rad or the unit of length
-      real(wp), intent(inout) :: refused(width) !< above 0: the lane is refused
+      real(wp), intent(in) :: step(lane_count)       !< time from the latest motion
+      real(wp), intent(in) :: latest(lane_count, 3)  !< value, rate, acceleration (rad or unit of length, unit of time)
+      real(wp), intent(in) :: second(lane_count, 3)  !< of the motion before
+      real(wp), intent(in) :: third(lane_count, 3)   !< of the motion before `second`
+      real(wp), intent(inout) :: values(lane_count)  !< the prediction, in rad or the unit of length
+      real(wp), intent(inout) :: refused(lane_count) !< above 0: the lane is refused
       real(wp) :: d
       integer :: l
 
-      do l = 1, width
-         d = step(l)*(weight(0)*latest(l, 2) + weight(1)*second(l, 2) + weight(2)*third(l, 2) &
-            + step(l)*(weight2(0)*latest(l, 3) + weight2(1)*second(l, 3) + weight2(2)*third(l, 3)))
+      do l = 1, lane_count
+         d = step(l)*(rate_weight(0)*latest(l, 2) + rate_weight(1)*second(l, 2) + rate_weight(2)*third(l, 2) &
+            + step(l)*(acceleration_weight(0)*latest(l, 3) + acceleration_weight(1)*second(l, 3) &
+            + acceleration_weight(2)*third(l, 3)))
          values(l) = latest(l, 1) + d
          refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_predicted_change) &
             + merge(0.0_wp, 1.0_wp, abs(latest(l, 1) + d) <= max_angle)
@@ -116,8 +117,8 @@ contains
       integer, intent(in) :: n   !< its unknowns
       type(step_check_t), intent(inout) :: check
       ! Of fixed size: arrays that are made for each block take longer than its elimination.
-      real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width), &
-         start(width, max_order), change(width)
+      real(wp) :: a(lane_count, max_order**2), d(lane_count, max_order), v(lane_count, max_order), &
+         exchanged(lane_count), start(lane_count, max_order), change(lane_count)
       integer :: k
 
       do k = 1, n
@@ -146,13 +147,13 @@ contains
       type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: i                                   !< the number of the block
       integer, intent(in) :: n                                   !< its unknowns
-      real(wp), intent(in) :: start(width, n)                    !< the predicted values, rad or unit of length
-      real(wp), intent(inout) :: a(width, max_order**2)          !< the factors of the last Jacobian
-      real(wp), intent(inout) :: corrections(width, max_order)   !< the last ones, not applied yet
-      real(wp), intent(inout) :: right_sides(width, max_order)   !< the velocities
-      real(wp), intent(inout) :: exchanged(width)                !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(in) :: start(lane_count, n)                    !< the predicted values, rad or unit of length
+      real(wp), intent(inout) :: a(lane_count, max_order**2)          !< the factors of the last Jacobian
+      real(wp), intent(inout) :: corrections(lane_count, max_order)   !< the last ones, not applied yet
+      real(wp), intent(inout) :: right_sides(lane_count, max_order)   !< the velocities
+      real(wp), intent(inout) :: exchanged(lane_count)                !< 1: the two rows were exchanged; otherwise 0
       type(step_check_t), intent(inout) :: check
-      real(wp) :: u(width, max_order), going(width)
+      real(wp) :: u(lane_count, max_order), going(lane_count)
       integer :: iteration, k
 
       u(:, :n) = start
@@ -177,22 +178,22 @@ contains
    !> Applies the last correction of an unknown and its rate. The direction of an angle turns by the correction.
    pure subroutine turn(is_angle, correction, rate, start, unknown, change)
       logical, intent(in) :: is_angle            !< the unknown is an angle
-      real(wp), intent(in) :: correction(width)  !< to be subtracted, rad or unit of length
-      real(wp), intent(in) :: rate(width)        !< rad or unit of length, per unit of time
-      real(wp), intent(in) :: start(width)       !< the predicted value, rad or unit of length
+      real(wp), intent(in) :: correction(lane_count)  !< to be subtracted, rad or unit of length
+      real(wp), intent(in) :: rate(lane_count)        !< rad or unit of length, per unit of time
+      real(wp), intent(in) :: start(lane_count)       !< the predicted value, rad or unit of length
       type(unknown_t), intent(inout) :: unknown
-      real(wp), intent(inout) :: change(width)   !< the largest |correction| of a prediction in the block so far
+      real(wp), intent(inout) :: change(lane_count)   !< the largest |correction| of a prediction in the block so far
       real(wp) :: x
       integer :: l
 
-      do l = 1, width
+      do l = 1, lane_count
          x = unknown%value(l) - correction(l)
          unknown%value(l) = x
          unknown%rate(l) = rate(l)
          change(l) = max(change(l), abs(x - start(l)))
       end do
       if (.not. is_angle) return
-      do l = 1, width
+      do l = 1, lane_count
          x = unknown%c(l)
          unknown%c(l) = x + correction(l)*unknown%s(l)
          unknown%s(l) = unknown%s(l) - correction(l)*x
@@ -205,18 +206,18 @@ contains
       integer, intent(in) :: n                          !< unknowns of the block
       integer, intent(in) :: before                     !< the slot of the latest motion
       integer, intent(in) :: next                       !< the slot of the motion that is judged
-      real(wp), intent(in) :: a(width, max_order**2)    !< the factors of its Jacobian
-      real(wp), intent(in) :: exchanged(width)          !< 1: the two rows were exchanged; otherwise 0
-      real(wp), intent(in) :: change(width)             !< the largest |correction| of a prediction in the block
+      real(wp), intent(in) :: a(lane_count, max_order**2)    !< the factors of its Jacobian
+      real(wp), intent(in) :: exchanged(lane_count)          !< 1: the two rows were exchanged; otherwise 0
+      real(wp), intent(in) :: change(lane_count)             !< the largest |correction| of a prediction in the block
       type(lane_block_t), intent(inout) :: block
       type(step_check_t), intent(inout) :: check
-      real(wp) :: largest(width), sign_of(width)
+      real(wp) :: largest(lane_count), sign_of(lane_count)
       integer :: l
 
       call judge_factors(a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
       ! One equation has no other pivot to compare with.
       if (n == 1) largest = block%lipschitz
-      do l = 1, width
+      do l = 1, lane_count
          check%refused(l) = check%refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*block%sign_of(l) > 0.0_wp) &
             + merge(0.0_wp, 1.0_wp, block%pivot(l, next) >= suspicious_pivot*max(largest(l), 1.0_wp))
          check%correction(l) = max(check%correction(l), change(l))
@@ -229,7 +230,7 @@ contains
    !> Makes the motions found last the latest of their lanes.
    subroutine accept_lanes(lanes, t)
       type(lanes_t), intent(inout) :: lanes
-      real(wp), intent(in) :: t(width)       !< their times
+      real(wp), intent(in) :: t(lane_count)       !< their times
       integer :: k, u
 
       lanes%slot = [lanes%slot(depth - 1), lanes%slot(:depth - 2)]

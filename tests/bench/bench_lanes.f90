@@ -6,7 +6,7 @@ module bench_lanes
    use structure, only: structure_report_t, check_structure
    use failures, only: failure_t
    use set_analysis, only: make_set_analysis
-   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
+   use lane_runs, only: lane_run_t, begin_run, run_lanes, lane_count
    use lane_state, only: lanes_t
    use lane_sines, only: max_angle
    use study, only: seconds
@@ -72,13 +72,13 @@ contains
       type(lanes_t) :: lanes
       integer :: i
 
-      allocate (runs(width))
+      allocate (runs(lane_count))
       m(1) = s%m
       m(1)%steps = steps_of_turn
       m(1)%t1 = m(1)%t0 + steps_of_turn*s%step
       m(1)%at = [real(wp) ::]
       m(1)%requests%extremes = extremes
-      do i = 1, width
+      do i = 1, lane_count
          call check_structure(m, findings, failure)
          runs(i)%m = m(1)
          call make_set_analysis(runs(i)%m, runs(i)%s, findings(1))
@@ -86,7 +86,7 @@ contains
       end do
       time = seconds()
       call run_lanes(runs, lanes)
-      time = (seconds() - time)/(steps_of_turn*width)
+      time = (seconds() - time)/(steps_of_turn*lane_count)
       if (.not. all(runs%is_over) .or. any(runs%counts%flagged > 0)) error stop 'A VARIANT OF THE BENCH HAS NO MOTION'
    end function time_of
 

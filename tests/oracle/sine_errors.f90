@@ -3,7 +3,7 @@ module sine_errors
    use, intrinsic :: iso_fortran_env, only: real128
    use kinds, only: wp
    use dice, only: dice_t, new_dice, between
-   use lane_sines, only: width, sines
+   use lane_sines, only: lane_count, sines
    implicit none
    private
    public :: largest_sine_error
@@ -16,17 +16,17 @@ contains
       integer, intent(in) :: count
       real(wp), intent(in) :: most
       type(dice_t) :: d
-      real(wp) :: x(width), c(width), s(width)
+      real(wp) :: x(lane_count), c(lane_count), s(lane_count)
       integer :: i, l
 
       d = new_dice(1)
       largest = 0.0_wp
-      do i = 1, (count + width - 1)/width
-         do l = 1, width
+      do i = 1, (count + lane_count - 1)/lane_count
+         do l = 1, lane_count
             x(l) = between(d, -most, most)
          end do
          call sines(x, c, s)
-         do l = 1, width
+         do l = 1, lane_count
             largest = max(largest, error_of(sin(real(x(l), real128)), s(l)), error_of(cos(real(x(l), real128)), c(l)))
          end do
       end do

@@ -63,11 +63,7 @@ equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: r
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 # Each dummy has its meaning, unit and shape where it is declared, but for interfaces of LAPACK and these files.
 unexplained='lapack_routines'
-unexplained="$unexplained|blocks/block_diagnostics|blocks/block_equations|blocks/block_rank|blocks/block_solver"
-unexplained="$unexplained|blocks/block_state|blocks/branch_switching|blocks/convergence|blocks/equations"
-unexplained="$unexplained|blocks/initial_estimate|blocks/levenberg_marquardt|blocks/link_motion|blocks/predictor"
-unexplained="$unexplained|blocks/singular_position|continuation/analysis|continuation/change_point_passage"
-unexplained="$unexplained|continuation/drive_deviation|continuation/following|deck/deck_lengths|results/animation"
+unexplained="$unexplained|continuation/change_point_passage|deck/deck_lengths|results/animation"
 unexplained="$unexplained|results/assembly_table|results/circuits_picture|results/circuits_table"
 unexplained="$unexplained|results/column_table|results/dxf|results/extremes_table|results/listing|results/phrases"
 unexplained="$unexplained|results/picture|results/solver_log|results/svg|results/variant_rows"
