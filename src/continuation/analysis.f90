@@ -44,7 +44,7 @@ module analysis
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: go_by_value, leave
    use scales, only: is_length
-   use cylinders, only: cylinder_length, is_out_of_stroke
+   use cylinders, only: cylinder_length, is_out_of_stroke, rounded
    use following, only: lengths_followed, following_t, step_record_t, step_blocked, step_creeps, step_there, &
       step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
       go_on_from, go_back, place_t, record_checkpoint, return_to, passed_of, limit_t, limit_before, branch_t, &
@@ -554,10 +554,12 @@ contains
       nearest = near_limit_part*abs(t - analysis%place%t)
       do k = 1, size(analysis%geometry%cylinders)
          associate (bounds => analysis%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
+            if (abs(rate) <= rounded*maxval(abs(lengths(1, :)))) cycle   ! another drive holds it
             do side = 1, 2
-               ! It may begin out of its stroke.
-               way = merge(0.0_wp, bounds(side) - length, length <= bounds(1) .or. length >= bounds(2))
-               if (bounds(side) >= huge(way) .or. .not. abs(rate) > 0.0_wp .or. abs(way) > nearest*abs(rate)) cycle
+               if (bounds(side) >= huge(1.0_wp)) cycle
+               way = bounds(side) - length
+               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! as it begins
+               if (abs(way) > nearest*abs(rate)) cycle
                left = way/rate
                if (left*sign(1.0_wp, t - analysis%t) < 0.0_wp) cycle
                nearest = abs(left)

@@ -6,7 +6,7 @@ module cylinders
    use instant_centres, only: seen_from
    implicit none
    private
-   public :: cylinder_t, cylinders_of, cylinder_length, cylinder_motion, stays_within, is_out_of_stroke
+   public :: cylinder_t, cylinders_of, cylinder_length, cylinder_motion, stays_within, is_out_of_stroke, rounded
 
    !> A cylinder. Lengths are in the deck's unit.
    type :: cylinder_t
@@ -17,6 +17,9 @@ module cylinders
       real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< its least and greatest length
       real(wp) :: bounds(2) = [0.0_wp, huge(1.0_wp)]   !< between them its length stays in a motion that is followed
    end type cylinder_t
+
+   !> A length that a card gives is known to some roundings: by this part.
+   real(wp), parameter :: rounded = 64.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -60,8 +63,8 @@ contains
       length = matmul(one%along, r)
    end function cylinder_motion
 
-   !> Tells whether a length stays within bounds between two instants. Its motion is taken as the cubic that has the
-   !> values and rates of both instants.
+   !> Tells whether a length stays within bounds between two instants, but for rounding: a cylinder may be drawn or held
+   !> at an end of its stroke. Its motion is taken as the cubic that has the values and rates of both instants.
    pure logical function stays_within(bounds, first, last, time) result(stays)
       real(wp), intent(in) :: bounds(2)      !< least and greatest length
       real(wp), intent(in) :: first(0:1), last(0:1)   !< length and its rate at the first and at the last instant
@@ -69,7 +72,7 @@ contains
       real(wp) :: c(0:3), u(2), discriminant
       integer :: k
 
-      stays = last(0) > bounds(1) .and. last(0) < bounds(2)
+      stays = last(0)*(1.0_wp + rounded) > bounds(1) .and. last(0)*(1.0_wp - rounded) < bounds(2)
       if (.not. stays) return
       c = [first(0), time*first(1), 3.0_wp*(last(0) - first(0)) - time*(2.0_wp*first(1) + last(1)), &
          2.0_wp*(first(0) - last(0)) + time*(first(1) + last(1))]
@@ -83,7 +86,7 @@ contains
       do k = 1, 2
          if (.not. (u(k) > 0.0_wp .and. u(k) < 1.0_wp)) cycle
          associate (length => c(0) + u(k)*(c(1) + u(k)*(c(2) + u(k)*c(3))))
-            stays = stays .and. length > bounds(1) .and. length < bounds(2)
+            stays = stays .and. length*(1.0_wp + rounded) > bounds(1) .and. length*(1.0_wp - rounded) < bounds(2)
          end associate
       end do
    end function stays_within
@@ -92,8 +95,6 @@ contains
    pure logical function is_out_of_stroke(stroke, length) result(is)
       real(wp), intent(in) :: stroke(2)      !< least and greatest length
       real(wp), intent(in) :: length         !< of the cylinder, in the deck's unit
-      !> A length that a card gives is known to some roundings.
-      real(wp), parameter :: rounded = 64.0_wp*epsilon(1.0_wp)
 
       is = length < stroke(1)*(1.0_wp - rounded) .or. length > stroke(2) + rounded*min(stroke(2), length)
    end function is_out_of_stroke

@@ -119,6 +119,20 @@ equal 'a stroke: RANGE' '  MIN  -8.674586115 DEG   CYLINDER RAM: OUT OF STROKE
   MAX  11.75515298 DEG   CYLINDER RAM: OUT OF STROKE' "$(sed -n '/^ ANGLE BOOM/,/^$/p' "$w/out" | grep -E 'MIN|MAX' | cut -c2-)"
 equal 'a stroke: assemblies' '1 1' "$(grep -c '^ ASSEMBLY ' "$w/out") $(sed -n 's/^ --- ASSEMBLIES WITH A CYLINDER.*: //p' "$w/out")"
 equal 'a stroke: circuits' ' 1       1       1             TURNS FULLY, CLOSES AFTER 1 TURN' "$(grep 'TURNS FULLY' "$w/out")"
+# Two cylinders, drawn 2 long, at an end of their strokes; then beyond an end, which leaves no range.
+ends() {
+   card UNITS M DEG S; card GROUND BASE; card LINK BOOM; card LINK BARREL; card LINK ROD; card LINK ARM; card LINK BARREL2; card LINK ROD2
+   card JOINT O BASE BOOM 0.0 0.0; card JOINT F BASE BARREL 2.0 0.0; card JOINT E ROD BOOM 3.2 1.6; card CYLINDER F E RAM "$1" "$2"
+   card JOINT A BOOM ARM 5.0 0.0; card JOINT G BARREL2 BOOM 7.0 0.0; card JOINT H ROD2 ARM 8.2 1.6; card CYLINDER G H RAM2 "$1" "$2"
+   card DRIVE SLIDE RAM '' '' 0.1; card DRIVE SLIDE RAM2 '' '' 0.1; card AT '' '' '' 0.0; card RANGE; card END
+}
+for case in '2.0 2.8 2.000000000 2.800000000' '1.6 2.0 1.600000000 2.000000000' '2.1 2.8 2.100000000 2.100000000' '1.7 1.9 1.900000000 1.900000000'; do
+   set -- $case
+   ends "$1" "$2" > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out" 2>&1
+   equal "ends of strokes $1 $2: RANGE" "RAM $3 RAM $4 RAM RAM2 $3 RAM2 $4 RAM2" "$(awk '/^ SLIDE RAM/ && NF == 2 { printf "%s%s", n++ ? " " : "", $2 }
+      /^   (MIN|MAX) / { sub(/:/, "", $5); printf " %s %s", $2, $5 }' "$w/out")"
+done
 # A step over the length 0, with both sides solved, is not made: both eyes at one radius.
 through() {
    card UNITS M DEG S; card GROUND BASE; card LINK GATE; card LINK BARREL; card LINK ROD
