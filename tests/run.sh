@@ -50,7 +50,7 @@ parts() {
    all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250
-   relations between runs|220|tests/system/relations.sh --short
+   relations between runs|260|tests/system/relations.sh --short
    assemblies and runs|450|tests/system/assembly_relations.sh
    mechanisms of a known motion|68|tests/fuzz/fuzz_mechanisms.sh 60
    the method of 1987|1000|"$BUILD/release/matrix_1987" short

@@ -162,7 +162,7 @@ fuzz-extremes: $(addprefix $(BUILD)/,kinmat release/extremes_by_chance release/f
 
 #: relations        compare runs of decks that must agree
 # Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on; and of runs and assemblies.
-relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
+relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms $(BUILD)/debug/fuzz
 	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
 	BUILD=$(BUILD) tests/system/assembly_relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
 

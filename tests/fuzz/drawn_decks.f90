@@ -117,8 +117,9 @@ contains
          if (k == 1) call drive_angle(w, bar)
       end do
       method = [character(8) :: 'DENSE', 'NEWTON', '']
-      call add_card(w, 'METHOD', method(min(3, throw(w%r, 20))))
-      if (chance(w%r, 0.9_wp)) &
+      k = min(3, throw(w%r, 20))
+      call add_card(w, 'METHOD', method(k))
+      if (k > 1 .and. chance(w%r, 0.9_wp)) &
          write (w%deck%line(size(w%deck%line))(49:64), '(es16.8e3)') 10.0_wp**between(w%r, -4.0_wp, -2.0_wp)
    end subroutine draw_parallelogram
 

@@ -1,6 +1,7 @@
 # awk -v change=CHANGE [-v csv=FILE -v lst=FILE] -v map=FILE -f relation_deck.awk DECK: the deck, changed. CHANGE is
-#    whole      all results are asked for, in English, a JOINT card as two POINT cards and a REVOLUTE card, numbers that are as
-#               drawn typed in, and a CYLINDER card as a PRISM card: to this deck come the others
+#    whole      all results are asked for, in English: to this deck come the others. A JOINT card becomes two POINT cards and a
+#               REVOLUTE card, numbers that are as drawn are typed in, and a CYLINDER card becomes a PRISM card. Not so in a
+#               drawing that only JOINT cards can give: with LENGTH cards, axes FROM and TO or strokes. It stays what it is.
 #    3, 7       so many times the steps
 #    turned     the cards of each set in the opposite order
 #    moved      by (3, -2)
@@ -11,11 +12,11 @@
 #    middle     begun in the middle: with the second half of the instants, from the positions at the first of these
 #    back       with the instants in the opposite order, from the positions at the last one
 # The last three take what they need from `csv`, results of the deck, and from `lst`, its listing; they have no ASSEMBLY card,
-# since other assemblies are there. No change has CIRCUITS cards. `map` says what one must
-# know to compare results: "start SET STEP", the instant of the deck with which the changed one begins; "link SET NAME XI
-# ETA PHI", the new axes of a link in the old ones; "pair SET NAME PHI", by how much its angle is larger; "slide SET NAME",
-# a prismatic pair; "degrees SET", "matrix SET", a set in degrees, by METHOD MATRIX. The numbers of a card and of its *
-# card go to one * card.
+# since other assemblies are there. In a drawing the last two have AT cards for all instants. No change has CIRCUITS cards.
+# `map` says what one must know to compare results: "start SET STEP WAY", the instant of the deck with which the changed one
+# begins, and 1 or -1; "steps SET STEPS" of TIME; "link SET NAME XI ETA PHI", the new axes of a link in the old ones; "pair SET
+# NAME PHI", by how much its angle is larger; "slide SET NAME", a prismatic pair; "degrees SET", "matrix SET", "closing SET", a
+# set in degrees, by METHOD MATRIX, with a closing tolerance. The numbers of a card and of its * card go to one * card.
 
 function trim(s) { gsub(/^ +| +$/, "", s); return s }
 # A number as text, its exponent D as E.
@@ -28,20 +29,21 @@ function is_given(k) { return trim(substr(card, 16*k + 17, 16) (star == "" ? "" 
 
 # What belongs to a card stays below it.
 function put(text) {
-   # Instants are in the order of their cards.
-   if (change == "turned" && text ~ /^AT/) { instants = instants text "\n"; return }
+   # Instants, and what LENGTH moves, are in the order of their cards.
+   if (change == "turned" && text ~ /^(AT|LENGTH)/) { in_order = in_order text "\n"; return }
    if (text ~ /^(ADD|RISE)/) out[n_out] = out[n_out] "\n" text
    else out[++n_out] = text
 }
-# A card with its first `n` numbers x.
+# A card with its first `n` numbers x, but for those that are `blank`.
 function write_numbers(head, n,  k, line) {
    line = "*       "
-   for (k = 1; k <= n; k++) line = line sprintf("%-24s", sprintf("%.16E", x[k]))
+   for (k = 1; k <= n; k++) line = line sprintf("%-24s", blank[k] ? "" : sprintf("%.16E", x[k]))
    sub(/ *$/, "", line); sub(/ *$/, "", head)
-   put(head "\n" line)
+   put(line == "*" ? head : head "\n" line)
 }
 function write_card(name, a, b, c, n, x1, x2, x3) {
    x[1] = x1; x[2] = x2; x[3] = x3
+   split("", blank)
    if (n) write_numbers(sprintf("%-8s%-8s%-8s%-8s", name, a, b, c), n)
    else put(sprintf("%-8s%-8s%-8s%s", name, a, b, c))
 }
@@ -61,9 +63,12 @@ function choose_axes(  k, i) {
    split("", n_points); split("", link_of); split("", xi); split("", eta); split("", turn); n_links = 0
    for (k = 1; k <= n_cards; k++) {
       take(k)
-      if (name == "GROUND" || name == "LINK") { links[++n_links] = a; turn[a] = (degrees ? 17 : 0.3)*n_links }
+      # Axes along a bar stay.
+      if ((name == "GROUND" || name == "LINK") && b == "") { links[++n_links] = a; turn[a] = (degrees ? 17 : 0.3)*n_links }
       if (name == "POINT") { n_points[b]++; xi[b] += x[1]; eta[b] += x[2]; link_of[a] = b }
+      if (name == "JOINT") link_of[a] = rests[b] ? c : b
    }
+   for (a in n_points) if (!(a in turn)) xi[a] = eta[a] = 0
    for (i = 1; i <= n_links; i++) {
       a = links[i]
       if (n_points[a]) { xi[a] /= n_points[a]; eta[a] /= n_points[a] }
@@ -72,6 +77,7 @@ function choose_axes(  k, i) {
    }
    for (k = 1; k <= n_cards; k++) {
       take(k)
+      if (name == "JOINT") printf "pair %d %s %.16E\n", set, a, turn[c] - turn[b] > map
       if (name == "REVOLUTE") printf "pair %d %s %.16E\n", set, c, turn[link_of[b]] - turn[link_of[a]] > map
    }
 }
@@ -84,7 +90,7 @@ function change_axes(  phi, dx, dy) {
       dx = x[1] - xi[b]; dy = x[2] - eta[b]; phi = turn[b]*unit
       x[1] = dx*cos(phi) + dy*sin(phi); x[2] = dy*cos(phi) - dx*sin(phi)
    }
-   if (name == "PRISM") { x[1] -= turn[link_of[a]]; x[3] += turn[link_of[b]] - turn[link_of[a]] }
+   if (name == "PRISM" || name == "SLOT") { x[1] -= turn[link_of[a]]; x[3] += turn[link_of[b]] - turn[link_of[a]] }
    if (name == "DRIVE" && a == "ANGLE") x[1] += turn[b]
    if (name == "DRIVE" && a == "RELANGLE") x[1] += turn[c] - turn[b]
 }
@@ -92,24 +98,24 @@ function change_axes(  phi, dx, dy) {
 # Lengths times 25.4 and times times 60.
 function change_units(  long) {
    long = driven ~ /ANGLE/ ? 1 : 25.4
-   if (name ~ /^(GROUND|LINK|POINT)$/) { x[1] *= 25.4; x[2] *= 25.4 }
-   if (name == "PRISM") x[2] *= 25.4
+   if (name ~ /^(GROUND|LINK|POINT|JOINT|CYLINDER|LENGTH)$/) { x[1] *= 25.4; x[2] *= 25.4 }
+   if (name == "PRISM" || name == "SLOT") x[2] *= 25.4
    if (name == "DRIVE") { x[1] *= long; x[2] *= long/60; x[3] *= long/3600 }
    if (name == "ADD" && a == "HARMONIC") { x[1] *= long; x[2] /= 60 }
    if (name == "ADD" && a == "POWER") x[1] *= long/60^x[2]
    if (name == "ADD" && a == "TABLE") { x[1] *= 60; x[2] *= long }
    if (name == "RISE") { x[1] *= 60; x[2] *= 60; x[3] *= long }
-   if (name ~ /^(TIME|AT|BRANCH)$/) { x[1] *= 60; x[2] *= 60; x[3] *= 60 }
+   if (name ~ /^(TIME|AT|BRANCH)$/) { x[1] *= 60; x[2] *= b == "TURNS" ? 1 : 60; x[3] *= 60 }
 }
 function change_side(  turned) {
    turned = driven ~ /^(Y|ANGLE|RELANGLE)$/
    if (name ~ /^(GROUND|LINK|PRISM)$/ || name ~ /^(DRIVE|RISE)$/ && turned) x[3] = -x[3]
-   if (name ~ /^(GROUND|LINK|POINT|PRISM)$/ || turned && (name == "DRIVE" || name == "ADD" && a == "TABLE")) x[2] = -x[2]
-   if (name == "PRISM" || turned && (name == "DRIVE" || name == "ADD" && a != "TABLE")) x[1] = -x[1]
+   if (name ~ /^(GROUND|LINK|POINT|JOINT|PRISM|SLOT)$/ || turned && (name == "DRIVE" || name == "ADD" && a == "TABLE")) x[2] = -x[2]
+   if (name == "PRISM" || name == "SLOT" || turned && (name == "DRIVE" || name == "ADD" && a != "TABLE")) x[1] = -x[1]
 }
 function move() {
-   if (name == "GROUND" || name == "LINK" || name == "DRIVE" && driven == "X") x[1] += 3
-   if (name == "GROUND" || name == "LINK") x[2] -= 2
+   if (name ~ /^(GROUND|LINK|JOINT)$/ || name == "DRIVE" && driven == "X") x[1] += 3
+   if (name ~ /^(GROUND|LINK|JOINT)$/) x[2] -= 2
    if (name == "DRIVE" && driven == "Y") x[1] -= 2
 }
 
@@ -183,13 +189,12 @@ function put_joint(  first, second, x1, x2) {
    write_card("REVOLUTE", first, second, a)
 }
 
-# The numbers of the PRISM, CYLINDER or DRIVE card number k in hand that are as drawn: only in a set with JOINT cards. The place
+# The numbers of the PRISM, SLOT, CYLINDER or DRIVE card number k in hand that are as drawn: only in a set with JOINT cards. The place
 # of each point in the drawing is in `where`, its link in `link_of`.
 function find_places(  k, phi) {
-   joints = 0
    for (k = 1; k <= n_cards; k++) {
       take(k)
-      if (name == "JOINT") { joints++; link_of[a] = rests[b] ? c : b; where[a, 1] = x[1]; where[a, 2] = x[2] }
+      if (name == "JOINT") { link_of[a] = rests[b] ? c : b; where[a, 1] = x[1]; where[a, 2] = x[2] }
       if (name != "POINT") continue
       link_of[a] = b; phi = drawn[b, 3]*unit
       where[a, 1] = drawn[b, 1] + x[1]*cos(phi) - x[2]*sin(phi); where[a, 2] = drawn[b, 2] + x[1]*sin(phi) + x[2]*cos(phi)
@@ -200,19 +205,23 @@ function find_places(  k, phi) {
          guide_p[c] = a; guide_q[c] = b
          theta[c] = atan2(where[b, 2] - where[a, 2], where[b, 1] - where[a, 1])
       }
-      if (name == "PRISM") { guide_p[c] = a; guide_q[c] = b; theta[c] = (drawn[link_of[a], 3] + x[1])*unit }
+      if (name == "PRISM" || name == "SLOT") { guide_p[c] = a; guide_q[c] = b; theta[c] = (drawn[link_of[a], 3] + x[1])*unit }
    }
 }
+# A table gives the values of the DRIVE card number k.
+function has_table(k) {
+   for (k++; cards[k] ~ /^(ADD|RISE|TOLER)/; k++) if (cards[k] ~ /^ADD     TABLE/) return 1
+   return 0
+}
 function draw(k,  dx, dy) {
-   if (name == "PRISM" || name == "CYLINDER") {
+   if (name == "PRISM" || name == "SLOT" || name == "CYLINDER") {
       dx = where[b, 1] - where[a, 1]; dy = where[b, 2] - where[a, 2]
       if (name == "CYLINDER") x[1] = theta[c]/unit - drawn[link_of[a], 3]
-      if (name == "PRISM" && !is_given(2)) x[2] = dx*sin(theta[c]) - dy*cos(theta[c])
+      if (name != "CYLINDER" && !is_given(2)) x[2] = dx*sin(theta[c]) - dy*cos(theta[c])
       if (name == "CYLINDER" || !is_given(3)) x[3] = drawn[link_of[b], 3] - drawn[link_of[a], 3]
-      card = sprintf("%-8s%s", "PRISM", substr(card, 9)); name = "PRISM"
+      if (name != "SLOT") { card = sprintf("%-8s%s", "PRISM", substr(card, 9)); name = "PRISM" }
    }
-   if (name != "DRIVE" || is_given(1)) return
-   for (k++; cards[k] ~ /^(ADD|RISE|TOLER)/; k++) if (cards[k] ~ /^ADD     TABLE/) return
+   if (name != "DRIVE" || is_given(1) || has_table(k)) return
    if (a == "ANGLE") x[1] = drawn[b, 3]
    if (a == "RELANGLE") x[1] = drawn[c, 3] - drawn[b, 3]
    if (a == "X" || a == "Y") x[1] = where[b, a == "X" ? 1 : 2]
@@ -220,18 +229,38 @@ function draw(k,  dx, dy) {
       + (where[guide_q[b], 2] - where[guide_p[b], 2])*sin(theta[b])
 }
 
-function change_card(k,  n) {
-   if (change == "whole" && joints && name ~ /^(PRISM|CYLINDER|DRIVE)$/) draw(k)
-   n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
+# The number i of the card number k in hand is as drawn, or that of FROM and TO, or that of no stroke.
+function is_drawn(k, i) {
+   return !is_given(i) && (name == "CYLINDER" || name == "LINK" && b != "" || (name == "PRISM" || name == "SLOT") && i > 1 \
+      || name == "DRIVE" && i == 1 && !has_table(k))
+}
+# Whether the set has JOINT cards (`joints`), and whether they are to stay (`drawing`).
+function find_drawing(  k) {
+   joints = drawing = 0
+   for (k = 1; k <= n_cards; k++) {
+      take(k)
+      if (name == "JOINT") joints = 1
+      if (change != "whole" && name == "JOINT" || name == "LENGTH" || name == "LINK" && b != "" \
+         || name == "CYLINDER" && (is_given(1) || is_given(2))) drawing = 1
+   }
+}
+function change_card(k,  n, i) {
+   if (change == "whole" && joints && !drawing && name ~ /^(PRISM|SLOT|CYLINDER|DRIVE)$/) draw(k)
+   n = name ~ /^(POINT|JOINT|SLOT|CYLINDER|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name ~ /^(LENGTH|BRANCH)$/ ? 1 : 3
+   for (i = 1; i <= 3; i++) blank[i] = drawing && is_drawn(k, i)
    # The relations of measures stand in measures.sh.
    if (change == "whole" && name ~ /^(DISTANCE|LINE|ANGLE|XI|ETA|SUM)$/) return
    if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|COLUMN|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
-   if (change == "whole" && name == "JOINT") { put_joint(); return }
+   if (change == "whole" && name == "JOINT" && !drawing) { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (change ~ /^(middle|back|beside)$/ && name == "ASSEMBLY") return
+   # Another drive that has a rate leaves no turns to count.
+   if (name == "TIME" && change == "beside" && b == "TURNS") {
+      card = sprintf("%-8s%-16s%s", "TIME", a, substr(card, 25)); x[2] = time[set, a]
+   }
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
    # A card of which nothing is known here is refused.
-   if (name !~ /^(GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) {
+   if (name !~ /^(GROUND|LINK|POINT|JOINT|LENGTH|PRISM|SLOT|CYLINDER|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) {
       put((name ~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT|ASSEMBLY)$/ ? "" : "?") card)
       return
    }
@@ -240,7 +269,7 @@ function change_card(k,  n) {
    if (change == "units") change_units()
    if (change == "mirrored") change_side()
    if (change == "moved") move()
-   if (name == "LINK" && change ~ /^(middle|back)$/) estimate()
+   if (name == "LINK" && change ~ /^(middle|back)$/ && !drawing) estimate()
    write_numbers(substr(card, 1, 32), n)
 }
 
@@ -252,19 +281,25 @@ BEGIN { if (csv != "") read_results() }
 {
    set++; n_out = 0
    unit = degrees ? atan2(0, -1)/180 : 1
-   way = change == "back" ? -1 : 1
-   start = change ~ /^(middle|back)$/ ? last[set] : 0
-   while ((set, start) in flagged) start--
-   if (change == "middle" && start > 0) start = int((start + 1)/2)
-   while (start < 0 || (set, start) in flagged) start++
+   find_drawing()
+   way = change == "back" && !drawing ? -1 : 1
+   start = 0
+   if (change ~ /^(middle|back)$/ && !drawing) {
+      start = last[set]
+      while ((set, start) in flagged) start--
+      if (change == "middle" && start > 0) start = int((start + 1)/2)
+      while (start < 0 || (set, start) in flagged) start++
+   }
    # Where all is flagged, the deck stays as it is.
    if (start > last[set]) { start = 0; way = 1 }
-   printf "start %d %d\n", set, start > map
+   printf "start %d %d %d\n", set, start, way > map
    if (degrees) print "degrees", set > map
    for (i = 1; i <= n_cards; i++) {
       take(i)
-      if (name == "PRISM") print "slide", set, c > map
+      if (name == "TIME") print "steps", set, a > map
+      if (name ~ /^(PRISM|SLOT|CYLINDER)$/) print "slide", set, c > map
       if (name == "METHOD" && a == "MATRIX") print "matrix", set > map
+      if (name == "METHOD" && x[2] > 0) print "closing", set > map
       if (name ~ /^(GROUND|LINK)$/) { rests[a] = name == "GROUND"; for (k = 1; k <= 3; k++) drawn[a, k] = x[k] }
    }
    if (change == "axes") choose_axes()
@@ -277,6 +312,6 @@ BEGIN { if (csv != "") read_results() }
       text = out[change == "turned" ? n_out + 1 - i : i]
       gsub(/ +\n/, "\n", text); sub(/ +$/, "", text); print text
    }
-   printf "%sEND\n", instants
-   n_cards = 0; degrees = 0; instants = ""
+   printf "%sEND\n", in_order
+   n_cards = 0; degrees = 0; in_order = ""
 }

@@ -9,6 +9,7 @@
 #                                         some changes of decks that have failed
 #    relations.sh --random COUNT [FIRST]  decks of tests/fuzz/fuzz_mechanisms, COUNT of them from seed FIRST on; those that
 #                                         fail are kept
+#    relations.sh --drawn COUNT [FIRST]   drawings of tests/fuzz/drawn_decks, likewise
 . tests/counting.sh
 work=$w
 
@@ -52,10 +53,23 @@ relate() {
    done
 }
 
-# random COUNT FIRST
+# random COUNT FIRST PROGRAM...: decks by a program; those with VARY cards or errors are left out
 random() {
-   for seed in $(seq "$2" $(($2 + $1 - 1))); do
-      "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$work/$seed.deck" || exit 3
+   count=$1
+   first=$2
+   shift 2
+   for seed in $(seq "$first" $((first + count - 1))); do
+      "$BUILD/$@" "$seed" "$work/$seed.deck" || exit 3
+      if grep -q '^VARY' "$work/$seed.deck" || ! "$kinmat" --quiet --check "$work/$seed.deck" > "$work/out" 2>&1; then
+         grep -q '^VARY' "$work/$seed.deck" || grep -qE ' E10[49] ' "$work/out" || equal "$seed is a deck" '' "$(head -n 5 "$work/out")"
+         rm "$work/$seed.deck"
+         continue
+      fi
+      # With more steps the motion may begin elsewhere if the first instant has no position.
+      if "$kinmat" --quiet "$work/$seed.deck" | grep -qE 'NO POSITION FOUND|SOLVED 0,'; then
+         rm "$work/$seed.deck"
+         continue
+      fi
       failed_before=$(grep -c failed "$counts")
       relate "$work/$seed.deck"
       [ "$(grep -c failed "$counts")" -gt "$failed_before" ] || rm -r "$work/$seed" "$work/$seed.deck"
@@ -63,15 +77,17 @@ random() {
 }
 
 case $1 in
---random) random "$2" "${3:-1}" ;;
+--random) random "$2" "${3:-1}" release/fuzz_mechanisms --deck ;;
+--drawn) random "$2" "${3:-1}" debug/fuzz --drawn ;;
 --short)
    every=4
-   for path in $(grep -LE '^(VARY|LENGTH|SLOT)' input/*.deck); do relate "$path"; done
-   random 6 1
+   for path in $(grep -LE '^VARY' input/*.deck); do relate "$path"; done
+   random 6 1 release/fuzz_mechanisms --deck
+   random 8 1 debug/fuzz --drawn
    every=1
-   changes=3 random 1 7059
-   changes=axes random 1 7173 ;;
-*) for path in ${*:-$(grep -LE '^(VARY|LENGTH|SLOT)' input/*.deck)}; do relate "$path"; done ;;
+   changes=3 random 1 7059 release/fuzz_mechanisms --deck
+   changes=axes random 1 7173 release/fuzz_mechanisms --deck ;;
+*) for path in ${*:-$(grep -LE '^VARY' input/*.deck)}; do relate "$path"; done ;;
 esac
 
 # Axes that are not known to be others make differences.
@@ -81,6 +97,25 @@ changed axes "$w/whole.deck"
 run axes
 grep -v '^link' "$w/axes.map" > "$w/no_axes.map"
 equal 'differences are seen' 3 "$(differing axes "$w/no_axes.map" | grep -c '1,0,LINK,.* column')"
+# So are a blank cell, a row that is missing, and results without a number.
+changed moved "$w/whole.deck"
+run moved
+cp "$w/moved.csv" "$w/all.csv"
+awk -F, -v OFS=, '$1 == 1 && $2 == 1 && $5 == "CRANK" { $8 = "" } { print }' "$w/all.csv" > "$w/moved.csv"
+equal 'a blank cell is seen' 'blank: 1,1,LINK,CRANK column 8' "$(differing moved "$w/moved.map" | sed 's/: [^:]*$//')"
+awk -F, '$1 != 1 || $2 != 1 || $5 != "CRANK"' "$w/all.csv" > "$w/moved.csv"
+equal 'a missing row is seen' 'missing: 1,1,LINK,CRANK' "$(differing moved "$w/moved.map")"
+sed 1q "$w/all.csv" > "$w/moved.csv"
+equal 'no results are seen' 'no number is compared' \
+   "$(awk -v change=moved -f tests/system/relation_rows.awk "$w/moved.map" "$w/whole.csv" "$w/moved.csv" | tail -n 1)"
+# A length of other units that is off by 1 of 100 makes differences.
+w=$work/book_four_bar
+[ -f "$w/whole.deck" ] || relate input/book_four_bar.deck
+changed units "$w/whole.deck"
+awk '/^LENGTH  A  / { print; getline; sub(/[0-9.]+E/, "1.8E") } { print }' "$w/units.deck" > "$w/one.deck"
+mv "$w/one.deck" "$w/units.deck"
+run units
+equal 'a length that is off is seen' 3 "$(differing units "$w/units.map" | grep -c ' column')"
 # Assemblies in another order, and one more of them, are seen as well.
 w=$work/triple_rocker
 [ -f "$w/whole.deck" ] || relate input/triple_rocker.deck
