@@ -128,8 +128,8 @@ contains
          logical :: is_real
          integer :: k
 
-         call real_values(f, ending, merge(singular_conjugate_tolerance, conjugate_tolerance, ending%is_singular), &
-            place, is_real)
+         call real_values(f, ending, &
+            merge(singular_conjugate_tolerance, conjugate_tolerance, ending%is_singular), place, is_real)
          ! A path that ends on a curve of solutions ends at any of its points, real or not.
          if (.not. is_real) found%moves = found%moves .or. ending%is_singular
          if (.not. is_real) return

@@ -71,8 +71,8 @@ contains
       call follow_all(bilinear, own, ends, start)
    end subroutine follow_paths
 
-   !> Makes the start of the paths. In its solution number k, the k-th choice of half of the equations have a form in x
-   !> that is zero, and the others a form in y.
+   !> Makes the start of the paths. Solution number k takes the k-th choice of half of the equations. Their forms in x
+   !> are zero there, and the forms in y of the others.
    subroutine make_start(group_size, start)
       integer, intent(in) :: group_size      !< p, unknowns of each group
       type(path_start_t), intent(out) :: start

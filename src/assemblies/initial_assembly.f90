@@ -28,7 +28,7 @@ module initial_assembly
    !> Positions of one block, nearest to the guess first.
    type :: candidates_t
       real(wp), allocatable :: x(:, :)                  !< (unknowns of the block, positions)
-      real(wp), allocatable :: distance(:)              !< (positions) from the guess: see `squared_distances`
+      real(wp), allocatable :: distance(:)              !< (positions) from the guess: roots of `squared_distances`
       real(wp) :: beyond = no_distance                  !< the distance of positions not looked for, at least
       logical :: are_all = .true.                       !< no nearer one can be missing
       integer :: chosen = 0                             !< the number of the position in use; 0: none
@@ -97,8 +97,8 @@ contains
       end if
 
       nearest = no_distance
-      if (any(is_implied)) call find_nearest(b, x, guess, w, s, places, guess%links, is_complete, by_deck, &
-         nearest)
+      if (any(is_implied)) call find_nearest(b, x, guess, w, s, places, &
+         guess%links, is_complete, by_deck, nearest)
       call find_nearest(b, x, guess, w, s, places, implied, is_complete, found)
       do i = 1, size(found)
          associate (one => found(i), choice => guess%choice(i))
@@ -120,8 +120,9 @@ contains
       end if
    end subroutine solve_first
 
-   !> Tells whether no other assembly can be about as near to the goal as the one in `s`. This is so if it is at the
-   !> guess itself, or if in the first block that differs an angle is off by the separation of its positions, at least.
+   !> Tells whether no other assembly can be about as near to the goal as the one in `s`. There is none if that is at
+   !> the guess itself. Otherwise an angle of the first block that differs is off by the separation of its positions, at
+   !> least.
    logical function is_surely_nearest(b, x, s, places, goal) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -156,7 +157,7 @@ contains
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
       logical, intent(in) :: is_complete                !< `s` has an assembly: further ones do not count
       type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions
-      real(wp), intent(out), optional :: distance       !< of the assembly, as `squared_distances`; or `no_distance`
+      real(wp), intent(out), optional :: distance       !< root of `squared_distances`; or `no_distance`
       type(candidates_t) :: nearest(size(found))        !< with the nearest assembly so far
       real(wp) :: values(0:b%unknowns)                  !< of the nearest assembly
       real(wp) :: limit                                 !< assemblies at this distance or more do not count
@@ -300,7 +301,7 @@ contains
       integer, intent(in) :: i                          !< the number of the block
       integer, intent(in) :: places(:, :)               !< (2, links) blocks that find angle and place: see `places_of`
       real(wp), intent(in) :: goal(:, :)                !< (3, links) x and y from the origin of the chain, rad
-      real(wp), intent(in) :: budget                    !< a distance, as `squared_distances`
+      real(wp), intent(in) :: budget                    !< a distance: the root of `squared_distances`
       type(candidates_t), intent(out) :: found
       type(block_positions_t) :: every
       real(wp), dimension(b%list(i)%shape%n) :: start, least
@@ -441,7 +442,7 @@ contains
    !> Tells whether a distance is less than another one by more than rounding. Rounding leaves half of all digits of
    !> positions that are about singular.
    elemental logical function is_nearer(one, other) result(is)
-      real(wp), intent(in) :: one, other                !< distances, as `squared_distances`
+      real(wp), intent(in) :: one, other                !< distances: roots of `squared_distances`
 
       is = one < other - equal_distance_part*max(other, far_place)
    end function is_nearer

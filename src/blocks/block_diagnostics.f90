@@ -217,9 +217,9 @@ contains
          end associate
       end function time_to_limit
 
-      !> Gives the time from the motion that is followed to the instant t*, at `t` or before, at which a slide of a
-      !> block is infinite, since its guide comes to be parallel to another; 0: none is. Close to t* the slide s is
-      !> c/(t* - t) and a constant: t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide is the best guide.
+      !> Gives the time from the motion that is followed to the instant t* at which a slide of a block is infinite; 0:
+      !> there is none. Its guide comes to be parallel to another, at `t` or before. Close to t* the slide s is c/(t* -
+      !> t) and a constant: t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide is the best guide.
       pure real(wp) function time_to_infinity(i) result(left)
          integer, intent(in) :: i            !< the number of the block
          real(wp) :: to_go, longest

@@ -12,12 +12,12 @@ module block_motion
    use block_numbers, only: evaluate_geometry
    use block_state, only: state_t, unknown_t, set_drive_values
    use block_solver, only: workspace_t, solve_block, solve_explicit
-   use link_motion, only: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, &
-      missing_all
+   use link_motion, only: new_chain, assign_chain, move_links, flag_links, &
+      missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, flag_singular_links, get_driven_links, &
-      slide_unit
+   public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, &
+      flag_singular_links, get_driven_links, slide_unit
 
 contains
 

@@ -286,8 +286,8 @@ contains
          end if
          iterations = iteration
          call assemble(block, numbers%has_right_sides, loops, loop_numbers, vectors, unrotated, slides, &
-            unrotated_guide, equations, constants, values, unknowns, own, guide, now, a, right_sides, &
-            right_sides(1, 2))
+            unrotated_guide, equations, constants, values, unknowns, own, guide, &
+            now, a, right_sides, right_sides(1, 2))
 
          if (scratch%near%distance > 0.0_wp) then
             scratch%near%a = a(:4)
@@ -302,8 +302,8 @@ contains
          if (scratch%near%distance > 0.0_wp) then
             call solve_nearby(scratch%near, right_sides(1, side))
          else
-            call solve_first(block%shape, a, scratch%pivots, scratch%work, right_sides(1, side), info, b%patterns, &
-               scratch%sparse)
+            call solve_first(block%shape, a, scratch%pivots, scratch%work, &
+               right_sides(1, side), info, b%patterns, scratch%sparse)
          end if
          if (is_closed) then
             step = 0.0_wp
@@ -359,10 +359,10 @@ contains
          do k = block%first_loop, block%last_loop
             call velocity_rows(loops(k), slides, unknowns, guide, now(k), right_sides(1, 2))
          end do
-         if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, equations, 1, values, &
-            right_sides(1, 2))
-         call solve_next_side(block%shape, a, scratch%pivots, scratch%work, scratch%near, scratch%sparse, &
-            right_sides(1, 2))
+         if (numbers%has_right_sides) call add_drives(block%first_row, block%last_row, &
+            equations, 1, values, right_sides(1, 2))
+         call solve_next_side(block%shape, a, scratch%pivots, scratch%work, &
+            scratch%near, scratch%sparse, right_sides(1, 2))
          exit
       end do
 
@@ -404,14 +404,14 @@ contains
       do k = 1, n
          unknowns(unknown(k))%acceleration = right_sides(k, 1)
       end do
-      if (rows > n) convergence%rates_open = contradict_rates(b, i, values, unknowns, right_sides, numbers%coarse, &
-         x%closing)
+      if (rows > n) convergence%rates_open = contradict_rates(b, i, values, unknowns, &
+         right_sides, numbers%coarse, x%closing)
 
    contains
 
       !> Finds the sign of the determinant and the Kantorovich ratio, and whether rounding leaves the velocities open.
-      !> With B = |J^-1| and the residual known to h, the position is known to B h, the Jacobian to B h times its
-      !> Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: there is one root only if B L
+      !> Let B be |J^-1|, h the residual that rounding leaves, L the Lipschitz constant. The position is known to B h,
+      !> the Jacobian to L B h, the velocities to B times that. Newton and Kantorovich: there is one root only if B L
       !> change is below 1/2.
       subroutine judge()
          real(wp) :: largest, inverse
@@ -443,8 +443,8 @@ contains
          if (.not. suspicious) return
          size_of = max(numbers%coarse, maxval(abs(unknowns(unknown(:n))%value)))
          singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_velocity_error
-         if (singular) singular = is_beyond_linear(b, x, i, n, unknowns, now, a, scratch%pivots, scratch%work, &
-            scratch%sparse)
+         if (singular) singular = is_beyond_linear(b, x, i, n, unknowns, now, a, &
+            scratch%pivots, scratch%work, scratch%sparse)
       end subroutine judge
    end subroutine solve_arrays
 

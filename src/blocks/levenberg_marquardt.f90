@@ -15,8 +15,8 @@ module levenberg_marquardt
 
    !> No unknown goes further than this in one iteration: half a radian, half the unit of its loop.
    real(wp), parameter :: longest_step = 0.5_wp
-   !> A larger residual is not made small by steps of that length; the square of this one is well below overflow.
-   real(wp), parameter :: largest_start_residual = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   !> Steps of that length do not make a larger residual small; the square of this one is well below overflow.
+   real(wp), parameter :: largest_reducible = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
    !> With a smaller residual no other start is tried.
    real(wp), parameter :: good_residual = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
@@ -66,9 +66,9 @@ contains
       call set_values(b, i, best, s)
    end subroutine levenberg_marquardt_solve
 
-   !> Finds the pair or drive of a block that is open the most where the sum of squares is least, and its closure error
-   !> while all others are closed; 0: no such position is found. If equations are too many, it is its part of the least
-   !> sum, since they share the closure error.
+   !> Finds the pair or drive of a block that is open the most where the sum of squares is least. Its closure error is
+   !> the one with all others closed; 0: no such position is found. If equations are too many, it is its part of the
+   !> least sum, since they share the closure error.
    subroutine find_closure_error(b, x, i, s, convergence)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -137,7 +137,7 @@ contains
       call assemble_dense(b, x, i, s, jacobian, r)
       do iteration = 1, max_damped_steps
          largest = maxval(weights*abs(r))
-         if (largest <= least_residual .or. damping > max_damping .or. .not. largest <= largest_start_residual) exit
+         if (largest <= least_residual .or. damping > max_damping .or. .not. largest <= largest_reducible) exit
          square = sum((weights*r)**2)
          values = values_of(b, i, s)
 

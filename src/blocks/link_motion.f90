@@ -13,8 +13,8 @@ module link_motion
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, &
-      missing_all
+   public :: new_chain, assign_chain, move_links, flag_links, &
+      missing_nothing, missing_rates, missing_all
 
    !> The worst last: nothing is missing of an unknown, its derivatives are, its value is as well.
    integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2

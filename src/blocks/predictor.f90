@@ -19,8 +19,8 @@ module predictor
    use drive_path, only: drive_path_t
    use convergence, only: convergence_t
    use blocks, only: blocks_t, geometry_t, iterated_unknowns, own_unknowns
-   use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, set_direction, set_values, &
-      largest_drive_rate
+   use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, &
+      set_direction, set_values, largest_drive_rate
    use block_solver, only: solve_explicit
    use block_rank, only: jacobian_of, relative_sign
    implicit none
@@ -55,7 +55,7 @@ module predictor
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
-      real(wp) :: uncertain(0:2) = 0.0_wp               !< parts of their accelerations, in velocities per unit of time
+      real(wp) :: uncertain(0:2) = 0.0_wp               !< uncertainty of their accelerations over velocities, 1/time
       type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns)
       type(jacobian_t), allocatable :: jacobian(:)      !< (blocks) of the latest
       real(wp), allocatable :: entries(:)               !< (rows*n) of the latest Jacobian of a block with too many rows
@@ -197,7 +197,7 @@ contains
       type(history_t), intent(inout) :: history
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
       type(unknown_t), intent(in) :: unknown(0:*)       !< (0:unknowns) of the motion
-      real(wp), intent(in) :: uncertain                 !< part of its accelerations, in velocities per unit of time
+      real(wp), intent(in) :: uncertain                 !< uncertainty of its accelerations over velocities, 1/time
       integer :: k
 
       history%t = [t, history%t(0), history%t(1)]

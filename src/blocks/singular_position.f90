@@ -17,8 +17,8 @@ module singular_position
    use blocks, only: blocks_t, geometry_t, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
-   use block_rank, only: svd_t, decomposed, residual_of, curvature_of, difference_step, gauss_newton_step, &
-      try_to_move
+   use block_rank, only: svd_t, decomposed, residual_of, curvature_of, &
+      difference_step, gauss_newton_step, try_to_move
    implicit none
    private
    public :: settle, driving_speed, block_singularity
@@ -26,7 +26,8 @@ module singular_position
    !> Larger blocks are not examined: twenty decompositions take a second for these.
    integer, parameter :: max_examined_rows = 300
 
-   !> The largest distance of the place, in rad and units of the loop, over the root of the second derivative.
+   !> This over the root of the second derivative, 1 at most, is the largest distance of the place, in rad and units of
+   !> the loop.
    real(wp), parameter :: furthest_place = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> A residual below this part of the level is rounding. The level is the largest of: the values, a sum of lengths,
    !> and the rounding of drives and earlier blocks.
@@ -118,8 +119,8 @@ contains
       end do
    end function driving_speed
 
-   !> Tells which singular position a block has. It is unclear if all that moves the block is at rest, or if the
-   !> judgement is equal at a place nearby to which its links can move: a drive moves nothing, or adds nothing.
+   !> Tells which singular position a block has. The kind is unclear if all that moves the block is at rest. It is also
+   !> unclear if the links can move to a place nearby with an equal judgement: a drive moves nothing, or adds nothing.
    integer function block_singularity(b, x, i, s) result(found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

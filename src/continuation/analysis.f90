@@ -369,8 +369,8 @@ contains
    end subroutine tell_first
 
    !> Ends a step that has found no motion. One remark names the equation that is not satisfied or the end of the step.
-   !> The motion is followed from where it was. The instant lies beyond a limit if no substep could be made and it is
-   !> further on than `near_limit_part` of the step, or if it is only known that it was not reached.
+   !> The motion is followed from where it was. The instant lies beyond a limit if it is only known that it was not
+   !> reached, or if no substep could be made and it is further on than `near_limit_part` of the step.
    subroutine stop_at(analysis, t, step, found)
       type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t                            !< time of the instant
@@ -391,8 +391,8 @@ contains
          analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
          call cut(found, -1, flag_not_converged)
-         call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, analysis%work, analysis%state, &
-            found)
+         call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, &
+            analysis%work, analysis%state, found)
       end if
 
       allocate (list(0))

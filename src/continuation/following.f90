@@ -13,8 +13,8 @@ module following
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_dead_end
    use drive_deviation, only: drive_deviation_t, new_drive_excursion, limit_substep, examine
    use drive_path, only: drive_path_t, drive_at
-   use convergence, only: convergence_t, nothing_gathered, is_solved, ended_singular, ended_inconsistent, &
-      max_kantorovich_ratio
+   use convergence, only: convergence_t, nothing_gathered, is_solved, ended_singular, &
+      ended_inconsistent, max_kantorovich_ratio
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, new_state, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_blocks

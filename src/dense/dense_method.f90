@@ -73,7 +73,7 @@ contains
    end function for_blocks
 
    !> Solves for the motion of all links at a time at which the blocks have found one. If no try finds the position of
-   !> the blocks, the motion is not complete.
+   !> the blocks, `found` has only their motion.
    subroutine solve_all_links(dense, b, x, path, estimated, history, s, found, convergence)
       type(dense_t), intent(inout) :: dense
       type(blocks_t), intent(in) :: b

@@ -34,8 +34,8 @@ contains
 
       associate (b => lanes%blocks, first_row => lanes%blocks%list(i)%first_row)
          associate (u => b%unknown(b%list(i)%first))
-            call find_direct(b%rows(first_row), lanes%rows(first_row), lanes%drive, lanes%u(b%rows(first_row)%other), &
-               lanes%u(u))
+            call find_direct(b%rows(first_row), lanes%rows(first_row), lanes%drive, &
+               lanes%u(b%rows(first_row)%other), lanes%u(u))
             call set_lane_direction(lanes, u)
          end associate
       end associate
@@ -47,8 +47,8 @@ contains
       integer, intent(in) :: i   !< the number of the block
 
       associate (b => lanes%blocks, block => lanes%blocks%list(i))
-         call find_known(block%first_loop, block%last_loop, b%loops, lanes%numbers, b%body_vectors, lanes%d, lanes%u, &
-            lanes%loop)
+         call find_known(block%first_loop, block%last_loop, b%loops, lanes%numbers, &
+            b%body_vectors, lanes%d, lanes%u, lanes%loop)
       end associate
    end subroutine find_lane_known
 
