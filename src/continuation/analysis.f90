@@ -28,11 +28,11 @@
 !> | lost, beyond | is beyond a limit    | pass_over | beyond    | that it is beyond                                 |
 module analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, drive_slide
+   use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
-   use drive_path, only: moving_drives, time_beside, drive_at
-   use motion, only: motion_t, forget_links, known_of, flag_none, flag_not_converged, flag_singular, flag_overflow, &
-      flag_inconsistent, flag_stroke, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
+   use drive_path, only: moving_drives, time_beside
+   use motion, only: motion_t, add_diagnostics, forget_links, known_of, flag_none, flag_not_converged, flag_singular, &
+      flag_overflow, flag_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, &
       diagnostic_dead_end, diagnostic_stroke
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
@@ -43,9 +43,8 @@ module analysis
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: go_by_value, leave
-   use scales, only: is_length
-   use cylinders, only: cylinder_length, is_out_of_stroke, rounded
-   use following, only: lengths_followed, following_t, step_record_t, step_blocked, step_creeps, step_there, &
+   use strokes, only: find_length_limit, flag_strokes
+   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, &
       step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
       go_on_from, go_back, place_t, record_checkpoint, return_to, passed_of, limit_t, limit_before, branch_t, &
       certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -134,7 +133,7 @@ contains
       call reach(analysis, t, step, list)
       if (step%ending >= step_there) then
          call arrive(analysis, step, list, found)
-         if (size(analysis%geometry%cylinders) > 0) call flag_strokes(analysis, found)
+         if (size(analysis%geometry%cylinders) > 0) call flag_strokes(analysis%geometry%cylinders, found)
       else
          call stop_at(analysis, t, step, found)
       end if
@@ -413,7 +412,8 @@ contains
          if (.not. analysis%follows .and. analysis%convergence%ended == ended_elsewhere .and. &
             analysis%convergence%open%pair > 0) &
             list = [diagnostic_t(kind=diagnostic_stroke, pair=analysis%convergence%open%pair)]
-         if (analysis%follows .and. size(analysis%geometry%cylinders) > 0) call find_length_limit(analysis, t, list)
+         if (analysis%follows .and. size(analysis%geometry%cylinders) > 0) &
+            call find_length_limit(analysis%following_t, t, list)
          if (size(list) == 0 .and. analysis%follows .and. step%ending == step_blocked) &
             list = [diagnostic_t(kind=diagnostic_close, t=analysis%t)]
       end if
@@ -454,16 +454,6 @@ contains
       end associate
       analysis%phase = beyond
    end subroutine pass_over
-
-   !> Adds diagnostics to those of a motion, which are not allocated if there are none.
-   subroutine add_diagnostics(list, found)
-      type(diagnostic_t), intent(in) :: list(:)            !< (any number) those to be added
-      type(motion_t), intent(inout) :: found
-
-      if (size(list) == 0) return
-      if (.not. allocated(found%diagnostics)) allocate (found%diagnostics(0))
-      found%diagnostics = [found%diagnostics, list]
-   end subroutine add_diagnostics
 
    !> Takes the motion at found%t by the method, if the blocks have found one, and flags all that does not exist. If all
    !> drives rest, a motion that has come to a singular position rests there. This does not hold for a first position,
@@ -540,63 +530,4 @@ contains
       redundancy_error = -1.0_wp
       if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error
    end function redundancy_error
-
-   !> Puts the limit at which the length of a cylinder comes to its bound into the list, if the motion is that near.
-   subroutine find_length_limit(analysis, t, list)
-      type(analysis_t), intent(in) :: analysis
-      real(wp), intent(in) :: t                            !< time to which it goes
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      type(diagnostic_t) :: limit
-      real(wp) :: lengths(0:2, size(analysis%geometry%cylinders)), f(3), way, left, nearest
-      integer :: d, k, side
-
-      lengths = lengths_followed(analysis%following_t)
-      nearest = near_limit_part*abs(t - analysis%place%t)
-      do k = 1, size(analysis%geometry%cylinders)
-         associate (bounds => analysis%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
-            if (abs(rate) <= rounded*maxval(abs(lengths(1, :)))) cycle   ! another drive holds it
-            do side = 1, 2
-               if (bounds(side) >= huge(1.0_wp)) cycle
-               way = bounds(side) - length
-               if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! as it begins
-               if (abs(way) > nearest*abs(rate)) cycle
-               left = way/rate
-               if (left*sign(1.0_wp, t - analysis%t) < 0.0_wp) cycle
-               nearest = abs(left)
-               limit = diagnostic_t(kind=diagnostic_limit, pair=analysis%geometry%cylinders(k)%pair, &
-                  t=analysis%t + left, value=bounds(side), other=bounds(side) > 0.0_wp)
-            end do
-         end associate
-      end do
-      if (limit%pair == 0) return
-      do d = 1, size(analysis%path%laws)
-         f = drive_at(analysis%path, d, limit%t)
-         if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
-         limit%drive = d
-         if (abs(f(2)) > 0.0_wp) exit
-      end do
-      associate (law => analysis%path%laws(limit%drive))
-         limit%is_angle = .not. is_length(law)
-         f = drive_at(analysis%path, limit%drive, limit%t)
-         if (law%kind /= drive_slide .or. law%subject /= limit%pair) limit%value = f(1)
-      end associate
-      list = [limit]
-   end subroutine find_length_limit
-
-   !> Flags a complete motion if a cylinder is out of its stroke.
-   subroutine flag_strokes(analysis, found)
-      type(analysis_t), intent(in) :: analysis
-      type(motion_t), intent(inout) :: found
-      integer :: k
-
-      if (found%known < 2 .or. found%mark /= flag_none) return
-      do k = 1, size(analysis%geometry%cylinders)
-         associate (one => analysis%geometry%cylinders(k), length => cylinder_length(analysis%geometry%cylinders(k), &
-            found%position(:, analysis%geometry%cylinders(k)%i), found%position(:, analysis%geometry%cylinders(k)%j)))
-            if (.not. is_out_of_stroke(one%stroke, length)) cycle
-            found%mark = flag_stroke
-            call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)
-         end associate
-      end do
-   end subroutine flag_strokes
 end module analysis

@@ -145,4 +145,14 @@ contains
       end do
       r%more = max(0, n - max_links)
    end function new_diagnostic
+
+   !> Adds diagnostics to those of a motion, which are not allocated if there are none.
+   pure subroutine add_diagnostics(list, found)
+      type(diagnostic_t), intent(in) :: list(:)            !< (any number) those to be added
+      type(motion_t), intent(inout) :: found
+
+      if (size(list) == 0) return
+      if (.not. allocated(found%diagnostics)) allocate (found%diagnostics(0))
+      found%diagnostics = [found%diagnostics, list]
+   end subroutine add_diagnostics
 end module motion

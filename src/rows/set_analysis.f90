@@ -14,8 +14,8 @@ module set_analysis
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
-   use motion, only: diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, diagnostic_turned, motion_t, &
-      new_motion, turned_t, flag_inconsistent
+   use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, &
+      diagnostic_turned, motion_t, new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
    use separations, only: motions_apart
    use points, only: row_t, find_row, keep_turns
@@ -242,9 +242,8 @@ contains
             if (own%measures(i)%kind /= measure_line) cycle
             if (.not. (before(i)%is_latest .and. q%turned(i)%is_latest)) cycle
             if (abs(q%turned(i)%angle - before(i)%angle) <= largest_turn) cycle
-            if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
-            q%diagnostics = [q%diagnostics, diagnostic_t(diagnostic_turned, part, measure=i, t=q%t, is_angle=.true., &
-               value=abs(q%turned(i)%angle - before(i)%angle))]
+            call add_diagnostics([diagnostic_t(diagnostic_turned, part, measure=i, t=q%t, is_angle=.true., &
+               value=abs(q%turned(i)%angle - before(i)%angle))], q)
             set%told_turn = .true.
             return
          end do
