@@ -9,7 +9,7 @@ module writers
    use text_output, only: output_t, put
    use command_line, only: options_t, out_listing, out_csv, out_table, out_log
    use outputs, only: outputs_t
-   use listing, only: layout_t, listing_state_t, listing_instant, listing_end, write_untold
+   use listing, only: layout_t, listing_state_t, listing_instant, listing_end, write_waiting
    use column_table, only: column_table_t, new_column_table, add_table_line, write_columns
    use csv, only: csv_instant, table_t, table_instant
    use solver_log, only: log_instant
@@ -98,7 +98,7 @@ contains
             set%assemblies)
 
       if (lists) then
-         if (printing%columns%alone) then
+         if (printing%columns%is_only) then
             call listing_instant(printing%columns%remarks, writers%layout, set%now, printing%rows, k, printing%state)
          else
             call listing_instant(writers%files(out_listing), writers%layout, set%now, printing%rows, k, printing%state)
@@ -124,10 +124,10 @@ contains
       type(set_analysis_t), intent(in) :: set
 
       if (.not. printing%lists) return
-      if (printing%columns%alone) then
-         call write_untold(printing%columns%remarks, set%now%polish, printing%state)
+      if (printing%columns%is_only) then
+         call write_waiting(printing%columns%remarks, set%now%polish, printing%state)
       else
-         call write_untold(writers%files(out_listing), set%now%polish, printing%state)
+         call write_waiting(writers%files(out_listing), set%now%polish, printing%state)
       end if
       call write_columns(writers%files(out_listing), printing%columns, set%now)
    end subroutine end_tables

@@ -196,6 +196,7 @@ contains
       extremes%way = sign(1.0_wp, extremes%run)
       extremes%step = abs(extremes%run)/real(set%steps, wp)
       allocate (extremes%gaps(0), extremes%open(0), extremes%tracks(set%count))
+
       do c = 1, size(extremes%tracks)
          associate (track => extremes%tracks(c), own => set%parts(c))
             asked = pack(extremes%asked, set%rows(extremes%asked)%part == c)

@@ -1,4 +1,4 @@
-!> The LENGTH cards of a set: how far two points of a link, or of the ground, are apart that the drawing shows about
+!> The LENGTH cards of a set: the distances of two points of a link, or of the ground, that the drawing shows about
 !> there. Numbers as drawn are taken before.
 module deck_lengths
    use kinds, only: wp
@@ -16,9 +16,11 @@ module deck_lengths
 
 contains
 
-   !> Builds `set`%mechanism%lengths from the LENGTH cards, and puts these lengths into the drawing; bodies and drives
-   !> are there. The lengths of one hole Q are put together, holes in the order in which they first appear. Errors: a
-   !> length that is not of two points of one body; what moves after its use; lengths that do not meet.
+   !> Builds set%mechanism%lengths from the LENGTH cards, and puts these lengths into the drawing, which has bodies and
+   !> drives. The lengths of one hole Q are put together, holes in the order in which they first appear. Errors are:
+   !> - a length that is not of two points of one body;
+   !> - a hole that moves after its use;
+   !> - lengths that do not meet.
    subroutine build_lengths(set)
       type(card_set_t), intent(inout) :: set
       type(length_t) :: lengths(set%number_of(form_length))
@@ -44,6 +46,7 @@ contains
                lengths(i)%hole(j) = m%points(lengths(i)%point(j))%hole
             end do
          end do
+
          k = 0
          do i = 1, n
             if (any(lengths(:i - 1)%hole(2) == lengths(i)%hole(2))) cycle
@@ -77,9 +80,9 @@ contains
 
    contains
 
-      !> Reads the LENGTH card `k`: its points on one body, and its length.
+      !> Reads a LENGTH card: its points on one body, and its length. Errors are added.
       subroutine read_length(k, one)
-         integer, intent(in) :: k
+         integer, intent(in) :: k            !< number of the card in the set
          type(length_t), intent(inout) :: one
          integer :: ends(2), link, i, label, common
          integer, allocatable :: p(:), q(:)
@@ -117,6 +120,7 @@ contains
                   one%point = [p(i), q(label)]
                end do
             end do
+
             if (common == 0 .and. link > 0) then
                call add_card_error(set, length_off, k, label_c)
             else if (common == 0) then
@@ -131,10 +135,10 @@ contains
          end associate
       end subroutine read_length
 
-      !> Checks, of length number `i` in its order, that its points are two holes, that no length has used Q before it
-      !> moves, that Q has two lengths at most, and these of two holes.
+      !> Checks a length in its order: its points are two holes, no length has used Q before it moves, and Q has at
+      !> most two lengths, from two holes.
       subroutine check_order(i)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< number of the length
          integer :: used, one
 
          associate (list => set%mechanism%lengths)
@@ -152,9 +156,9 @@ contains
          end associate
       end subroutine check_order
 
-      !> Checks that length number `i` holds after all have been put.
+      !> Checks that a length holds after all have been put into the drawing.
       subroutine check_length(i)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< number of the length
          real(wp) :: place(2, 2), apart
          integer :: j
 
@@ -168,9 +172,9 @@ contains
          end associate
       end subroutine check_length
 
-      !> The length `value` with its unit.
+      !> Gives a length with its unit.
       function amount(value) result(text)
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: value       !< length
          character(:), allocatable :: text
 
          text = drawn_text(value)//' '//trim(set%mechanism%length_unit)

@@ -74,7 +74,7 @@ contains
    end subroutine make_estimator
 
    !> Estimates how far a motion is known. The estimate is not `taken` if no digit is in doubt, or nothing moves.
-   subroutine estimate_errors(estimator, m, b, x, state, q, always, told, found)
+   subroutine estimate_errors(estimator, m, b, x, state, q, always, prints_errors, found)
       type(estimator_t), intent(inout) :: estimator
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -82,7 +82,7 @@ contains
       type(state_t), intent(in) :: state
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always          !< also if no digit of a table is in doubt
-      logical, intent(in) :: told            !< the errors themselves are printed (--errors)
+      logical, intent(in) :: prints_errors            !< the errors themselves are printed (--errors)
       type(error_estimate_t), intent(inout) :: found
       logical :: is_small
 
@@ -106,7 +106,7 @@ contains
       call find_largest_changes(many_roundings, estimator%place%is_singular, is_small)
       if (.not. is_small) call find_largest_changes(few_roundings, .true., is_small)
       found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
-      if (told .and. .not. estimator%place%is_singular) then
+      if (prints_errors .and. .not. estimator%place%is_singular) then
          call find_own_changes()
          ! As far as they exceed the largest change by numbers, the calculation has made them.
          associate (own => found%own, by_numbers => found%changes)

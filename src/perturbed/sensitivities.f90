@@ -95,11 +95,12 @@ contains
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)) &
             .and. row%state /= points_coincide)
       end do
-      do d = 1, size(m%tolerances)
 
+      do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
             call look_at_joint(m, one, q%t, usual_step*natural_unit(one, estimator%sizes), side, order)
             call find_step(one, side, step)
+
             down = middle
             do k = 1, halvings
                h = step*0.5_wp**(k - 1)

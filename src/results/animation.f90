@@ -1,5 +1,5 @@
-!> The animation of a run as SVG, without scripts: each link is a group that is moved and turned through the frames of a
-!> drawing (SMIL), over the paths of points, with the time below. The browser interpolates between two frames, place and
+!> The animation of a run as SVG, without scripts. Each link is a group that moves and turns through the frames of a
+!> drawing (SMIL), over the paths of points. The time is below. The browser interpolates between two frames, place and
 !> angle evenly.
 module animation
    use kinds, only: wp
@@ -9,38 +9,37 @@ module animation
    use drawing, only: drawing_t, max_intervals, max_positions
    use shapes, only: element_t, shapes_of, link_color, pole_name
    use canvas, only: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_label, draw_foot, &
-      caption, &
-      line_height
+      caption, line_height
    use labels, only: labels_of
-   use svg, only: page_t, width, close_group, open_group, draw_window, draw_words, draw_circle, draw_columns, pixels, &
-      attribute
+   use svg, only: page_t, page_width, close_group, open_group, draw_window, draw_words, draw_circle, draw_columns, &
+      pixels, attribute
    use listing, only: words_of_flag
    implicit none
    private
    public :: draw_animation
 
-   !> How long the motion takes; then it begins again.
+   !> The motion takes so long; then it begins again.
    character(*), parameter :: duration = '10s'
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
    !> part by more than 1 % of their lengths.
    real(wp), parameter :: max_turn = 0.3_wp
-   !> What is seen of a link where it has no position; it stays where it was.
+   !> The opacity of a link without a position, which stays at its last one.
    real(wp), parameter :: pale_opacity = 0.2_wp
-   !> What of a group is animated.
+   !> The animated attributes of a group.
    character(*), parameter :: turn_element = 'animateTransform attributeName="transform" type="rotate"', &
       shift_element = 'animateTransform attributeName="transform" type="translate"'
 
 contains
 
-   !> Draws the film `drawing` of a set at the end of the `page`.
+   !> Draws the animation of a set at the end of a page; nothing if its film has no frames.
    subroutine draw_animation(page, drawing)
       type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: drawing
+      type(drawing_t), intent(in), target :: drawing   !< the film of the set
       type(canvas_t) :: canvas
       type(element_t), allocatable :: list(:)
       logical, allocatable :: is_fixed(:)
       integer, allocatable :: frame(:)       ! (keys) at equal steps of time
-      logical :: smooth                      ! there are positions between them
+      logical :: smooth                      ! places between keys are interpolated
       integer :: i
 
       if (drawing%films == 0) return
@@ -117,6 +116,7 @@ contains
                   angle(1, k) = -in_degrees(turned)
                end do
             end associate
+
             ! Two groups: one moves, one turns.
             name = trim(canvas%mechanism%links(link)%name)
             call open_group(canvas%output, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
@@ -134,7 +134,7 @@ contains
          end do
       end subroutine draw_moving_links
 
-      !> Draws the ring of each instant centre, which is hidden where the centre is at infinity.
+      !> Draws the ring of each instant centre, which is hidden at frames at which the centre is at infinity.
       subroutine draw_centres()
          real(wp) :: place(2, size(frame))
          logical :: has(size(frame))
@@ -157,8 +157,8 @@ contains
          end do
       end subroutine draw_centres
 
-      !> Writes the names of points and links where they stand best at the first frame. Each keeps its distance from
-      !> what it names.
+      !> Writes the names of points and links at their best places in the first frame. Each name keeps its distance from
+      !> its point or link.
       subroutine draw_names()
          type(label_t), allocatable :: labels(:)
          real(wp) :: by(2, size(frame)), offset(2)
@@ -169,6 +169,7 @@ contains
             call record_shape(canvas, list(i))
          end do
          call labels_of(canvas, labels)
+
          do i = 1, size(labels)
             associate (link => labels(i)%link)
                call open_group(canvas%output, 'class="label"', '')
@@ -187,23 +188,24 @@ contains
          end do
       end subroutine draw_names
 
-      !> The place (2) in the axes of a link at `position` (3) of what is at the pixel `p` (2).
+      !> Gives the place (2) of a pixel in the axes of a link.
       pure function offset_of(p, position) result(offset)
-         real(wp), intent(in) :: p(2), position(3)
+         real(wp), intent(in) :: p(2)        !< pixel
+         real(wp), intent(in) :: position(3)   !< of the link: x, y (lengths), phi (rad)
          real(wp) :: offset(2)
 
          offset = (p - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
          offset = rotated(offset - position(:2), direction(-position(3)))
       end function offset_of
 
-      !> Writes the time, in red with its words if the instant is flagged: a column of lines behind a window of one.
+      !> Writes the time, in red with the reason if the instant is flagged: a column of lines in a window of one line.
       subroutine draw_clock()
          real(wp) :: up(2, size(frame))
          character(:), allocatable :: words
          integer :: k, y
 
          y = nint(canvas%high(2)) + 33
-         call draw_window(canvas%output, real([14, y - line_height], wp), real([width - 14, y], wp))
+         call draw_window(canvas%output, real([14, y - line_height], wp), real([page_width - 14, y], wp))
          call open_group(canvas%output, 'class="clock"', '')
          up(1, :) = 0.0_wp
          up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
@@ -221,11 +223,11 @@ contains
          call close_group(canvas%output, 'svg')
       end subroutine draw_clock
 
-      !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
+      !> Writes an animated attribute; nothing if it has one value only.
       subroutine draw_moving(element, values, smooth)
-         character(*), intent(in) :: element
-         real(wp), intent(in) :: values(:, :)
-         logical, intent(in) :: smooth
+         character(*), intent(in) :: element   !< of SVG, with the name of the attribute
+         real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute, in turn: pixels, degrees or opacity
+         logical, intent(in) :: smooth       !< values between keys are interpolated
 
          if (size(values, 2) < 2) return
          call draw_columns(canvas%output, element//' calcMode="' &

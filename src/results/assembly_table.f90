@@ -18,20 +18,20 @@ module assembly_table
    public :: write_assemblies
 
    !> Characters of a number on a card, and on a * card; the first is a blank.
-   integer, parameter :: number_width = 16, star_width = 24
+   integer, parameter :: card_number_width = 16, star_width = 24
    !> Digits after the point of a number on a card, with a sign and 0 before it.
-   integer, parameter :: most_decimals = number_width - 4
-   !> Digits of an estimate, and of numbers that are dimensions, of the largest number.
+   integer, parameter :: most_decimals = card_number_width - 4
+   !> Digits that the largest number has: on cards of an estimate, and on cards with dimensions.
    integer, parameter :: estimate_digits = 10, drawing_digits = 13
    !> Angles have as many digits after the point as this one, in rad or degrees.
    real(wp), parameter :: largest_angle = 100.0_wp
-   !> A turn that rounding may add to an angle.
+   !> An angle, in rad, that rounding may add to half a turn.
    real(wp), parameter :: small_angle = max(1.0e-12_wp, 16.0_wp*epsilon(1.0_wp))
    character(*), parameter :: indent = '      '
 
 contains
 
-   !> The lines of the assemblies of the set that `set` analyses.
+   !> Writes the lines of the assemblies of a set.
    subroutine write_assemblies(o, l, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -40,7 +40,7 @@ contains
 
       call put(o, '')
       call put(o, ' '//phrase(text_assemblies, set%now%polish)//'   T = '//time_text(l, instant(set%now, 0)) &
-         //l%behind_time)
+         //l%after_time)
       do c = 1, size(set%assemblies)
          associate (m => set%now%parts(c), a => set%assemblies(c))
             if (size(set%assemblies) > 1) call put(o, ' '//phrase(text_mechanism, m%polish)//' '//whole(c))
@@ -58,11 +58,11 @@ contains
       end do
    end subroutine write_assemblies
 
-   !> The line of block number `k`, with its paths, and what there is to say of it.
+   !> Writes the line of a block, with its paths and its diagnostics.
    subroutine write_block(o, m, k, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
+      integer, intent(in) :: k               !< number of the block among those that iterate
       type(assembly_block_t), intent(in) :: one
       character(:), allocatable :: links, text
       integer, allocatable :: shown(:)
@@ -70,6 +70,7 @@ contains
       shown = shown_links(m, one%links)
       links = phrase(merge(text_link, text_links, size(shown) == 1), m%polish)
       if (size(shown) > 0) links = links//' '//listed(m%links(shown)%name, m%polish)
+
       call write_folded(o, '   '//phrase(text_block, m%polish)//' '//whole(k)//': ', links, indent)
       text = phrase(text_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
          //phrase(text_paths, m%polish)//' '//whole(one%paths)//' = ' &
@@ -84,12 +85,12 @@ contains
          links//': '//phrase(text_paths_failed, m%polish)//' '//whole(one%failed))
    end subroutine write_block
 
-   !> Assembly number `k` of `assemblies` of the mechanism `m`.
+   !> Writes the lines of an assembly, with its cards.
    subroutine write_assembly(o, m, k, assemblies)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
-      type(assemblies_t), intent(in) :: assemblies
+      integer, intent(in) :: k               !< number of the assembly
+      type(assemblies_t), intent(in) :: assemblies   !< of the mechanism
       character(1), parameter :: signs(-1:1) = ['-', '0', '+']
       character(:), allocatable :: text
       character(12) :: distance
@@ -113,9 +114,9 @@ contains
       end associate
    end subroutine write_assembly
 
-   !> The LINK cards of assembly `one` of `m`. Where JOINT cards give the dimensions, LINK cards are a part of them:
-   !> both stand there, as of a drawing of this assembly, and points that lengths have moved. A drive whose value at
-   !> t = 0 was that of the old drawing has a card with this value: it is another one in the new drawing.
+   !> Writes the LINK cards of an assembly. If JOINT cards give the dimensions, LINK cards are a part of them: both are
+   !> written as for a drawing of this assembly, with points that lengths have moved. A drive may take its value at t =
+   !> 0 from the drawing. Its DRIVE card has the old value then, since the new drawing has another one.
    subroutine write_cards(o, m, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -129,7 +130,7 @@ contains
 
       do i = 1, size(m%links)
          position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
-         ! Angles within half a turn of the estimate: whatever rounding makes of half a turn, it is one forward.
+         ! Angles are within half a turn of the estimate. Half a turn itself is forward, in spite of rounding.
          associate (estimate => m%links(i)%position(3))
             position(3, i) = estimate + wrap_angle(one%position(3, i) - estimate - small_angle) + small_angle
          end associate
@@ -137,9 +138,10 @@ contains
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
-      ! As many digits behind the point as a number of the characteristic length has.
+      ! As many digits after the point as a number of the characteristic length has.
       digits = min(drawing_digits, estimate_digits + floor(log10(largest/characteristic_length(m))))
       if (any(is_joint)) digits = drawing_digits
+
       call put(o, ruler_card)
       do i = 1, size(m%links)
          if (m%links(i)%ground .or. m%links(i)%hidden) cycle
@@ -155,6 +157,7 @@ contains
          where (m%links(i)%along) numbers = ''
          call write_card(o, 'LINK    ', names, numbers)
       end do
+
       do i = 1, size(m%pairs)
          if (.not. is_joint(i)) cycle
          associate (p => m%points(m%pairs(i)%point_i), q => m%points(m%pairs(i)%point_j))
@@ -166,6 +169,7 @@ contains
             call write_card(o, 'JOINT   ', names, numbers(:2))
          end associate
       end do
+
       do i = 1, size(m%points)
          associate (p => m%points(i))
             if (p%drawn .or. .not. (p%moves .and. any(is_joint))) cycle
@@ -176,6 +180,7 @@ contains
             call write_card(o, 'POINT   ', names, numbers(:2))
          end associate
       end do
+
       do i = 1, size(m%drives)
          associate (drive => m%drives(i))
             if (.not. drive%drawn) cycle
@@ -191,19 +196,20 @@ contains
       end do
    end subroutine write_cards
 
-   !> A card with its name, labels and numbers; these stand on a * card where one has no room beside a blank.
+   !> Writes a card with its name, labels and numbers. If one number leaves no room for a blank, the numbers are on a *
+   !> card.
    subroutine write_card(o, name, labels, numbers)
       type(output_t), intent(inout) :: o
-      character(8), intent(in) :: name
-      character(label_length), intent(in) :: labels(3)
-      character(star_width), intent(in) :: numbers(:)
+      character(8), intent(in) :: name       !< of the card: LINK, ...
+      character(label_length), intent(in) :: labels(3)   !< blank: none
+      character(star_width), intent(in) :: numbers(:)   !< (1 to 3) as `number_text` gives them; blank: none
       character(:), allocatable :: text, stars
       integer :: k
 
       text = name//labels(1)//labels(2)//labels(3)
-      if (all(len_trim(adjustl(numbers)) < number_width)) then
+      if (all(len_trim(adjustl(numbers)) < card_number_width)) then
          do k = 1, size(numbers)
-            text = text//numbers(k)(star_width - number_width + 1:)
+            text = text//numbers(k)(star_width - card_number_width + 1:)
          end do
          call put(o, trim(text))
       else
@@ -216,10 +222,11 @@ contains
       end if
    end subroutine write_card
 
-   !> `value` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
+   !> Gives a number in the columns of a * card, at the right, without digits of rounding.
    function number_text(value, largest, digits) result(text)
-      real(wp), intent(in) :: value, largest
-      integer, intent(in) :: digits
+      real(wp), intent(in) :: value          !< in the unit of the card
+      real(wp), intent(in) :: largest        !< the largest such number, above 0
+      integer, intent(in) :: digits          !< so many has the largest number
       character(star_width) :: text
       character(16) :: form
       real(wp) :: unit, rounded
@@ -233,7 +240,7 @@ contains
       if (power < digits .and. decimals <= most_decimals) then
          write (form, '(a, i0, a)') '(f24.', decimals, ')'
       else
-         ! What has 13 digits has a * card then; an estimate can spare some.
+         ! A number with 13 digits has a * card then; an estimate may lose some digits.
          write (form, '(a, i0, a)') '(es24.', merge(drawing_digits - 1, 8, digits >= drawing_digits), ')'
       end if
       write (text, form) rounded*unit

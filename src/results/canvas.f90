@@ -1,5 +1,5 @@
-!> The canvas of a set: its part of a page, from the mechanism's places to pixels; what is drawn already, and where a
-!> name is clear of it; and what stands around the mechanism: title, flagged instants, scale.
+!> The canvas of a set: its part of a page, from the mechanism's places to pixels; the places that are covered already,
+!> and those that are clear for a name; title, flagged instants and scale around the mechanism.
 module canvas
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -10,7 +10,8 @@ module canvas
    use number_format, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
-   use svg, only: page_t, width, tie, draw_words, draw_circle, draw_line, open_group, close_group, attribute, fitted
+   use svg, only: page_t, page_width, tie, draw_words, draw_circle, draw_line, open_group, close_group, attribute, &
+      fitted
    use text_output, only: output_t
    use listing, only: words_of_flag
    use listing_layout, only: angle_unit
@@ -32,7 +33,7 @@ module canvas
       real(wp), allocatable :: ink(:, :)     !< (columns, rows) of cells: pixels of lines in each, times their weight
    end type canvas_t
 
-   !> A name, and what it names.
+   !> A name with its place.
    type :: label_t
       character(:), allocatable :: name, attributes   !< of its text
       integer :: link = 0                    !< with which it moves; 0: none
@@ -54,7 +55,7 @@ module canvas
    real(wp), parameter :: centrode_room = 0.4_wp
    !> Pixels of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
-   !> The letters of a caption, at most: the scale is on its right.
+   !> The largest number of letters of a caption: the scale is on its right.
    integer, parameter :: max_caption = 78
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
@@ -67,13 +68,13 @@ module canvas
    real(wp), parameter :: longest_without_line = 8.0_wp
    !> Pixels of the side of a cell.
    real(wp), parameter :: cell_side = 2.0_wp
-   !> Pieces of a line at most: a longer line leaves the picture.
+   !> The largest number of pieces of a line: a longer line leaves the picture.
    integer, parameter :: max_pieces = 2000
    !> A name over a name costs in each cell so many pixels of overlap with a line.
    real(wp), parameter :: name_weight = 10.0_wp
    !> A name that leaves the picture costs so many pixels of overlap with a line.
    real(wp), parameter :: outside_weight = 500.0_wp
-   !> Lines that are closer than this, in pixels, are hard to tell apart.
+   !> Lines that are closer than this, in pixels, are hard to distinguish.
    real(wp), parameter :: least_gap = 4.0_wp
 
 contains
@@ -128,7 +129,7 @@ contains
       end do
 
       associate (extent => high - low)
-         room = real(width, wp) - 2.0_wp*side_margin
+         room = real(page_width, wp) - 2.0_wp*side_margin
          if (any(extent > 0.0_wp)) then
             canvas%scale = 1.0_wp/max(extent(1)/room, extent(2)/max_height)
             canvas%scale = canvas%scale*(1.0_wp + tie)
@@ -138,11 +139,11 @@ contains
          height = 2*ceiling(0.5_wp*max(min_height, canvas%scale*extent(2)) + side_margin - tie)
          top = page%height
          page%height = top + title_height + height + foot_height
-         canvas%shift = anint([0.5_wp*real(width, wp) - canvas%scale*(low(1) + 0.5_wp*extent(1)), &
+         canvas%shift = anint([0.5_wp*real(page_width, wp) - canvas%scale*(low(1) + 0.5_wp*extent(1)), &
             real(top + title_height, wp) + 0.5_wp*real(height, wp) + canvas%scale*(low(2) + 0.5_wp*extent(2))])
       end associate
       canvas%low = [4.0_wp, real(top + title_height, wp)]
-      canvas%high = [real(width - 4, wp), real(top + title_height + height, wp)]
+      canvas%high = [real(page_width - 4, wp), real(top + title_height + height, wp)]
       allocate (canvas%ink(int((canvas%high(1) - canvas%low(1))/cell_side) + 1, &
          int((canvas%high(2) - canvas%low(2))/cell_side) + 1), source=0.0_wp)
 
@@ -310,7 +311,7 @@ contains
       else if (2.0_wp*length*scale <= max_bar) then
          length = 2.0_wp*length
       end if
-      x = real(width - 24, wp)
+      x = real(page_width - 24, wp)
       from = x - length*scale
       call draw_line(canvas%output, 'polyline', reshape([from, level - 4.0_wp, from, level + 4.0_wp, from, level, &
          x, level, x, level - 4.0_wp, x, level + 4.0_wp], [2, 6]), attributes)

@@ -1,6 +1,6 @@
-!> The picture of circuits as SVG: for each set and drive a diagram of each number that PRINT asks for and that varies,
-!> over the drive, each circuit in its own colour; dots are dead points, rings change points. An
-!> angle that goes on for more than a turn is drawn without whole turns.
+!> The picture of circuits as SVG. Each set and drive has a diagram of each number that PRINT asks for and that varies,
+!> over the drive. Each circuit has its own colour; dots are dead points, rings change points. An angle that goes on
+!> for more than a turn is drawn without whole turns.
 module circuits_picture
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
@@ -17,8 +17,8 @@ module circuits_picture
    use circuit_trace, only: end_closed
    use circuits, only: circuits_t
    use shapes, only: color_of
-   use svg, only: page_t, width, attribute, close_group, open_group, draw_line, draw_circle, draw_words, draw_window, &
-      fitted
+   use svg, only: page_t, page_width, attribute, close_group, open_group, draw_line, draw_circle, draw_words, &
+      draw_window, fitted
    use phrases
    implicit none
    private
@@ -29,7 +29,7 @@ module circuits_picture
       real(wp), allocatable :: places(:, :)     !< (2, points) in the units in which numbers are printed
    end type chart_curve_t
 
-   !> A number varies if it does so by more than this, in rad or in lengths of the curve.
+   !> A number varies if its values differ by more than this, in rad or in lengths of the curve.
    real(wp), parameter :: least_variation = 1.0e-6_wp
    !> Height of the title of a drive with its legend, and width of a name in the legend, in pixels.
    integer, parameter :: legend_height = 56
@@ -39,31 +39,34 @@ module circuits_picture
    !> Pixels of the height of a diagram.
    real(wp), parameter :: diagram_height = 300.0_wp
    integer, parameter :: chart_height = nint(top_room + diagram_height + bottom_room)
+   !> Pixels of dead points, change points and ticks.
    real(wp), parameter :: dot_radius = 3.5_wp, ring_radius = 6.0_wp, tick_length = 5.0_wp
-   !> An axis goes on by this part of its values, or of the largest of them where all are the same.
+   !> An axis goes on by this part of the range of its values, and at least by this part of the largest value.
    real(wp), parameter :: axis_margin = 0.04_wp, least_axis_margin = 4096.0_wp*epsilon(1.0_wp)
-   !> Steps between ticks, in any power of ten, and of a turn in degrees; at most so many.
-   real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp], turn_step = 45.0_wp
+   !> Steps between ticks, in any power of ten; on an axis of a turn in degrees the step is the second.
+   real(wp), parameter :: tick_steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp], turn_step = 45.0_wp
+   !> An axis has about so many ticks at most.
    integer, parameter :: most_ticks = 9
    !> The column of the angle of a link.
    integer, parameter :: angle_column = 3
    !> The middle of the angles of a curve lies within half a turn of this (rad): a whole turn goes from 0 up.
    real(wp), parameter :: middle_angle = 10.0_wp*degree
-   !> Two curves that are nowhere farther apart than this (pixels) are equal, seen at so many points; they are drawn in
-   !> dashes of this length, in turn.
-   real(wp), parameter :: same_line_distance = 1.0_wp, dash_length = 9.0_wp
+   !> Two curves are equal if they are nowhere farther apart than this (pixels), at about so many points.
+   real(wp), parameter :: same_line_distance = 1.0_wp
    integer, parameter :: seen_points = 60
+   !> Equal curves are drawn in dashes of this length (pixels), in turn.
+   real(wp), parameter :: dash_length = 9.0_wp
 
 contains
 
-   !> Draws the diagrams of the circuits `found` of the set `m`, which `set` analyses, at the end of the `page`: a chart
-   !> for each number that PRINT asks for and that varies, not driven; above them the names of the circuits in their
-   !> colours, as far as there is room.
+   !> Draws the diagrams of the circuits of a set at the end of a page: a chart for each number that PRINT asks for and
+   !> that varies, unless it is driven. Above them are the names of the circuits in their colours, as far as there is
+   !> room.
    subroutine draw_circuits(page, m, set, found)
       type(page_t), intent(inout) :: page
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: set
-      type(circuits_t), intent(in) :: found(:)
+      type(mechanism_t), intent(in) :: m     !< the set
+      type(set_analysis_t), intent(in) :: set   !< its analysis
+      type(circuits_t), intent(in) :: found(:)   !< (drives)
       logical :: does_vary
       integer :: i, k, column
 
@@ -71,18 +74,19 @@ contains
          associate (top => real(page%height, wp))
             call draw_words(page%body, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', &
                trim(whole(m%set_number)//'.  '//m%title))
-            do k = 1, min(size(found(i)%list), int((real(width, wp) - 20.0_wp)/legend_width))
+            do k = 1, min(size(found(i)%list), int((real(page_width, wp) - 20.0_wp)/legend_width))
                call draw_words(page%body, [14.0_wp + legend_width*real(k - 1, wp), top + 44.0_wp], 'start', &
                   'style="fill:'//color_of(k)//'"', phrase(text_circuit, m%polish)//' '//whole(k))
             end do
          end associate
          page%height = page%height + legend_height
+
          associate (own => set%now%parts(found(i)%part))
             do k = 1, merge(size(own%requests), 0, size(found(i)%list) > 0)
                associate (r => own%requests(k))
                   if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
                   does_vary = .false.
-                  ! Of a link that turns its angle alone.
+                  ! A link that turns has a chart of its angle only.
                   if (r%kind == request_link) call draw_chart(page, set, own, found(i), r, angle_column, does_vary)
                   if (does_vary) cycle
                   do column = 1, min(forms(form_of(own, r))%coordinates, &
@@ -95,20 +99,19 @@ contains
       end do
    end subroutine draw_circuits
 
-   !> Draws `column` of the row of `request` along the circuits `found` of `m`, over their drive, if it is not constant
-   !> (`does_vary`) nor the drive itself.
+   !> Draws the chart of a number along the circuits of a drive, unless it does not vary or is the drive itself.
    subroutine draw_chart(page, set, m, found, request, column, does_vary)
       type(page_t), intent(inout) :: page
       type(set_analysis_t), intent(in) :: set
-      type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
+      type(mechanism_t), intent(in) :: m     !< one independent mechanism
+      type(circuits_t), intent(in) :: found   !< of the drive
       type(request_t), intent(in) :: request
-      integer, intent(in) :: column
-      logical, intent(out) :: does_vary
+      integer, intent(in) :: column          !< of the row of the request, 1 to 3
+      logical, intent(out) :: does_vary      !< the number varies
       character(3), parameter :: columns(3) = ['X  ', 'Y  ', 'PHI']
       character(*), parameter :: thin = 'style="stroke:#222;stroke-width:1"'
       ! From a side to the end of a tick, and to its number.
-      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick_length, -tick_length, 0.0_wp], [2, 2])
+      real(wp), parameter :: to_tick_end(2, 2) = reshape([0.0_wp, tick_length, -tick_length, 0.0_wp], [2, 2])
       real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick_length + 13.0_wp, &
          -tick_length - 4.0_wp, 4.0_wp], [2, 2])
       character(6), parameter :: anchors(2) = ['middle', 'end   ']
@@ -124,7 +127,7 @@ contains
       type(motion_t) :: q
       type(row_t) :: row
 
-      ! The curves, and whether they vary.
+      ! The curves and the ranges of their values.
       q = new_motion(size(m%links))
       q%known = 0
       q%origin = set%now%motions(found%part)%origin
@@ -142,6 +145,7 @@ contains
                at = [drive_value(found%curve, points(k)%value(0) + found%list(i)%shift), row%value(column, 0)]
                curve%places(:, k) = at/unit
             end do
+
             if (angular(2)) then
                associate (middle => 0.5_wp*(minval(curve%places(2, :)) + maxval(curve%places(2, :)))*unit(2))
                   curve%places(2, :) = curve%places(2, :) &
@@ -152,6 +156,7 @@ contains
             high = max(high, maxval(curve%places, dim=2))
          end associate
       end do
+
       does_vary = unit(2)*(high(2) - low(2)) > least_variation*merge(1.0_wp, found%curve%closure%length, angular(2))
       associate (drive => m%drives(found%drive))
          if (.not. does_vary .or. (column == 3 .and. request%kind == request_link .and. drive%kind == drive_angle &
@@ -174,18 +179,18 @@ contains
 
       ! Ticks and numbers, below and on the left.
       corner = [left_room, real(page%height, wp) + top_room]
-      extent = [real(width, wp) - left_room - right_room, diagram_height]
+      extent = [real(page_width, wp) - left_room - right_room, diagram_height]
       page%height = page%height + chart_height
       call open_group(page%body, 'class="circuits" '//attribute('data-drive', drive_words), name)
       do k = 1, 2
          range = high(k) - low(k)
          power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
-         step = power*minval(steps, mask=range <= steps*power*most_ticks .or. steps >= 10.0_wp)
+         step = power*minval(tick_steps, mask=range <= tick_steps*power*most_ticks .or. tick_steps >= 10.0_wp)
          if (turn(k) > turn_step) step = turn_step
          do number = ceiling(low(k)/step - 1.0e-6_wp, int64), floor(high(k)/step + 1.0e-6_wp, int64)
             x = (real(number, wp)*step - low(k))/range
             at = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
-            call draw_line(page%body, 'polyline', reshape([at, at + to_end(:, k)], [2, 2]), thin)
+            call draw_line(page%body, 'polyline', reshape([at, at + to_tick_end(:, k)], [2, 2]), thin)
             call draw_words(page%body, at + to_number(:, k), trim(anchors(k)), 'class="between"', &
                fitted(real(number, wp)*step))
          end do
@@ -194,8 +199,8 @@ contains
       call draw_words(page%body, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', &
          drive_words//', '//trim(units(1)))
 
-      ! Each curve as many times, whole turns apart, as it enters the window; then its dead points and change points.
-      ! The last point of a closed circuit is the first.
+      ! Each curve is drawn as many times, whole turns apart, as it enters the window; then its dead points and change
+      ! points. The last point of a closed circuit is the first.
       call draw_window(page%body, corner, corner + extent)
       first = [(first_equal(i), i=1, size(curves))]
       do i = 1, size(curves)
@@ -205,6 +210,7 @@ contains
          if (equal > 1) style = style//' stroke-dasharray="' &
             //fitted(dash_length)//' '//fitted(dash_length*(equal - 1)) &
             //'" stroke-dashoffset="'//fitted(-dash_length*count(first(:i - 1) == first(i)))//'"'
+
          associate (circuit => found%list(i), p => curves(i)%places)
             call open_group(page%body, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color//'"', &
                phrase(text_circuit, m%polish)//' '//whole(i))
@@ -216,6 +222,7 @@ contains
                   call draw_line(page%body, 'polyline', pixels_of(p - spread([k, j]*turn, 2, n)), style)
                end do
             end do
+
             if (circuit%ends(1) == end_closed) n = n - 1
             do k = 1, n
                if (circuit%points(k)%is_dead) call draw_circle(page%body, in_window(p(:, k)), dot_radius, &
@@ -233,9 +240,9 @@ contains
 
    contains
 
-      !> The number of the first curve to which curve `i` is equal in the window, but for whole turns.
+      !> Finds the number of the first curve to which a curve is equal in the window, but for whole turns.
       pure integer function first_equal(i)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< number of the curve
 
          do first_equal = 1, i - 1
             if (lies_on(pixels_of(curves(i)%places), pixels_of(curves(first_equal)%places)) .and. &
@@ -243,10 +250,10 @@ contains
          end do
       end function first_equal
 
-      !> Tells whether the points that are seen of the line through the pixels `p` (2, :) lie on that through `line` (2,
-      !> :), but for whole turns.
+      !> Tells whether points of one line are on another line, but for whole turns.
       pure logical function lies_on(p, line)
-         real(wp), intent(in) :: p(:, :), line(:, :)
+         real(wp), intent(in) :: p(:, :)     !< (2, points) pixels of the first line
+         real(wp), intent(in) :: line(:, :)   !< (2, points) pixels of the second line
          real(wp) :: a(2), u(2), v(2), least
          integer :: point, side, k, j
 
@@ -271,27 +278,27 @@ contains
          lies_on = .true.
       end function lies_on
 
-      !> By how many turns the place `p` (2) is off the window.
+      !> Finds by how many turns (2) a place is off the window.
       pure function turns_of(p) result(turns)
-         real(wp), intent(in) :: p(2)
+         real(wp), intent(in) :: p(2)        !< in the units of the axes
          integer :: turns(2)
 
          turns = 0
          where (turn > 0.0_wp) turns = floor((p - low)/turn)
       end function turns_of
 
-      !> The pixels (2, :) of the places `p` (2, :).
+      !> Gives the pixels (2, places) of places.
       pure function pixels_of(p) result(pixels)
-         real(wp), intent(in) :: p(:, :)
+         real(wp), intent(in) :: p(:, :)     !< (2, places) in the units of the axes
          real(wp) :: pixels(2, size(p, 2))
 
          pixels(1, :) = corner(1) + extent(1)*(p(1, :) - low(1))/(high(1) - low(1))
          pixels(2, :) = corner(2) + extent(2)*(high(2) - p(2, :))/(high(2) - low(2))
       end function pixels_of
 
-      !> The pixel (2) of the place `p` (2), less the turns by which it is off the window.
+      !> Gives the pixel (2) of a place, less the turns by which it is off the window.
       pure function in_window(p) result(pixel)
-         real(wp), intent(in) :: p(2)
+         real(wp), intent(in) :: p(2)        !< in the units of the axes
          real(wp) :: pixel(2)
 
          pixel = reshape(pixels_of(reshape(p - turns_of(p)*turn, [2, 1])), [2])

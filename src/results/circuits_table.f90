@@ -20,18 +20,19 @@ module circuits_table
 
    !> The ends of the columns of circuit, branch and assemblies; the range of the drive follows.
    integer, parameter :: column_ends(3) = [9, 17, 31]
-   !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
+   !> An end of a branch without a dead point: a slide goes to infinity, the circuit could not be followed, or a
+   !> cylinder has the length 0.
    type(phrase_t), parameter :: end_words(end_far:end_shut) = [text_not_limited, text_lost, text_shut]
-   !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
+   !> Digits of the drive's value at which circuits meet: it is known to the root of a rounding.
    integer, parameter :: meeting_digits = 6
 
 contains
 
-   !> Writes the circuits `list` of the `set` at its end.
+   !> Writes the circuits of a set at its end.
    subroutine write_circuits(o, set, list)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set
-      type(circuits_t), intent(in) :: list(:)
+      type(circuits_t), intent(in) :: list(:)   !< (drives)
       integer :: n
 
       call put(o, '')
@@ -54,12 +55,11 @@ contains
       end do
    end subroutine write_circuits
 
-   !> A row for each branch of the circuits `found` of one drive of the mechanism `m`, then the dead points and the
-   !> change points.
+   !> Writes a row for each branch of the circuits of a drive, then the dead points and the change points.
    subroutine write_branches(o, m, found)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
+      type(circuits_t), intent(in) :: found   !< of the drive
       character(column_ends(3)) :: row
       character(:), allocatable :: text
       type(diagnostic_t) :: meeting
@@ -75,7 +75,7 @@ contains
             text = words_of(b%assemblies)
             row = ' '//whole(b%circuit)
             row(column_ends(1) + 1:) = whole(k)
-            ! Where there are more assemblies than the column has room for, the range stands behind them.
+            ! If there are more assemblies than the column has room for, the range follows them.
             text = text(2:)
             text = row(:column_ends(2))//text//repeat(' ', max(1, column_ends(3) - column_ends(2) - len(text)))
             call write_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
@@ -103,7 +103,7 @@ contains
       end do
    end subroutine write_branches
 
-   !> The range of the drive on `branch`.
+   !> Gives the range of the drive on a branch in words.
    function range_words(m, found, branch) result(text)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
@@ -131,22 +131,22 @@ contains
       end associate
    end function range_words
 
-   !> The value `number` (rad or length) of the free drive of `found`, 0 if it is rounding, with its unit.
+   !> Gives a value of the free drive with its unit; 0 if it is rounding.
    function value_words(m, found, number) result(words)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      real(wp), intent(in) :: number
+      real(wp), intent(in) :: number         !< rad or length
       character(:), allocatable :: words
 
       words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(number)), &
          value_digits)
    end function value_words
 
-   !> BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT
+   !> Gives the words before the place of a meeting: BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT.
    function meeting_words(one, many, numbers, polish) result(text)
-      type(phrase_t), intent(in) :: one, many
-      integer, intent(in) :: numbers(:)
-      logical, intent(in) :: polish
+      type(phrase_t), intent(in) :: one, many   !< the word for one of those that meet, and for several
+      integer, intent(in) :: numbers(:)      !< (1 or more) of those that meet
+      logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
       integer :: n
 
@@ -160,9 +160,9 @@ contains
       text = text//' '//phrase(text_at, polish)
    end function meeting_words
 
-   !> The `numbers`, a blank before each.
+   !> Gives numbers as text, a blank before each.
    pure function words_of(numbers) result(text)
-      integer, intent(in) :: numbers(:)
+      integer, intent(in) :: numbers(:)      !< (any number)
       character(:), allocatable :: text
       integer :: i
 

@@ -1,5 +1,5 @@
 !> The table of COLUMN cards: a line for each instant, with its time, the values of the drives and the numbers that the
-!> cards name. What has no room in a line is in a second table, and so on. The lines are kept until the run ends.
+!> cards name. Columns without room in a line are in a second table, and so on. The lines are kept until the run ends.
 module column_table
    use kinds, only: wp
    use columns, only: row_column_t, columns_of_rows, column_at, cell_of, of_length, of_angle
@@ -19,7 +19,7 @@ module column_table
    private
    public :: column_table_t, new_column_table, add_table_line, write_columns
 
-   !> Behind the time of a flagged instant.
+   !> The mark after the time of a flagged instant.
    character(1), parameter :: flag = '*'
    !> Lines of heads: two names, the power of ten, the unit.
    integer, parameter :: head_lines = 4, line_of_power = 3
@@ -36,9 +36,10 @@ module column_table
 
    !> The tables of a set.
    type :: column_table_t
-      logical :: alone = .false.             !< nothing else is printed at the instants: their remarks are in `remarks`
+      logical :: is_only = .false.           !< nothing else is printed at the instants: their remarks are in `remarks`
       type(listed_column_t), allocatable :: columns(:)   !< the time first; not allocated: no COLUMN cards
-      integer, allocatable :: starts(:)      !< (tables + 1) the first column of each after the time, and one more
+      !> (tables + 1) The first column of each after the time; at last the number of columns and one more.
+      integer, allocatable :: starts(:)
       type(output_t), allocatable :: lines(:)   !< (tables)
       type(output_t) :: remarks
       logical :: masked = .false.            !< some digit is a question mark
@@ -57,7 +58,7 @@ contains
 
       if (.not. allocated(set%columns)) return
       requests = requests_of(set)
-      table%alone = all(requests%every == 0)
+      table%is_only = all(requests%every == 0)
       allocate (table%columns(1 + size(l%drives) + size(set%columns)))
       call write_heads(table%columns(1), '', 'T', l%time, trim(set%time_unit))
       do i = 1, size(l%drives)
@@ -68,7 +69,7 @@ contains
          call set_number_column(i, table%columns(1 + size(l%drives) + i))
       end do
 
-      ! A table ends where a line has no room for the next column. After the time there is the flag.
+      ! A table ends if a line has no room for the next column. After the time there is the flag.
       table%starts = [2]
       used = table%columns(1)%width + len(flag)
       do i = 2, size(table%columns)
@@ -100,9 +101,9 @@ contains
          end associate
       end subroutine set_drive_column
 
-      !> Makes the column of COLUMN number `i`: the name of its row over that of the number.
+      !> Makes the column of a COLUMN card: the name of its row over the name of its number.
       subroutine set_number_column(i, column)
-         integer, intent(in) :: i
+         integer, intent(in) :: i            !< number of the card among the COLUMN cards
          type(listed_column_t), intent(inout) :: column
 
          column%request = set%columns(i)%request
@@ -119,7 +120,7 @@ contains
          type(listed_column_t), intent(inout) :: column
          character(*), intent(in) :: above, below   !< its names
          type(format_t), intent(in) :: format
-         character(*), intent(in) :: unit
+         character(*), intent(in) :: unit    !< its name
 
          column%heads = [character(line_length) :: above, below, '', unit]
          if (format%power /= 0) column%heads(line_of_power) = power_text(format%power)
@@ -145,6 +146,7 @@ contains
          line = right(time, table%columns(1)%width)
          last = table%columns(1)%width + len(flag)
          if (is_flagged(motions)) line(last:last) = flag
+
          do i = table%starts(n), table%starts(n + 1) - 1
             associate (c => table%columns(i))
                if (c%drive > 0) then
@@ -166,7 +168,7 @@ contains
       end do
    end subroutine add_table_line
 
-   !> Writes the tables, and below them what there is to say.
+   !> Writes the tables, and below them the remarks.
    subroutine write_columns(o, table, settings)
       type(output_t), intent(inout) :: o
       type(column_table_t), intent(inout) :: table   !< gives up its lines
@@ -186,8 +188,8 @@ contains
          end do
          call move_text(table%lines(n), o)
       end do
-      if (table%flagged .and. .not. table%alone) call put(o, ' --- '//flag//': '//phrase(text_flag_above, &
-         settings%polish))
+      if (table%flagged .and. .not. table%is_only) &
+         call put(o, ' --- '//flag//': '//phrase(text_flag_above, settings%polish))
       if (table%masked) call put(o, mask_words(settings))
       call move_text(table%remarks, o)
    end subroutine write_columns

@@ -1,5 +1,5 @@
-!> The shares of tolerances in the listing: of each quantity the share of each number in the sum of squares, the largest
-!> first.
+!> The shares of tolerances in the listing: for each quantity the share of each number in the sum of squares, the
+!> largest first.
 module contributions_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, is_centre
@@ -21,15 +21,16 @@ module contributions_table
 
    !> Smaller shares are only counted.
    real(wp), parameter :: least_share = 1.0e-4_wp
+   !> Decimals of a share in per cent.
    integer, parameter :: percent_decimals = 2
-   !> By this part more, what rounding has left below a half is rounded up.
+   !> A share is enlarged by this part, so that a half that rounding has left below a half is rounded up.
    real(wp), parameter :: half_up = max(1.0e-9_wp, 8.0_wp*epsilon(1.0_wp))
    !> Characters of the name of a number before its sensitivity, unless it is longer.
    integer, parameter :: parameter_name = 36
 
 contains
 
-   !> Writes the shares after the last instant of the `set`.
+   !> Writes the shares after the last instant of a set.
    subroutine write_shares(o, l, shares, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -51,6 +52,7 @@ contains
                call put(o, ' *** '//trim(set%parts(c)%tolerances(d)%name)//': '//phrase(text_jams, set%polish))
          end do
       end do
+
       do i = 1, size(set%rows)
          associate (part => set%rows(i)%part, request => requests(i))
             if (.not. has_tolerances(set%parts(part), request)) cycle
@@ -65,11 +67,11 @@ contains
       end do
    end subroutine write_shares
 
-   !> Writes the lines of a quantity, one column of a row; none where the tables, with the digits `format`, have zero.
+   !> Writes the lines of a quantity, one column of a row; none if its root of squares is zero in the tables.
    subroutine write_quantity(o, l, format, m, request, column, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(format_t), intent(in) :: format
+      type(format_t), intent(in) :: format   !< of the tables
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
       type(row_column_t), intent(in) :: column
@@ -90,14 +92,15 @@ contains
          word = trim(merge(kind%polish, kind%english, l%polish))
       end associate
       call put(o, ' '//word//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
-         //column_name(l, column)//'   T = '//time_text(l, share%t)//l%behind_time &
+         //column_name(l, column)//'   T = '//time_text(l, share%t)//l%after_time &
          //'   RSS = '//value_text(share%root)//'   '//phrase(text_worst, m%polish)//' = ' &
          //value_text(share%worst)//' '//unit)
 
-      ! A line for each number with a share of note, the largest first: share, name, sensitivity, tolerance.
+      ! A line for each number with a larger share than the least, the largest first: share, name, sensitivity,
+      ! tolerance.
       part = (share%s*m%tolerances%size_of/share%root)**2
       do while (any(part >= least_share))
-         ! Of those that are alike the first one comes first.
+         ! If some are equal, the first one comes first.
          i = findloc(part >= maxval(part)*(1.0_wp - equal_share_part), .true., dim=1)
          associate (one => m%tolerances(i))
             write (sensitivity, '(es12.4e3)') share%s(i)/f%unit

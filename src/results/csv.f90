@@ -1,14 +1,14 @@
-!> The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees as the deck says. A
-!> value that does not exist, or of which no digit is known, is empty and `mark` says why; a name with a comma is
-!> quoted. A pole or curve has three rows.
+!> The results as comma-separated values with 17 digits, in the deck's units of length and angles. A value that does not
+!> exist, or has no known digit, is empty, and `mark` has the reason; a name with a comma is quoted. A pole or curve has
+!> three rows.
 !>
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
 !> all digits.
 !>
 !> Each row has all columns: NaN stands for a value that does not exist or has no known digit. pandas, R and gnuplot
-!> read NaN as a missing value. Commas alone separate the cells, and gnuplot is given its separator. The units are those
-!> of the deck. Rejected: a blank behind each comma, for gnuplot's default: pandas takes a column with ' NaN' for text.
+!> read NaN as a missing value. Only commas separate the cells: set gnuplot's separator. The units are those of the
+!> deck. Rejected: a blank after each comma, for gnuplot's default: pandas takes a column with ' NaN' for text.
 module csv
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_value, ieee_quiet_nan
    use kinds, only: wp, label_length
@@ -35,17 +35,19 @@ module csv
    public :: table_t, table_column_t, new_table, table_head, table_instant, find_table_row, table_width
    public :: drive_columns, dotted
 
+   !> The marks of rows that are not complete, by the mark of the motion.
    character(12), parameter :: marks(0:5) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', &
       'STROKE']
-   !> The mark where nothing is missing but known digits.
+   !> The mark of a row in which only known digits are missing.
    character(*), parameter :: flag_unknown = 'UNKNOWN'
+   !> All numbers of a row have a known digit.
    logical, parameter :: all_known(3, 0:2) = .true.
-   !> Of a row whose errors are not known.
+   !> The errors of a row whose errors are not known.
    real(wp), parameter :: no_errors(3, 0:2) = nothing_known
 
    !> Characters of the name of a drive's column: RELANGLE.A.B, with a number of up to seven digits.
    integer, parameter :: drive_length = 3*label_length + 10
-   !> In the place of a value that does not exist or has no known digit.
+   !> A value that does not exist or has no known digit.
    character(*), parameter :: missing = 'NaN'
 
    !> A column after those of time and drives.
@@ -76,11 +78,11 @@ contains
       call put(o, '')
    end subroutine csv_head
 
-   !> Writes the rows of an instant that are due, with their errors where these are asked for.
+   !> Writes the rows of an instant that are due, with their errors if these are asked for.
    subroutine csv_instant(o, motions, rows, step, varies)
       type(output_t), intent(inout) :: o
       type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)
+      type(finished_row_t), intent(in) :: rows(:)   !< all requests of the set
       integer, intent(in) :: step            !< the number of the instant, from 0
       logical, intent(in) :: varies          !< as in the head
       character(:), allocatable :: start
@@ -103,7 +105,7 @@ contains
    contains
 
       !> Writes a row, or three for its three axes: kind, name, the values that exist and have a digit, mark; then the
-      !> errors of the values that exist, where these are asked for.
+      !> errors of the values that exist, if these are asked for.
       subroutine add_rows(what, row, has_digit, error)
          character(*), intent(in) :: what    !< it follows the kind: ' WORST', ...; '': nothing
          class(row_t), intent(in) :: row
@@ -147,7 +149,7 @@ contains
 
                if (motions%errors(1)%asked) then
                   has_error = error < nothing_known
-                  ! A derivative has no error where no digit of the one before is known.
+                  ! A derivative has no error if no digit of the one before is known.
                   do k = 0, 2
                      at_k = merge(k, n, kind%rows == 1)
                      if (any(place(:, k) > 0 .and. .not. has_error(:, at_k))) has_error(:, at_k:) = .false.
@@ -259,7 +261,7 @@ contains
             ! A point that has the name of a link in the table has that of its own link before it.
             if (request%kind == request_point .and. find_name(links, name) > 0) &
                name = trim(link_of_point(set, i))//'.'//name
-            ! Of a ratio the first word comes before the name of the drive.
+            ! The first word of a ratio comes before the name of the drive.
             if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
                //trim(t%drives(drive_number(set, set%rows(i)%part, request%drive)))
          end associate

@@ -1,6 +1,6 @@
-!> What is drawn of a set, taken from its motion instant by instant: frames, from which picture and animation take
-!> positions, paths of points and centrodes; how far each slide goes; and the first flagged instant. Places are counted
-!> from the set's first ground link, in the deck's unit of length.
+!> The record of a set for drawings, taken from its motion instant by instant. It has frames, from which picture and
+!> animation take positions, paths of points and centrodes; the range of each slide; and the first flagged instant.
+!> Places are counted from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
@@ -18,13 +18,13 @@ module drawing
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
    public :: point_place, point_velocity, outline_t, outlines_of, hull, moved
 
-   !> Between the instants of a deck others are computed, so that the motion has at most this many intervals. Reason: at
+   !> Between the instants of a deck others are computed, so that the motion has about this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation would leap.
    integer, parameter, public :: max_intervals = 360
-   !> If these are more, the motion has so many intervals for each turn of a drive.
+   !> If this gives more, the motion has so many intervals for each turn of a drive.
    real(wp), parameter :: intervals_a_turn = 90.0_wp
-   !> All sets of a page have together this many intervals, or those of the deck. Reason: the text of a page is held
-   !> until its last set is drawn.
+   !> All sets of a page together have at most this many intervals, or those of the deck. Reason: the text of a page is
+   !> held until its last set is drawn.
    integer, parameter :: max_in_all = 18000
    !> There are at most this many frames. Reason: a picture of 800 pixels shows no more.
    integer, parameter :: max_frames = 3601
@@ -38,9 +38,10 @@ module drawing
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
-   !> Points of a link closer than this part of the link's extent are one. Corners whose angle has a smaller sine are in
-   !> line.
-   real(wp), parameter :: same_corner = 1.0e-6_wp
+   !> Points of a link closer than this part of the link's extent are one.
+   real(wp), parameter :: same_corner_part = 1.0e-6_wp
+   !> Corners whose angle has a smaller sine are collinear.
+   real(wp), parameter :: collinear_sine = 1.0e-6_wp
 
    !> The shape of a link for the eye: the convex hull of its points, in its own axes.
    type :: outline_t
@@ -51,8 +52,8 @@ module drawing
    type :: snapshot_t
       real(wp) :: t = 0.0_wp                 !< the time, in the deck's unit
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
-      real(wp), allocatable :: rate(:)       !< (links) of phi; 0 where it is not known
-      real(wp), allocatable :: velocity(:, :)   !< (2, links) for arrows; 0 where it is not known
+      real(wp), allocatable :: rate(:)       !< (links) of phi; 0 if it is not known
+      real(wp), allocatable :: velocity(:, :)   !< (2, links) for arrows; 0 if it is not known
       logical, allocatable :: known(:)       !< (links)
       real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
       logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
@@ -118,6 +119,7 @@ contains
          if (.not. is_length(m%drives(i))) &
             turns = max(turns, drive_rate(m%drives(i), latest_time(m))*abs(film%t1 - film%t0)/(2.0_wp*pi))
       end do
+
       intervals = max(max_intervals, int(min(intervals_a_turn*turns, real(max_frames - 1, wp))))
       intervals = max(1, min(intervals, max_in_all/sets))
       if (m%steps < 0) then
@@ -354,7 +356,7 @@ contains
          corners = p
          return
       end if
-      near = same_corner*maxval(maxval(p, dim=2) - minval(p, dim=2))
+      near = same_corner_part*maxval(maxval(p, dim=2) - minval(p, dim=2))
       start = minloc(p(2, :), dim=1, mask=p(1, :) <= minval(p(1, :)))
       n = 0
       last = start
@@ -371,7 +373,7 @@ contains
             ! The sine of the angle from the next place to this one.
             associate (u => p(:, next) - p(:, last), v => p(:, i) - p(:, last))
                side = cross(u/norm2(u), v/norm2(v))
-               if (side < -same_corner .or. (side <= same_corner .and. norm2(v) > norm2(u))) next = i
+               if (side < -collinear_sine .or. (side <= collinear_sine .and. norm2(v) > norm2(u))) next = i
             end associate
          end do
          if (next == 0 .or. n == size(p, 2)) exit

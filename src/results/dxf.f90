@@ -21,8 +21,8 @@ module dxf
       integer :: request = 0                 !< the row of the point, among the requests of the set
       real(wp), allocatable :: places(:, :)  !< (2, instants) in the deck's coordinates
       logical, allocatable :: known(:)       !< (instants)
-      type(motion_t), allocatable :: first(:)   !< (parts) the motions at the first instant; of the first path alone
-      logical :: is_closed = .false.         !< the motion of the set closes; of the first path alone
+      type(motion_t), allocatable :: first(:)   !< (parts) the motions at the first instant; only in the first path
+      logical :: is_closed = .false.         !< the motion of the set closes; only in the first path
    end type point_path_t
 
    !> Significant digits of a number.
@@ -32,11 +32,11 @@ module dxf
 
 contains
 
-   !> Begins the paths of the points that PRINT cards of `m` ask for, without those of the ground.
+   !> Begins the paths of the points that PRINT cards ask for, without those of the ground.
    subroutine new_paths(m, motions, paths)
-      type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: motions    !< the motion of the set `m`
-      type(point_path_t), allocatable, intent(out) :: paths(:)
+      type(mechanism_t), intent(in) :: m     !< the set
+      type(set_motion_t), intent(in) :: motions   !< its motion
+      type(point_path_t), allocatable, intent(out) :: paths(:)   !< (any number)
       integer :: i, count, instants
 
       instants = m%steps + 1
@@ -54,12 +54,11 @@ contains
       if (count > 0) allocate (paths(1)%first(motions%count))
    end subroutine new_paths
 
-   !> Adds instant number `k`, from 0, of the motion `motions` to the `paths`; the last one tells whether the motion
-   !> closes.
+   !> Adds an instant to paths. After the last one `is_closed` is known.
    subroutine extend_paths(paths, motions, k)
       type(point_path_t), intent(inout) :: paths(:)
-      type(set_motion_t), intent(in) :: motions
-      integer, intent(in) :: k
+      type(set_motion_t), intent(in) :: motions   !< at the instant
+      integer, intent(in) :: k               !< number of the instant, from 0
       type(row_t) :: row
       real(wp) :: apart(3)
       integer :: i
@@ -81,7 +80,7 @@ contains
       end associate
    end subroutine extend_paths
 
-   !> Begins the file `o`.
+   !> Begins a file.
    subroutine begin_dxf(o)
       type(output_t), intent(inout) :: o
 
@@ -89,7 +88,7 @@ contains
       call write_pair(o, 2, 'ENTITIES')
    end subroutine begin_dxf
 
-   !> Ends the file `o`.
+   !> Ends a file.
    subroutine end_dxf(o)
       type(output_t), intent(inout) :: o
 
@@ -97,12 +96,11 @@ contains
       call write_pair(o, 0, 'EOF')
    end subroutine end_dxf
 
-   !> Writes the entities of the `drawing` of a set, whose first frame is the first instant, and the `paths`. Layers
-   !> of the first set of the file have no number.
+   !> Writes the entities of a set. Layers of the first set of the file have no number.
    subroutine write_dxf(o, drawing, paths, number)
       type(output_t), intent(inout) :: o
-      type(drawing_t), intent(in) :: drawing
-      type(point_path_t), intent(in) :: paths(:)
+      type(drawing_t), intent(in) :: drawing   !< its first frame is the first instant
+      type(point_path_t), intent(in) :: paths(:)   !< (any number) of the set
       integer, intent(in) :: number          !< of the set in the file, from 1
       character(:), allocatable :: layer
       real(wp), allocatable :: p(:, :)
@@ -141,13 +139,12 @@ contains
       end associate
    end subroutine write_dxf
 
-   !> Writes the pieces of a path on which its places are known. A path of one piece that `closes` has its first place
-   !> only once.
+   !> Writes the pieces of a path on which its places are known.
    subroutine write_path(o, layer, path, closes)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: layer
+      character(*), intent(in) :: layer      !< its name
       type(point_path_t), intent(in) :: path
-      logical, intent(in) :: closes
+      logical, intent(in) :: closes          !< the path is one closed piece, which has its first place only once
       integer :: first, last, k
 
       last = 0
@@ -156,6 +153,7 @@ contains
          if (first == last) exit
          last = first - 1 + findloc([path%known(first:), .false.], .false., dim=1) - 1
          if (closes) last = last - 1
+
          if (last > first) then
             call write_pair(o, 0, 'POLYLINE')
             call write_pair(o, 8, layer)
@@ -174,11 +172,11 @@ contains
       end do
    end subroutine write_path
 
-   !> Writes a line from `p` to `corner` (2) on the layer of links.
+   !> Writes a line on the layer of links.
    subroutine write_side(o, layer, p, corner)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: layer      !< its number, or ''
-      real(wp), intent(in) :: p(2), corner(2)
+      character(*), intent(in) :: layer      !< the beginning of its name: the number of the set, or ''
+      real(wp), intent(in) :: p(2), corner(2)   !< lengths, its ends
 
       call write_pair(o, 0, 'LINE')
       call write_pair(o, 8, layer//'LINKS')
@@ -186,22 +184,22 @@ contains
       call write_place(o, 1, corner)
    end subroutine write_side
 
-   !> Writes a place `p` (2): `which` is 0 for the first place of an entity, 1 for the second.
+   !> Writes a place of an entity.
    subroutine write_place(o, which, p)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: which
-      real(wp), intent(in) :: p(2)
+      integer, intent(in) :: which           !< 0: the first place of the entity; 1: the second
+      real(wp), intent(in) :: p(2)           !< lengths
 
       call write_number(o, 10 + which, p(1))
       call write_number(o, 20 + which, p(2))
       call write_number(o, 30 + which, 0.0_wp)
    end subroutine write_place
 
-   !> Writes a number with the group code `code`.
+   !> Writes a number with its group code.
    subroutine write_number(o, code, value)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: code
-      real(wp), intent(in) :: value
+      integer, intent(in) :: code            !< group code of DXF
+      real(wp), intent(in) :: value          !< length
 
       call write_pair(o, code, rounded(value, significant_digits, 1.0e-3_wp, 1.0e9_wp))
    end subroutine write_number
@@ -209,8 +207,8 @@ contains
    !> Writes a pair of DXF: a group code and its value.
    subroutine write_pair(o, code, value)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: code
-      character(*), intent(in) :: value
+      integer, intent(in) :: code            !< group code of DXF
+      character(*), intent(in) :: value      !< as text
 
       call put(o, whole(code))
       call put(o, value)

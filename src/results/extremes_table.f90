@@ -1,7 +1,10 @@
-!> The table of extremes at the end of a set, with the columns of the other tables: below the name of a link, point or
-!> pair its least and greatest values, each with its time and the value of the first drive of its mechanism, and the
-!> stroke; in a cyclic motion the times of the forward and the return stroke with their ratio, or all dead centres; then
-!> the dwells. What does not vary is blank, and what has nothing that varies is left out.
+!> The table of extremes at the end of a set, with the columns of the other tables. Below the name of a link, point or
+!> pair are:
+!> - its least and greatest values, each with its time and the value of the first drive of its mechanism;
+!> - the stroke;
+!> - in a cyclic motion the times of the forward and the return stroke with their ratio, or all dead centres;
+!> - the dwells.
+!> A number that does not vary is blank; a link, point or pair without a number that varies is left out.
 module extremes_table
    use kinds, only: wp
    use mechanism, only: request_t, request_link
@@ -11,7 +14,7 @@ module extremes_table
    use independent, only: set_t, request_of, first_drive
    use set_members, only: row_subject, drive_title
    use names, only: more
-   use listing_layout, only: layout_t, line_length, row_length, angle_unit, column_name, end_of_column
+   use listing_layout, only: layout_t, line_length, table_row_length, angle_unit, column_name, end_of_column
    use listing_tables, only: listing_state_t, write_times, write_heads, time_text, drive_text, mask_words
    use text_output, only: output_t, put
    use number_format, only: numeral_length, rounded
@@ -24,23 +27,23 @@ module extremes_table
    private
    public :: write_extremes, extreme_words, ratio_format
 
-   !> Digits of a closure.
+   !> Digits of the distance between the first and the last position.
    integer, parameter :: closure_digits = 3
-   !> Of more gaps only the first are told.
+   !> If there are more gaps, only so many are listed.
    integer, parameter :: max_gaps = 4
    character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
-   !> Of a ratio of times.
+   !> The form of a ratio of times.
    type(format_t), parameter :: ratio_format = format_t(decimals=6)
 
 contains
 
-   !> The `extremes` and `dwells` of the `set`.
+   !> Writes the extremes and the dwells of a set.
    subroutine write_extremes(o, l, set, extremes, dwells)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       class(set_t), intent(in) :: set
       type(extremes_t), intent(in) :: extremes
-      type(dwell_t), intent(in) :: dwells(:)
+      type(dwell_t), intent(in) :: dwells(:)   !< (any number)
       type(listing_state_t) :: table
       type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
@@ -58,15 +61,17 @@ contains
             if (any(forms(list%form)%kind == request_link .and. list%column < 3)) links_table = request_link
          end associate
       end do
+
       do q = 1, size(extremes%asked)
          part = set%rows(extremes%asked(q))%part
          own = pack(extremes%tracks(part)%coordinates, extremes%tracks(part)%coordinates%request == extremes%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
          request = request_of(set, extremes%asked(q))
+
          call write_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
             request%kind == request_link), table)
-         ! A drive that does not stand over the table has no name in it.
+         ! A drive that is not in the line over the table has no name in it.
          drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0
          if (drive > 0) driven = drive_title(set, drive)
@@ -76,12 +81,12 @@ contains
                if (w%request /= extremes%asked(q)) cycle
                c = findloc(own%column, w%column, dim=1)
                call write_at(phrase(text_dwell, set%polish)//'  '//name_of(own(c))//'  '//extreme_words(w%which) &
-                  //' +- ' &
-                  //text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
+                  //' +- '//text_of(own(c), 0, w%distance, 0.0_wp), [w%from, w%to], w%error)
             end associate
          end do
       end do
-      ! What is not sought may move.
+
+      ! Numbers that are not sought may move.
       if (.not. moves .and. all([(all(request_sought(extremes%asked(q))), q=1, size(extremes%asked))])) &
          call put(o, ' '//phrase(text_at_rest, set%polish))
       if (table%masked) call put(o, mask_words(set))
@@ -116,9 +121,9 @@ contains
          sought = one%sought
       end function request_sought
 
-      !> The rows of a link, point or pair of this `name`.
+      !> Writes the rows of a link, point or pair.
       subroutine write_subject(name)
-         character(*), intent(in) :: name
+         character(*), intent(in) :: name    !< of the link, point or pair
          character(numeral_length), dimension(size(own), 0:2) :: value, time, place
          type(strokes_t) :: strokes(size(own))
          character(:), allocatable :: line
@@ -126,10 +131,11 @@ contains
          integer :: which, c, k, i
 
          if (drive > 0) then
-            call put(o, ' '//name//'   '//phrase(text_drive, set%polish)//' '//driven//','//l%drives(drive)%behind)
+            call put(o, ' '//name//'   '//phrase(text_drive, set%polish)//' '//driven//','//l%drives(drive)%after)
          else
             call put(o, ' '//trim(name))
          end if
+
          do which = least, greatest
             value = ''
             time = ''
@@ -149,13 +155,14 @@ contains
                   end associate
                end do
             end do
+
             call write_fields(extreme_words(which), value)
             call write_fields(phrase(text_at_time, set%polish), time)
             if (drive > 0) call write_fields(phrase(text_at_drive, set%polish), place)
          end do
 
-         ! The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times
-         ! of both strokes and their ratio, or a line for each dead centre if there are more than two.
+         ! The stroke of each coordinate that varies. If the motion is cyclic, a line for each with the times of both
+         ! strokes and their ratio follows, or a line for each dead centre if there are more than two.
          value = ''
          do c = 1, size(own)
             strokes(c) = strokes_of(extremes, own(c))
@@ -170,16 +177,16 @@ contains
                ! PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
                error = sum(own(c)%found(:, 0)%t_error)
                line = '  '//name_of(own(c))//'   '//phrase(text_forward, set%polish)//' ' &
-                  //time_text(l, strokes(c)%times(1), error)//l%behind_time//'   '//phrase(text_return, set%polish) &
-                     //' ' &
-                  //time_text(l, strokes(c)%times(2), error)//l%behind_time//'   '//phrase(text_ratio, set%polish) &
-                     //' ' &
+                  //time_text(l, strokes(c)%times(1), error)//l%after_time &
+                  //'   '//phrase(text_return, set%polish)//' ' &
+                  //time_text(l, strokes(c)%times(2), error)//l%after_time &
+                  //'   '//phrase(text_ratio, set%polish)//' ' &
                   //number_text(ratio_format, strokes(c)%ratio, strokes(c)%error)
                table%masked = table%masked .or. index(line, unknown_digit) > 0
                call put(o, line)
             end if
-            if (strokes(c)%in_run >= 2 .and. is_covered(extremes) .and. .not. is_cyclic(extremes, &
-               part)) goes_on(part) = .true.
+            if (strokes(c)%in_run >= 2 .and. is_covered(extremes) .and. .not. is_cyclic(extremes, part)) &
+               goes_on(part) = .true.
             associate (dead => strokes(c)%reversals)
                do i = 1, merge(size(dead), 0, size(dead) > 2)
                   call write_at(phrase(text_dead_centre, set%polish)//'  '//name_of(own(c))//'  ' &
@@ -189,11 +196,11 @@ contains
          end do
       end subroutine write_subject
 
-      !> A line that begins with `head`: at the times `t`, one or two, of which `error` is unknown, and at these values
-      !> of the drive.
+      !> Writes a line with one or two times and the values of the drive then.
       subroutine write_at(head, t, error)
-         character(*), intent(in) :: head
-         real(wp), intent(in) :: t(:), error(:)
+         character(*), intent(in) :: head    !< the beginning of the line
+         real(wp), intent(in) :: t(:)        !< (1 or 2) times
+         real(wp), intent(in) :: error(:)    !< (1 or 2) errors of the times
          character(:), allocatable :: line, at_drive
          integer :: i
 
@@ -212,27 +219,27 @@ contains
          call put(o, line)
       end subroutine write_at
 
-      !> The line `say` about the intervals of the `list`, if there are any: as many of them as it has room for.
-      subroutine write_gaps(list, say)
-         type(uncovered_interval_t), intent(in) :: list(:)
-         type(phrase_t), intent(in) :: say
+      !> Writes a line about intervals, if there are any: as many of them as it has room for.
+      subroutine write_gaps(list, words)
+         type(uncovered_interval_t), intent(in) :: list(:)   !< (any number)
+         type(phrase_t), intent(in) :: words   !< the beginning of the line
          character(:), allocatable :: text, line, next
          integer :: i
 
          line = ''
-         text = ' --- '//phrase(say, set%polish)
+         text = ' --- '//phrase(words, set%polish)
          do i = 1, min(size(list), max_gaps)
             if (i > 1) text = text//','
             text = text//' '//time_text(l, list(i)%from)
             if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
-            next = text//l%behind_time//more(size(list) - i, set%polish)
+            next = text//l%after_time//more(size(list) - i, set%polish)
             if (i > 1 .and. len(next) > line_length) exit
             line = next
          end do
          if (len(line) > 0) call put(o, line)
       end subroutine write_gaps
 
-      !> The name of the `coordinate`.
+      !> Gives the name of a coordinate.
       pure function name_of(coordinate) result(name)
          type(coordinate_t), intent(in) :: coordinate
          character(:), allocatable :: name
@@ -240,11 +247,11 @@ contains
          name = column_name(l, columns_of_rows(coordinate%columns(0)))
       end function name_of
 
-      !> A row of `fields` (own coordinates, 0:2), with a label before it.
+      !> Writes a row of the table.
       subroutine write_fields(label, fields)
-         character(*), intent(in) :: label
-         character(numeral_length), intent(in) :: fields(:, 0:)
-         character(row_length) :: line
+         character(*), intent(in) :: label   !< the beginning of the row
+         character(numeral_length), intent(in) :: fields(:, 0:)   !< (coordinates of the row, 0:2); '': blank
+         character(table_row_length) :: line
          integer :: c, k, last
 
          line = '  '//label
@@ -260,11 +267,12 @@ contains
          call put(o, line(:len_trim(line)))
       end subroutine write_fields
 
-      !> A value of derivative number `k` of the `coordinate`, with the digits of the table; `error` is unknown of it.
+      !> Gives a value of a coordinate with the digits of the table.
       pure function text_of(coordinate, k, value, error) result(text)
          type(coordinate_t), intent(in) :: coordinate
-         integer, intent(in) :: k
-         real(wp), intent(in) :: value, error
+         integer, intent(in) :: k            !< which derivative, 0 to 2
+         real(wp), intent(in) :: value       !< in the deck's units and rad
+         real(wp), intent(in) :: error       !< its error
          character(:), allocatable :: text
 
          associate (column => columns_of_rows(coordinate%columns(k)))

@@ -1,5 +1,5 @@
-!> The names in a picture: of points and of moving links, each where it covers least at the position that the canvas
-!> shows.
+!> The names of points and of moving links in a picture, each at the place at which it covers least. The canvas shows
+!> the position.
 module labels
    use kinds, only: wp, label_length
    use mechanism, only: has_guide, request_point, is_listed_alone
@@ -14,14 +14,14 @@ module labels
    integer, parameter :: max_named = 120
    !> Points closer than this, in pixels, have one name.
    real(wp), parameter :: same_name_distance = 2.0_wp
-   !> How far names stay from what is drawn, in pixels. The name of a link must not seem to be that of another.
+   !> Names stay so far from all other things, in pixels. The name of a link must not seem to belong to another.
    real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
-   !> Where along a bar its name may stand, in parts of its length.
+   !> The places along a bar at which its name may stand, in parts of its length.
    real(wp), parameter :: name_places(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
 
 contains
 
-   !> Finds the names of points and links in the picture `canvas`; none if they are too many.
+   !> Finds the names of points and links in a picture; none if they are too many.
    subroutine labels_of(canvas, labels)
       type(canvas_t), intent(inout) :: canvas
       type(label_t), allocatable, intent(out) :: labels(:)
@@ -36,13 +36,13 @@ contains
       labels = labels(:used)
    end subroutine labels_of
 
-   !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the
-   !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT
-   !> asks for, of several the one with the shortest name, the first of these. The name of its link would stand there
-   !> twice.
+   !> Finds a name for each place of points that are known. All points of moving links count; of the ground only joints,
+   !> since the point from which a slide is counted need not be on the guide. If several points are at one place, the
+   !> name is of a point that PRINT asks for, then the shortest, then the first. A point with the name of its link has
+   !> none, since the link has it.
    subroutine name_points(canvas, labels, used)
       type(canvas_t), intent(inout) :: canvas
-      type(label_t), intent(inout) :: labels(:)
+      type(label_t), intent(inout) :: labels(:)   !< with room for further ones
       integer, intent(inout) :: used         !< so many are found
       logical, dimension(size(canvas%mechanism%points)) :: open, printed
       real(wp) :: p(2, size(canvas%mechanism%points))
@@ -61,6 +61,7 @@ contains
       do i = 1, size(canvas%mechanism%points)
          if (open(i)) p(:, i) = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, i))
       end do
+
       do while (any(open))
          best = minloc(len_trim(canvas%mechanism%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
          do i = 1, size(canvas%mechanism%points)
@@ -76,11 +77,11 @@ contains
       end do
    end subroutine name_points
 
-   !> The names of the moving links, each in its color: beside a bar, in or beside a polygon. They may stand along the
+   !> Finds the names of the moving links, each in its color: near a bar, in or near a polygon. They may stand along the
    !> sides of the link, or at its only place.
    subroutine name_links(canvas, labels, used)
       type(canvas_t), intent(inout) :: canvas
-      type(label_t), intent(inout) :: labels(:)
+      type(label_t), intent(inout) :: labels(:)   !< with room for further ones
       integer, intent(inout) :: used         !< so many are found
       real(wp), allocatable :: corners(:, :), p(:, :)
       integer :: i, j, k, n, places

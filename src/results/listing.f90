@@ -1,7 +1,7 @@
 !> The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
-!> It takes finished data and depends on nothing else: two correct programs print the same bytes.
+!> It takes finished data and depends on nothing else: two correct programs print equal bytes.
 !>
-!> Diagnostics in words: three stars before what concerns the results, three dashes before what is good to know.
+!> Diagnostics in words: three stars before a diagnostic that concerns the results, three dashes before other remarks.
 module listing
    use kinds, only: wp
    use plane_vectors, only: degree
@@ -24,24 +24,25 @@ module listing
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, write_untold
+   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, write_waiting
    public :: words_of_flag
    public :: limit_words, at_limit, full_turn_words, measure, value_digits, write_diagnostics, remark_text
 
-   !> Why there is not all of a motion, by its mark.
+   !> The reason why a motion is not complete, by its mark.
    type(phrase_t), parameter :: flag_words(flag_none:flag_stroke) = &
       [phrase_t(), text_no_position, phrase_t(), text_overflow, text_contradiction, text_out_of_stroke]
-   !> The same of flag_singular, by what the position is.
+   !> The reason for flag_singular, by the kind of the position.
    type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
       [text_singular, text_change_point, text_dead_point]
+   !> Links of a group in one line.
    integer, parameter :: links_a_line = 10
-   !> Digits of the value of a drive at a limit, or as many as a coarser real has; of a closure error or an angle that
-   !> is off.
-   integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10), error_digits = 3
-   !> What concerns the results.
-   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_stroke, diagnostic_mobile, &
-      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end]
+   !> Digits of the value of a drive at a limit, or as many as a coarser real has.
+   integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10)
+   !> Digits of a closure error or an angle that is off.
+   integer, parameter :: error_digits = 3
+   !> The diagnostics that concern the results.
+   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_stroke, &
+      diagnostic_mobile, diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end]
    !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
@@ -52,7 +53,7 @@ module listing
 
 contains
 
-   !> Title, data and structure of one set.
+   !> Writes title, data and structure of a set.
    subroutine listing_head(o, m, findings)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -81,14 +82,14 @@ contains
          call put(o, ' '//phrase(text_links, pl)//' '//whole(f%links)//', '//phrase(text_ground, pl) &
             //' '//whole(f%ground)//';  '//phrase(text_revolute, pl)//' '//whole(f%revolute) &
             //';  '//phrase(text_prismatic, pl)//' '//whole(f%prismatic))
-         call put(o, ' '//phrase(text_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(text_equations, &
-            pl) &
-            //' R = '//whole(f%equations)//';  '//phrase(text_degrees_of_freedom, pl)//' S = ' &
+         call put(o, ' '//phrase(text_coordinates, pl)//' W = '//whole(f%coordinates) &
+            //';  '//phrase(text_equations, pl)//' R = '//whole(f%equations) &
+            //';  '//phrase(text_degrees_of_freedom, pl)//' S = ' &
             //whole(f%degrees_of_freedom)//';  '//phrase(text_drives, pl)//' '//whole(f%drives))
          if (f%degrees_of_freedom < f%drives) call put(o, ' --- '//phrase(text_repeating, pl)//' ' &
             //whole(f%drives - f%degrees_of_freedom))
 
-         ! A line of links for each group, continued where they are many.
+         ! A line of links for each group, continued if they are many.
          if (size(f%groups) > 0) call put(o, ' '//phrase(text_groups, pl))
          do i = 1, size(f%groups)
             head = whole(i)
@@ -106,39 +107,41 @@ contains
                end do
             end associate
          end do
+
          call put(o, '')
          call put(o, ' '//phrase(text_results, pl))
       end associate
    end subroutine listing_head
 
-   !> Writes the tables of an instant, with the rows that are listed; digits that rounding leaves open are masked. Marks
-   !> and diagnostics of the instant follow. After these the next instant has its heads again. Beyond a limit of motion
-   !> that the instant before has told a part has no words and no rows without values. Instants that have nothing else
-   !> wait in `table` for one line.
+   !> Writes the tables of an instant, with the rows that are listed; uncertain digits are masked. Marks and
+   !> diagnostics of the instant follow. After these the next instant has its heads again. Beyond a limit of motion
+   !> that the instant before has explained, a part has no words and no rows without values. Instants that have nothing
+   !> else wait in `table` for one line.
    subroutine listing_instant(o, l, motions, rows, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
       integer, intent(in) :: step            !< the number of the instant, from 0
       type(listing_state_t), intent(inout) :: table   !< as the instant before has left it
       type(row_t) :: other
       real(wp) :: limits(motions%count)
-      logical :: begun, is_told(motions%count), has_news
+      logical :: begun, is_explained(motions%count), has_news
       integer :: i, c, k
 
       limits = [(limit_before(motions%motions(c)), c=1, motions%count)]
-      is_told = .false.
-      if (allocated(table%limits)) is_told = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
+      is_explained = .false.
+      if (allocated(table%limits)) is_explained = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
       has_news = any([((motions%motions(c)%mark /= flag_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
-         .not. is_told(c), c=1, motions%count)])
+         .not. is_explained(c), c=1, motions%count)])
       table%limits = limits
       begun = .false.
       table%masked = .false.
+
       do i = 1, size(rows)
          associate (row => rows(i), d => l%own(rows(i)%part))
             if (.not. row%listed) cycle
-            if (is_told(row%part) .and. row%known < 0) cycle
+            if (is_explained(row%part) .and. row%known < 0) cycle
             if (.not. begun) call begin_instant()
             call write_heads(o, l, row%part, &
                merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), table)
@@ -154,7 +157,8 @@ contains
             end do
          end associate
       end do
-      if (.not. begun .and. any(is_told) .and. .not. has_news) then
+
+      if (.not. begun .and. any(is_explained) .and. .not. has_news) then
          if (table%first < 0) table%first = step
          table%last = step
          return
@@ -170,16 +174,16 @@ contains
 
    contains
 
-      !> The line over the tables, after that of the instants before it without values.
+      !> Writes the line over the tables, after the line of the instants before it without values.
       subroutine begin_instant()
-         call write_untold(o, motions%polish, table)
-         if (any(limits < huge(1.0_wp) .and. .not. is_told)) table%told = step
+         call write_waiting(o, motions%polish, table)
+         if (any(limits < huge(1.0_wp) .and. .not. is_explained)) table%explained = step
          call write_instant(o, l, motions%motions(1)%t, step, table)
          begun = .true.
       end subroutine begin_instant
 
-      !> Why some part of `motions` has not all of its motion, each line once: of a limit of motion before it the time,
-      !> of singular positions the links.
+      !> Writes why the motion of some part is not complete, each line once: with the time of a limit of motion before
+      !> it, or the links of a singular position.
       subroutine write_marks()
          character(:), allocatable :: line, lines, text
          integer :: k
@@ -187,13 +191,13 @@ contains
          lines = ''
          do c = 1, motions%count
             associate (q => motions%motions(c), m => motions%parts(c))
-               if (q%mark == flag_none .or. is_told(c)) cycle
+               if (q%mark == flag_none .or. is_explained(c)) cycle
                line = words_of_flag(q%mark, q%singularity, motions%polish)
                if (q%mark == flag_inconsistent) then
                   k = 0
                   if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
                   if (k > 0) call write_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
-                  ! A tolerance is no cure for a drive that is too many.
+                  ! A tolerance is no cure for a surplus drive.
                   table%surplus = table%surplus .or. k > 0
                   if (.not. (table%surplus .or. motions%closing > 0.0_wp)) &
                      line = line//': '//phrase(text_give_closing, motions%polish)
@@ -213,7 +217,7 @@ contains
       end subroutine write_marks
    end subroutine listing_instant
 
-   !> The time of the limit beyond which the motion `q` has no position; huge if that is not why, or if it has one.
+   !> Finds the time of the limit beyond which a motion has no position; huge if there is a position or another reason.
    pure real(wp) function limit_before(q) result(time)
       type(motion_t), intent(in) :: q
       integer :: i
@@ -225,11 +229,11 @@ contains
       end do
    end function limit_before
 
-   !> The line of the instants of `table` that have none yet; nothing if there are no such instants.
-   subroutine write_untold(o, polish, table)
+   !> Writes the line of the instants that wait for one; nothing if there are none.
+   subroutine write_waiting(o, polish, table)
       type(output_t), intent(inout) :: o
-      logical, intent(in) :: polish
-      type(listing_state_t), intent(inout) :: table
+      logical, intent(in) :: polish          !< in Polish
+      type(listing_state_t), intent(inout) :: table   !< has the instants
       character(:), allocatable :: instants
 
       if (table%first < 0) return
@@ -237,33 +241,32 @@ contains
       if (table%first < table%last) instants = phrase(text_instants, polish)//' '//whole(table%first)//' ' &
          //phrase(text_to, polish)//' '//whole(table%last)
       call put(o, '')
-      call put(o, ' '//instants//': '//phrase(text_as, polish)//' '//whole(table%told))
+      call put(o, ' '//instants//': '//phrase(text_as, polish)//' '//whole(table%explained))
       table%kind = no_table
       table%first = -1
-   end subroutine write_untold
+   end subroutine write_waiting
 
-   !> Why there is not all of a motion, by its `mark`, and where that is flag_singular by its `singularity`.
+   !> Gives the reason why a motion is not complete in words.
    pure function words_of_flag(mark, singularity, polish) result(words)
-      integer, intent(in) :: mark, singularity
-      logical, intent(in) :: polish
+      integer, intent(in) :: mark            !< flag_not_converged, ...
+      integer, intent(in) :: singularity     !< with flag_singular: singular_change, ...
+      logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: words
 
       words = phrase(flag_words(mark), polish)
       if (mark == flag_singular) words = phrase(singular_words(singularity), polish)
    end function words_of_flag
 
-   !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
-   !> characteristic length; negative where none are), and the error to which a closing tolerance lets them agree;
-   !> `diagnostics`; what is certified of the branches on which the
-   !> instants were found; how many instants were `solved` and how many are `flagged`.
+   !> Writes the last lines of a set: the closure error of redundant equations, and the error that a closing tolerance
+   !> allows; diagnostics; the counts of certificates; the counts of solved and flagged instants.
    subroutine listing_end(o, set, solved, flagged, certificate_counts, closure_error, allowed_error, diagnostics)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set
-      integer, intent(in) :: solved, flagged
+      integer, intent(in) :: solved, flagged   !< counts of instants
       type(certificate_counts_t), intent(in) :: certificate_counts
-      real(wp), intent(in) :: closure_error
-      real(wp), intent(in) :: allowed_error  !< of instants with a position (characteristic lengths, rad), or 0
-      type(diagnostic_t), intent(in) :: diagnostics(:)
+      real(wp), intent(in) :: closure_error   !< characteristic lengths; below 0: no equation is redundant
+      real(wp), intent(in) :: allowed_error   !< of instants with a position (characteristic lengths, rad), or 0
+      type(diagnostic_t), intent(in) :: diagnostics(:)   !< (any number)
       character(:), allocatable :: end_of
       character(20) :: number
       integer :: i
@@ -279,6 +282,7 @@ contains
          write (number, '(es9.1e2)') allowed_error
          call write_folded(o, ' --- ', phrase(text_not_better, set%polish)//' '//trim(adjustl(number)))
       end if
+
       do i = 1, size(diagnostics)
          call write_diagnostics(o, set, diagnostics(i)%part, diagnostics(i:i))
       end do
@@ -294,7 +298,7 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> Gives the text of the `remark` about the cards of `m`: CARD 7  COLUMN 9: "TIP" and a sentence.
+   !> Gives the text of a remark about a card: CARD 7  COLUMN 9: "TIP" and a sentence.
    function remark_text(m, remark) result(text)
       type(mechanism_t), intent(in) :: m
       type(remark_t), intent(in) :: remark
@@ -317,7 +321,7 @@ contains
          //whole(remark%column)//': '//text
    end function remark_text
 
-   !> A line for each diagnostic of `list` that no mark has told.
+   !> Writes a line for each diagnostic that no mark explains.
    subroutine write_diagnostics(o, set, part, list)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set
@@ -332,7 +336,7 @@ contains
       end do
    end subroutine write_diagnostics
 
-   !> LINKS A, B AT THE LIMIT, COLLINEAR
+   !> Gives the links of a limit in words: LINKS A, B AT THE LIMIT, COLLINEAR.
    function at_limit(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: diagnostic
@@ -347,7 +351,7 @@ contains
       if (diagnostic%in_line) text = text//', '//phrase(text_in_line, m%polish)
    end function at_limit
 
-   !> The sentence of `diagnostic`.
+   !> Gives the sentence of a diagnostic; '' for a kind that has none.
    function words_of(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: diagnostic
@@ -364,9 +368,10 @@ contains
          if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(m, diagnostic)
       case (diagnostic_stroke)
          text = phrase(text_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '
-         if (diagnostic%value > 0.0_wp) text = text//phrase(text_length, m%polish)//' '//measure(m, diagnostic, &
-            value_digits)
+         if (diagnostic%value > 0.0_wp) &
+            text = text//phrase(text_length, m%polish)//' '//measure(m, diagnostic, value_digits)
          if (.not. diagnostic%value > 0.0_wp) text = text//phrase(text_below_0, m%polish)
+
       case (diagnostic_far_estimate)
          text = links(m, diagnostic)//': '//phrase(text_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
       case (diagnostic_second)
@@ -375,18 +380,18 @@ contains
          text = links(m, diagnostic)//': '//phrase(text_incomplete, m%polish)
       case (diagnostic_begins)
          text = phrase(text_begins, m%polish)
+
       case (diagnostic_redundant)
          text = phrase(text_redundant, m%polish)//': '//owner()
          if (diagnostic%equations > 1) text = phrase(text_redundant_many, m%polish)//': ' &
-            //whole(diagnostic%equations)//' ' &
-            //phrase(text_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+            //whole(diagnostic%equations)//' '//phrase(text_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
       case (diagnostic_change)
          text = place()//phrase(merge(merge(text_returns_other, text_returns, diagnostic%other), &
             merge(text_here, merge(text_other, text_smoothly, diagnostic%other), diagnostic%here), &
-               diagnostic%returns), &
-               m%polish)
+            diagnostic%returns), m%polish)
       case (diagnostic_dead_end)
          text = place()//phrase(text_not_found, m%polish)
+
       case (diagnostic_unused)
          text = 'BRANCH '
          if (diagnostic%links(1) > 0) text = text//trim(m%links(diagnostic%links(1))%name)//' '
@@ -399,30 +404,29 @@ contains
       case (diagnostic_method)
          text = phrase(text_method, m%polish)
          if (diagnostic%other) text = phrase(text_elsewhere, m%polish)//': '//text
+
       case (diagnostic_surplus)
          text = phrase(text_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(diagnostic%links(k))), &
             k=1, count(diagnostic%links > 0))], m%polish)//more(diagnostic%more, m%polish)
       case (diagnostic_turned)
          text = 'LINE '//trim(m%measures(diagnostic%measure)%name)//' '//phrase(text_turned_by, m%polish)//' ' &
             //measure(m, diagnostic, error_digits)//' '//phrase(text_in_step, m%polish)//' '//time(m, diagnostic%t) &
-               //': ' &
-            //phrase(text_turned_far, m%polish)
+            //': '//phrase(text_turned_far, m%polish)
       case (diagnostic_mobile)
          text = links(m, diagnostic)//' '//phrase(text_mobile, m%polish)
       end select
 
    contains
 
-      !> CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER:
+      !> Gives the place of a change point: CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER, and a colon.
       function place() result(text)
          character(:), allocatable :: text
 
          text = phrase(merge(text_singular_at, text_change, diagnostic%returns), m%polish)//' '//time(m, diagnostic%t) &
-            //', '//links(m, diagnostic) &
-            //': '
+            //', '//links(m, diagnostic)//': '
       end function place
 
-      !> PAIR A, or DRIVE ANGLE B
+      !> Gives the owner of an equation: PAIR A, or DRIVE ANGLE B.
       function owner() result(text)
          character(:), allocatable :: text
 
@@ -435,7 +439,7 @@ contains
       end function owner
    end function words_of
 
-   !> Where a drive is at the limit `diagnostic` of its range, and which links are there.
+   !> Gives the value of a drive at a limit of its range, with the links of the limit.
    function limit_words(set, part, diagnostic) result(text)
       class(set_t), intent(in) :: set
       integer, intent(in) :: part            !< number of the independent mechanism
@@ -448,16 +452,16 @@ contains
       end associate
    end function limit_words
 
-   !> TURNS FULLY, CLOSES AFTER 1 TURN
+   !> Gives the words for a full turn: TURNS FULLY, CLOSES AFTER 1 TURN.
    function full_turn_words(turns, polish) result(text)
-      integer, intent(in) :: turns
-      logical, intent(in) :: polish
+      integer, intent(in) :: turns           !< after so many turns the motion closes
+      logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
 
       text = phrase(text_all, polish)//' '//whole(turns)//' '//phrase(merge(text_turn, text_turns, turns == 1), polish)
    end function full_turn_words
 
-   !> LINKS A, B AND 3 MORE
+   !> Gives the links of a diagnostic: LINKS A, B AND 3 MORE.
    function links(m, diagnostic) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: diagnostic
@@ -470,27 +474,28 @@ contains
       text = text//more(diagnostic%more, m%polish)
    end function links
 
-   !> The diagnostic's value with so many `digits`, and its unit.
+   !> Gives the value of a diagnostic with its unit.
    function measure(settings, diagnostic, digits) result(text)
       class(settings_t), intent(in) :: settings
       type(diagnostic_t), intent(in) :: diagnostic
-      integer, intent(in) :: digits
+      integer, intent(in) :: digits          !< significant ones
       character(:), allocatable :: text
       !> Numbers between these have no exponent.
-      real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
+      real(wp), parameter :: min_without_exponent = 1.0e-4_wp, max_without_exponent = 1.0e9_wp
 
       if (diagnostic%is_angle) then
-         text = rounded(diagnostic%value/merge(degree, 1.0_wp, settings%degrees), digits, smallest, largest)//' ' &
-            //trim(angle_unit(settings))
+         text = rounded(diagnostic%value/merge(degree, 1.0_wp, settings%degrees), digits, min_without_exponent, &
+            max_without_exponent)//' '//trim(angle_unit(settings))
       else
-         text = rounded(diagnostic%value, digits, smallest, largest)//' '//trim(settings%length_unit)
+         text = rounded(diagnostic%value, digits, min_without_exponent, max_without_exponent)//' ' &
+            //trim(settings%length_unit)
       end if
    end function measure
 
-   !> A time as the tables of `settings` have it, with its unit.
+   !> Gives a time with the digits of the tables and its unit.
    function time(settings, t) result(text)
       class(settings_t), intent(in) :: settings
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t              !< time
       character(:), allocatable :: text
       type(format_t) :: f
 

@@ -1,8 +1,8 @@
 !> The layout of the tables of a set: digits, powers of ten, units, heads of columns.
 !>
-!> Digits: positions, velocities and accelerations are printed with the decimals, and where need be the power
-!> of ten, that give seven digits to the deck's characteristic length and rate; so one mechanism in
-!> millimetres and in kilometres prints the same digits.
+!> Digits: the deck's characteristic length and rate have seven digits. Positions, velocities and accelerations have the
+!> decimals for this, and a power of ten if necessary. One mechanism in millimetres and in kilometres prints the same
+!> digits.
 module listing_layout
    use kinds, only: wp, label_length
    use plane_vectors, only: degree
@@ -22,48 +22,48 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
-   public :: row_title, line_length, name_length, row_length, end_of_column, column_name, column_unit, angle_unit, &
+   public :: row_title, line_length, name_length, table_row_length, end_of_column, column_name, column_unit, angle_unit, &
       choose_time_digits, write_folded
 
-   !> Characters of a line at most.
+   !> The largest number of characters of a line.
    integer, parameter :: line_length = 120
    !> Characters before a row's numbers, and of a whole row.
-   integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
-   !> Where a table has rows of two forms, the columns of the second stand so many places behind those of the first.
-   integer, parameter :: behind_first = 4
-   !> Of more drives only the first stand at the head of an instant.
+   integer, parameter :: name_length = 9, table_row_length = name_length + 9*numeral_length
+   !> If a table has rows of two forms, the columns of the second form stand so many places after the first ones.
+   integer, parameter :: second_form_shift = 4
+   !> If there are more drives, only so many stand at the head of an instant.
    integer, parameter :: max_drives = 6
 
    !> The digits of one independent mechanism.
    type :: digits_t
       type(format_t) :: format(last_dimension, 0:2)   !< (of_length, ...; derivative)
       !> By the kind of a table: the lines over its rows, joined by new_line('a').
-      character(4*(row_length + 1)) :: heads(table_turning:last_table)
+      character(4*(table_row_length + 1)) :: heads(table_turning:last_table)
       integer :: head_length(table_turning:last_table) = 0
    end type digits_t
 
-   !> A drive at the head of an instant: what stands before and behind its value, and its form.
+   !> A drive at the head of an instant: the text before and after its value, and its form.
    type :: head_drive_t
-      character(:), allocatable :: before, behind
+      character(:), allocatable :: before, after
       type(drive_t) :: law
       type(format_t) :: format
-      real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `growing_sizes`
+      real(wp) :: size_of(0:1) = 0.0_wp    !< size of the terms of its value, (0) + (1) |t|, by `growing_sizes`
    end type head_drive_t
 
    !> The digits of the set, and of each of its independent mechanisms.
    type, extends(digits_t) :: layout_t
       type(digits_t), allocatable :: own(:)   !< (parts)
       type(format_t) :: time                  !< of the instants
-      integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
+      integer :: more_decimals = 0         !< of the effect of tolerances, in addition to the decimals of the number
       logical :: polish = .false.
       integer :: links_table = request_link   !< the kind of the tables of links
       integer :: shift(last_form) = 0      !< places that the columns of a form of rows are further on
       logical :: has(last_form) = .false.  !< there are such rows
       character(label_length) :: unit(last_dimension) = ''   !< of lengths and angles; of the quantity of a ratio
-      character(label_length + 4) :: per(last_dimension, 0:2) = ''   !< what they are divided by in a derivative
-      logical :: per_below = .false.       !< that stands in a line below the units, which are long
+      character(label_length + 4) :: per(last_dimension, 0:2) = ''   !< the divisor of the unit of a derivative
+      logical :: per_below = .false.       !< the divisor is in a line below the unit, which is long
       character(numeral_length) :: words(cell_none:last_cell)   !< in the place of a number
-      character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
+      character(:), allocatable :: before_instant, after_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
       character(:), allocatable :: more_drives                    !< ' AND 3 MORE', or ''
    end type layout_t
@@ -86,8 +86,8 @@ contains
 
    contains
 
-      !> Chooses the digits of each part of the set. Where no part has more than one decimal more than another, all have
-      !> those of the largest.
+      !> Chooses the digits of each part of the set. If the decimals of parts differ by at most one, all have those of
+      !> the largest part.
       subroutine choose_own_digits()
          type(format_t) :: largest(of_length:of_angle, 0:2)
          real(wp) :: length, rate, angle
@@ -107,6 +107,7 @@ contains
                   call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
                      f(of_angle, k))
                end do
+
                if (all(set%parts(c)%requests%drive == 0)) cycle
                do i = of_angle + 1, last_dimension
                   do k = 0, 1
@@ -115,6 +116,7 @@ contains
                end do
             end associate
          end do
+
          l%digits_t = l%own(1)
          largest = l%own(1)%format(:of_angle, :)
          mixed = .false.
@@ -148,7 +150,7 @@ contains
                if (of_table(2) == 0 .and. .not. is_ratio(of_table(1))) then
                   l%has(of_table(1)) = .true.
                else if (of_table(2) > 0 .and. l%has(of_table(1))) then
-                  l%shift(of_table(2)) = behind_first
+                  l%shift(of_table(2)) = second_form_shift
                end if
             end associate
          end do
@@ -158,7 +160,7 @@ contains
             l%per(i, :) = [character(label_length + 4) :: '', '/'//set%time_unit, '/'//trim(set%time_unit)//'**2']
          end do
          l%per_below = maxval(len_trim(l%unit)) + len_trim(l%per(of_length, 2)) >= numeral_length
-         ! Of a ratio they are those of the quantity and of the drive.
+         ! The unit of a ratio is the unit of the quantity over the unit of the drive.
          do i = of_angle + 1, last_dimension
             l%unit(i) = l%unit(quantities(i))
             associate (by => l%unit(of_drives(i)))
@@ -181,7 +183,7 @@ contains
 
          call choose_time_digits(set, l%time)
          l%before_instant = ' '//phrase(text_instant, set%polish)//' '
-         l%behind_time = ' '//unit_of(l%time%power, trim(set%time_unit))
+         l%after_time = ' '//unit_of(l%time%power, trim(set%time_unit))
          allocate (l%drives(min(size(set%drives), max_drives)))
          do k = 1, size(l%drives)
             law = drive_of(set, k)
@@ -190,7 +192,7 @@ contains
                drive%law = law
                drive%format = d%format(dimension, 0)
                drive%before = '   '//drive_title(set, k)//' = '
-               drive%behind = ' '//unit_of(drive%format%power, trim(l%unit(dimension)))
+               drive%after = ' '//unit_of(drive%format%power, trim(l%unit(dimension)))
                sizes = growing_sizes(law, latest_time(set))
                drive%size_of = sizes(1, :)
             end associate
@@ -217,7 +219,7 @@ contains
       type(layout_t), intent(in) :: l
       type(digits_t), intent(inout) :: digits     !< of a part: its formats; gets the lines
       integer, intent(in) :: kind            !< of the table: table_turning, request_link, ...
-      character(row_length) :: lines(4)
+      character(table_row_length) :: lines(4)
       integer :: i, j, n
 
       lines = ''
@@ -226,6 +228,7 @@ contains
          n = kinds_of_rows(kind)%forms(i)
          if (n == 0) exit
          if (.not. l%has(n)) cycle
+
          do j = forms(n)%first, forms(n)%last
             associate (c => columns_of_rows(j), last => end_of_column(l, n, j))
                if (c%place == 0) cycle
@@ -242,6 +245,7 @@ contains
             end associate
          end do
       end do
+
       digits%heads(kind) = lines(1)
       n = len_trim(lines(1))
       do i = 2, size(lines)
@@ -313,7 +317,7 @@ contains
          if (.not. time > 0.0_wp) return
          call choose_digits(log10(time), 0, format)
          before = max(1, 1 + digits_after_first - format%decimals)
-         ! Beside the point, and a blank before it; those before zero have a sign.
+         ! In addition there are the point and a blank; a time below zero has a sign.
          room = numeral_length - 2 - before - merge(1, 0, min(settings%t0, settings%t1, minval(settings%at)) < 0.0_wp)
          needed = format%power + 1 + ceiling(-log10(shortest_step(settings)) - order_margin)
          if (needed <= room + 1) format%decimals = max(format%decimals, min(room, needed))

@@ -14,24 +14,24 @@ module listing_tables
    implicit none
    private
    public :: listing_state_t, no_table, write_instant, write_times, write_heads, write_row, time_text, drive_text, &
-      law_error, &
-      mask_words
+      law_error, mask_words
 
+   !> Between two times, or the values of a drive at these.
    character(4), parameter :: between = ' .. '
    !> Heads stand again after so many lines.
    integer, parameter :: lines_a_head = 60
 
-   !> No heads hold for the next row.
+   !> The next row has no heads yet.
    integer, parameter :: no_table = -1
 
-   !> What a reader of the listing sees above the next row: the heads that hold for it, and how far above they are.
+   !> The state of the listing above the next row: the heads that hold for it, and how far above they are.
    type :: listing_state_t
       integer :: kind = no_table           !< of their table: table_turning, request_link, ...
       integer :: part = 0                  !< of the last of them
       integer :: lines = 0                 !< since the heads
       logical :: masked = .false.          !< some digit of the instant is a question mark
-      logical :: surplus = .false.         !< it is told that a drive is too many
-      integer :: told = 0                  !< the last instant that told why it has no values
+      logical :: surplus = .false.         !< a surplus drive has been reported
+      integer :: explained = 0                  !< the last instant whose reason for no values is printed
       integer :: first = -1, last = -1     !< instants after it without values, which have no line yet; -1: none
       real(wp), allocatable :: limits(:)   !< (parts) the limit of motion before the last instant; huge: none
    end type listing_state_t
@@ -51,8 +51,8 @@ contains
       call write_times(o, l, l%before_instant//whole(step), [t], table)
    end subroutine write_instant
 
-   !> Writes a blank line, and one with times and the values of the drives then, which go on in the next line where they
-   !> are many. They are written into lines of their own: text that grows would cost as much as a table.
+   !> Writes a blank line, and a line with times and the values of the drives then; if they are many they go on in
+   !> further lines. The lines have a fixed length: text that grows would cost as much as a table.
    subroutine write_times(o, l, start, times, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -71,7 +71,7 @@ contains
          if (k > 1) call append(between, line, used)
          call append_number(l%time, times(k), 0.0_wp, line, used, table%masked)
       end do
-      call append(l%behind_time, line, used)
+      call append(l%after_time, line, used)
 
       do i = 1, size(l%drives)
          length = 0
@@ -83,7 +83,7 @@ contains
                call append_number(d%format, f(1), law_error(d, times(k)), part, length, table%masked)
             end associate
          end do
-         call append(l%drives(i)%behind, part, length)
+         call append(l%drives(i)%after, part, length)
          if (i == size(l%drives)) call append(l%more_drives, part, length)
 
          if (used + length > line_length) then
@@ -116,7 +116,7 @@ contains
       real(wp), intent(in) :: error          !< its rounding error
       character(*), intent(inout) :: line    !< which has room for it
       integer, intent(inout) :: used         !< the characters of the line that are written
-      logical, intent(inout) :: masked       !< becomes true where a digit is masked
+      logical, intent(inout) :: masked       !< becomes true if a digit is masked
       character(numeral_length) :: number
 
       call write_number(format, 0, value, error, number, masked)
@@ -188,7 +188,7 @@ contains
       integer, intent(in) :: more            !< decimals in addition to those of `digits`
       real(wp), intent(in) :: error(3, 0:2)  !< the rounding error of its value
       type(listing_state_t), intent(inout) :: table
-      character(row_length) :: line
+      character(table_row_length) :: line
       real(wp) :: value
       integer :: j, cell, start, last, end_of
 
@@ -233,7 +233,7 @@ contains
       table%lines = table%lines + 1
    end subroutine write_row
 
-   !> Finds the line that explains the mark of an unknown digit in the set `settings`.
+   !> Gives the line that explains the mark of an unknown digit.
    function mask_words(settings) result(line)
       class(settings_t), intent(in) :: settings
       character(:), allocatable :: line

@@ -4,7 +4,7 @@ module phrases
    private
    public :: phrase_t, phrase
 
-   !> The same words in both languages.
+   !> A phrase in both languages.
    type :: phrase_t
       character(160) :: english = '', polish = ''
    end type phrase_t
@@ -252,10 +252,10 @@ module phrases
 
 contains
 
-   !> The words of `words`, without trailing blanks, in Polish or in English.
+   !> Gives the text of a phrase, without trailing blanks, in Polish or in English.
    pure function phrase(words, polish) result(text)
       type(phrase_t), intent(in) :: words
-      logical, intent(in) :: polish
+      logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: text
 
       if (polish) text = words%polish(:len_trim(words%polish))

@@ -1,6 +1,6 @@
-!> The picture of a set as SVG: the mechanism at one instant, faint at some others, the paths of the points that PRINT
-!> asks for, the centrodes that POLE asks for, the first flagged instant in words, names, and a scale. Which frames it
-!> shows: the one in which the mechanism is read best, and a few others.
+!> The picture of a set as SVG. It has the mechanism at one instant, faint at some others, names and a scale; the paths
+!> of the points that PRINT asks for, the centrodes that POLE asks for, and the first flagged instant in words. It
+!> shows the frame in which the mechanism is read best, and a few others.
 module picture
    use kinds, only: wp
    use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
@@ -20,12 +20,12 @@ module picture
    private
    public :: draw_picture, clearest, faint_frames
 
-   !> The arrow of a drive is a line of so many pieces, the last ones its tip.
+   !> The arrow of a drive is a line of so many pieces; the last ones are its tip.
    integer, parameter :: arrow_pieces = 10, tip_pieces = 2
-   !> Its pixels: length of a straight one, its distance aside, half the tip; radius of an arc.
+   !> Pixels of a straight arrow: its length, its distance from the point, half its tip; radius of an arc.
    real(wp), parameter :: arrow_length = 45.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
       tip_half = 4.5_wp, arc_radius = 24.0_wp
-   !> The angle of an arc, and where it may begin, from the side of the link in its own sense (degrees).
+   !> The angle of an arc, and the angles at which it may begin, from the side of the link in its own sense (degrees).
    real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
    !> The longest arrow of a velocity, and its tip (pixels).
@@ -33,20 +33,20 @@ module picture
    !> The weight of an arrow for names.
    real(wp), parameter :: arrow_weight = 3.0_wp
 
-   !> The first frame is drawn in full that is so wide across, in parts of the widest. Reason: the first instant is what
-   !> a reader expects, and rounding errors must not choose.
+   !> The first frame that is so wide across, in parts of the widest, is drawn in full. Reason: a reader expects the
+   !> first instant, and rounding errors must not choose.
    real(wp), parameter :: clear_width = 0.7_wp
-   !> A picture has this many faint positions at most and at least, and about this many faint links.
+   !> The largest and the least number of faint positions, and the approximate number of faint links.
    integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
    !> Positions that differ by less than this part of the mechanism would cover one another.
    real(wp), parameter :: same_position_part = 0.03_wp
 
 contains
 
-   !> Draws the set that the `drawing` has recorded, at the end of the `page`.
+   !> Draws a set at the end of a page.
    subroutine draw_picture(page, drawing)
       type(page_t), intent(inout), target :: page
-      type(drawing_t), intent(in), target :: drawing
+      type(drawing_t), intent(in), target :: drawing   !< the record of the set
       type(canvas_t) :: c
       type(snapshot_t) :: s
       type(element_t), allocatable :: list(:)
@@ -75,6 +75,7 @@ contains
          call record_shape(c, list(k))
       end do
       call close_group(c%output, 'svg')
+
       call draw_drives(c)
       if (drawing%has_arrows) call draw_velocities(c)
       do k = 1, size(drawing%poles)
@@ -92,7 +93,7 @@ contains
    end subroutine draw_picture
 
    !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
-   !> that of its acceleration.
+   !> the sense of its acceleration.
    subroutine draw_drives(canvas)
       type(canvas_t), intent(inout) :: canvas
       real(wp) :: f(0:2), sense
@@ -104,6 +105,7 @@ contains
             sense = sign(1.0_wp, f(2))
             if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
             call open_group(canvas%output, 'class="drives"', trim(drive_name(canvas%mechanism, drive)))
+
             select case (drive%kind)
             case (drive_angle)
                if (known(drive%subject)) call draw_arc(0, drive%subject, sense)
@@ -125,11 +127,12 @@ contains
 
    contains
 
-      !> Draws an arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise
-      !> about its first joint.
+      !> Draws an arc with an arrow about the joint of two links; without such a joint, about the first joint of the
+      !> second link.
       subroutine draw_arc(base, link, sense)
-         integer, intent(in) :: base, link
-         real(wp), intent(in) :: sense
+         integer, intent(in) :: base         !< number of the first link; 0: the ground
+         integer, intent(in) :: link         !< number of the second link, which turns
+         real(wp), intent(in) :: sense       !< 1: counterclockwise; -1: clockwise
          real(wp) :: center(2), start, e(2), lines(2, 0:arrow_pieces, size(arc_starts))
          integer :: i, k, ends(2), point
 
@@ -145,6 +148,7 @@ contains
          end do
          center = canvas%snapshot%place(:2, link)
          if (point > 0) center = point_place(canvas%mechanism, canvas%snapshot, point)
+
          start = canvas%snapshot%place(3, link)
          associate (corners => moved(canvas%drawing%outlines(link)%corner, canvas%snapshot%place(:, link)))
             if (size(corners, 2) > 1) then
@@ -161,10 +165,10 @@ contains
          call draw_clearest(lines)
       end subroutine draw_arc
 
-      !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point`: on either side.
+      !> Draws a straight arrow next to a point, on the clearer of both sides.
       subroutine draw_arrow(point, sense)
-         integer, intent(in) :: point
-         real(wp), intent(in) :: sense(2)
+         integer, intent(in) :: point        !< its number
+         real(wp), intent(in) :: sense(2)    !< unit vector of the plane
          real(wp), parameter :: asides(2) = arrow_aside*[1.0_wp, -1.0_wp]
          real(wp) :: e(2), start(2), lines(2, 0:arrow_pieces, size(asides))
          integer :: i, k
@@ -180,9 +184,9 @@ contains
          call draw_clearest(lines)
       end subroutine draw_arrow
 
-      !> Draws the first of the `lines` (2, 0:pieces, :), in pixels, that cover least, as an arrow.
+      !> Draws the line that covers least, the first of several, as an arrow.
       subroutine draw_clearest(lines)
-         real(wp), intent(in) :: lines(:, 0:, :)
+         real(wp), intent(in) :: lines(:, 0:, :)   !< (2, 0:pieces, lines) pixels
          real(wp) :: cover, least
          integer :: k, best
 
@@ -200,11 +204,11 @@ contains
       end subroutine draw_clearest
    end subroutine draw_drives
 
-   !> Draws an arrow along the pixels `line` (2, :), whose last piece is its tip.
+   !> Draws an arrow along a line.
    subroutine draw_arrow_line(canvas, line, of_line, of_tip)
       type(canvas_t), intent(inout) :: canvas
-      real(wp), intent(in) :: line(:, :)
-      character(*), intent(in) :: of_line, of_tip   !< attributes
+      real(wp), intent(in) :: line(:, :)     !< (2, points) pixels; the last piece is its tip
+      character(*), intent(in) :: of_line, of_tip   !< attributes of SVG
       real(wp) :: e(2)
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
@@ -215,13 +219,13 @@ contains
       call add_lines(canvas, line, arrow_weight)
    end subroutine draw_arrow_line
 
-   !> Draws the ring of the instant centre of pole number `i`, with its name; if it is outside the picture, writes a
-   !> line with its place at the foot of the `page`.
+   !> Draws the ring of an instant centre, with its name; if it is outside the picture, writes a line with its place at
+   !> the foot of the page. An instant centre at infinity has none.
    subroutine draw_centre(canvas, page, i)
       type(canvas_t), intent(inout) :: canvas
       type(page_t), intent(inout) :: page
-      integer, intent(in) :: i
-      real(wp), parameter :: radius = 4.0_wp
+      integer, intent(in) :: i               !< number of the pole among those of the drawing
+      real(wp), parameter :: radius = 4.0_wp   !< pixels
       type(label_t) :: label
       character(:), allocatable :: color, name
       real(wp) :: p(2)
@@ -231,6 +235,7 @@ contains
       color = 'style="fill:'//link_color(canvas%mechanism, &
          canvas%mechanism%requests(canvas%drawing%poles(i))%subject)//'"'
       name = pole_name(canvas%mechanism, canvas%drawing%poles(i))
+
       if (any(p < canvas%low) .or. any(p > canvas%high)) then
          associate (at => canvas%snapshot%centre(:, i) + canvas%drawing%origin)
             call draw_words(canvas%output, [14.0_wp, real(page%height, wp)], 'start', 'class="name"', &
@@ -260,6 +265,7 @@ contains
       end do
       if (.not. any(abs(v) > 0.0_wp)) return
       scale = longest_velocity/maxval(norm2(v, dim=1))
+
       do k = 1, size(canvas%drawing%curves)
          if (norm2(v(:, k))*scale < tip_length) cycle
          associate (point => canvas%drawing%curves(k))
@@ -277,11 +283,11 @@ contains
          //trim(canvas%mechanism%time_unit), 'class="arrow"')
    end subroutine draw_velocities
 
-   !> Returns the one of the frames `list` that is drawn in full: of those of which most links are known the first that
-   !> is `wide` across. Reason: links that are collinear at the first instant are read better later.
+   !> Finds the number of the frame that is drawn in full. It is the first frame, of those in which most links are
+   !> known, that is wide across. Reason: links that are collinear at the first instant are read better later.
    integer function clearest(drawing, list) result(best)
       type(drawing_t), intent(in) :: drawing
-      integer, intent(in) :: list(:)
+      integer, intent(in) :: list(:)         !< (1 or more) numbers of the frames to choose from
       real(wp) :: across(size(list))
       logical :: most(size(list))
       integer :: i, known(size(list))
@@ -292,7 +298,7 @@ contains
       best = list(findloc(most .and. across >= clear_width*maxval(across, mask=most), .true., dim=1))
    end function clearest
 
-   !> The sides (2) of the box that the known moving links cover at the position `snapshot`.
+   !> Finds the sides (2) of the box that the known moving links cover at a position, in lengths; 0 if none is known.
    pure function sides_of(drawing, snapshot) result(sides)
       type(drawing_t), intent(in) :: drawing
       type(snapshot_t), intent(in) :: snapshot
@@ -312,11 +318,12 @@ contains
       if (all(high >= low)) sides = high - low
    end function sides_of
 
-   !> Chooses those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are
-   !> like it or like one another.
+   !> Chooses the frames that are drawn faint: evenly spaced, without those that are almost equal to the frame in full
+   !> or to one another.
    function faint_frames(drawing, own, best) result(list)
       type(drawing_t), intent(in) :: drawing
-      integer, intent(in) :: own(:), best
+      integer, intent(in) :: own(:)          !< (1 or more) numbers of the frames to choose from
+      integer, intent(in) :: best            !< number of the frame in full
       integer, allocatable :: list(:)
       integer :: i, j, k, n
 
@@ -331,11 +338,11 @@ contains
       end do
    end function faint_frames
 
-   !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
+   !> Finds the largest distance of a corner between two frames, in parts of the mechanism; 1 if one of them lacks a
    !> link.
    real(wp) function distance(drawing, i, j)
       type(drawing_t), intent(in) :: drawing
-      integer, intent(in) :: i, j
+      integer, intent(in) :: i, j            !< numbers of the frames
       real(wp) :: extent
       integer :: k
 

@@ -1,5 +1,5 @@
-!> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
-!> are not proved; and the counts.
+!> The results of card PROVE in the listing: a line for each printed instant, with the steps to it since the one before;
+!> why instants are not proved; and the counts.
 module proof_table
    use kinds, only: wp
    use mechanism, only: instant
@@ -19,11 +19,12 @@ module proof_table
    private
    public :: write_proofs
 
-   integer, parameter :: number_width = 12
+   !> Characters of a column.
+   integer, parameter :: column_width = 12
 
 contains
 
-   !> Writes what is proved after the last instant of a set.
+   !> Writes the proofs of a set after its last instant.
    subroutine write_proofs(o, l, proofs, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -49,25 +50,26 @@ contains
             end if
          end associate
       end do
+
       do i = 1, size(proofs%reasons)
          associate (r => proofs%reasons(i))
             call write_folded(o, ' *** ', phrase(text_instant, set%polish)//' '//whole(r%step)//', T = ' &
                //time_text(l, instant(set, r%step))//': '//phrase(text_not_proved, set%polish)//': '//words_of(r, set))
          end associate
       end do
-      if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** '//phrase(text_not_proved, &
-         set%polish) &
-         //': '//whole(proofs%instants - proofs%proved))
+      if (proofs%instants - proofs%proved > size(proofs%reasons)) call put(o, ' *** ' &
+         //phrase(text_not_proved, set%polish)//': '//whole(proofs%instants - proofs%proved))
+
       closure_error = ''
       if (proofs%closure_error > 0.0_wp) &
          closure_error = ',  '//phrase(text_closure_error_of, set%polish)//' '//rounded_up(proofs%closure_error)
       call put(o, ' '//phrase(text_proved, set%polish)//' '//whole(proofs%proved)//' / '//whole(proofs%instants) &
          //',  '//phrase(text_parts, set%polish)//' '//whole(sum(proofs%lines(:proofs%count)%parts)) &
          //',  '//phrase(text_tube, set%polish)//' '//rounded_up(maxval([0.0_wp, proofs%lines(:proofs%count)%tube])) &
-            //closure_error)
+         //closure_error)
    end subroutine write_proofs
 
-   !> Tells why an instant is not proved.
+   !> Gives the reason why an instant is not proved in words.
    function words_of(reason, set) result(words)
       type(reason_t), intent(in) :: reason
       class(set_t), intent(in) :: set          !< the set
@@ -86,15 +88,15 @@ contains
       end if
    end function words_of
 
-   !> `text` at the right of a column.
+   !> Gives a text at the right of a column.
    pure function column(text)
       character(*), intent(in) :: text       !< at most as long as the column
-      character(number_width) :: column
+      character(column_width) :: column
 
-      column = right(text, number_width)
+      column = right(text, column_width)
    end function column
 
-   !> `value` with one digit, rounded up; 0 is exact.
+   !> Gives a number with one digit, rounded up; 0 is exact.
    pure function rounded_up(value) result(text)
       real(wp), intent(in) :: value              !< at least 0
       character(:), allocatable :: text
@@ -106,7 +108,7 @@ contains
       if (.not. value > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(value, tiny(value)/epsilon(value)**2), huge(value)*epsilon(value)**2)
-      ! Of the power of two: its own or one less.
+      ! The power of ten is that of the power of two, or one more.
       first = floor((exponent(large) - 1)*log10(2.0_wp))
       do power = first, first + 1
          digit = max(1, ceiling(large/10.0_wp**power))

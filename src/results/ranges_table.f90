@@ -12,6 +12,7 @@ module ranges_table
    private
    public :: write_ranges, side_words
 
+   !> The words for both ends of a range.
    character(3), parameter :: side_words(lower_end:upper_end) = ['MIN', 'MAX']
 
 contains
@@ -19,7 +20,7 @@ contains
    !> Writes the ranges of drives after the last instant of a set.
    subroutine write_ranges(o, set, list)
       type(output_t), intent(inout) :: o     !< the listing
-      class(set_t), intent(in) :: set          !< the set
+      class(set_t), intent(in) :: set
       type(range_t), intent(in) :: list(:)   !< in the order of the drives
       character(:), allocatable :: words
       integer :: i, side
@@ -37,7 +38,7 @@ contains
             else
                do side = lower_end, upper_end
                   words = limit_words(set, r%part, r%limit(side))
-                  ! Where no limit is told rounding is too coarse to follow the motion farther.
+                  ! Without links or a pair at the limit rounding is too coarse to follow the motion farther.
                   if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &
                      words = words//'   '//phrase(text_close, set%polish)
                   if (r%has_limit(side)) then

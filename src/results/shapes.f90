@@ -51,9 +51,10 @@ module shapes
    real(wp), parameter :: hatch_depth = 3.0_wp
    !> The weights of shapes: names keep clear of boxes, and cross bars less than lines and curves.
    real(wp), parameter :: box_weight = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, curve_weight = 0.4_wp
-   !> A line within so many characteristic lengths is one place for the eye. A guide whose direction has a cosine below
-   !> this is vertical.
-   real(wp), parameter :: least_visible = 1.0e-5_wp
+   !> A line within so many characteristic lengths is one place for the eye.
+   real(wp), parameter :: least_visible_length = 1.0e-5_wp
+   !> A guide whose direction has a smaller cosine is vertical.
+   real(wp), parameter :: vertical_cosine = 1.0e-5_wp
    !> A place so many characteristic lengths away is no number for a viewer.
    real(wp), parameter :: farthest_place = 1.0e3_wp
 
@@ -184,7 +185,7 @@ contains
          if (.not. any(goes_on)) return
          associate (on => spread(goes_on .or. eoshift(goes_on, -1), 1, 2))
             if (all(maxval(p, 2, on) - minval(p, 2, on) < &
-               least_visible*characteristic_length(drawing%mechanism))) return
+               least_visible_length*characteristic_length(drawing%mechanism))) return
          end associate
          first = 1
          do last = 1, size(goes_on)
@@ -215,7 +216,7 @@ contains
       subroutine add_guide(guide)
          type(guide_t), intent(in) :: guide
          real(wp), allocatable :: p(:, :), pixels(:, :)
-         real(wp) :: e(2), beside(2), further
+         real(wp) :: e(2), aside(2), further
 
          e = direction(guide%angle)
          further = merge(slot_beyond, guide_beyond, drawing%mechanism%links(guide%block)%hidden)
@@ -223,18 +224,18 @@ contains
             p = reshape([guide%foot + guide%low*e, guide%foot + guide%high*e], [2, 2])
             pixels = reshape([-further*e, further*e], [2, 2])
             ! A vertical guide has its hatch on the right, whatever rounding makes of its cosine.
-            beside = -sign(hatch_depth, cos(drawing%now%place(3, guide%carrier) + guide%angle) + least_visible) &
+            aside = -sign(hatch_depth, cos(drawing%now%place(3, guide%carrier) + guide%angle) + vertical_cosine) &
                *quarter_turn(e)
-            call add(guide%carrier, 'polyline', 'class="hatch"', p, pixels + spread(beside, 2, 2), line_weight)
+            call add(guide%carrier, 'polyline', 'class="hatch"', p, pixels + spread(aside, 2, 2), line_weight)
             call add(guide%carrier, 'polyline', 'class="guide"', p, pixels, line_weight)
          else
-            beside = drawing%mechanism%points(guide%pivot)%offset - guide%foot
+            aside = drawing%mechanism%points(guide%pivot)%offset - guide%foot
             p = reshape([guide%foot + min(guide%low, 0.0_wp)*e, guide%foot + max(guide%high, 0.0_wp)*e], [2, 2])
             pixels = reshape([min(scale*max(guide%low, 0.0_wp) - further, 0.0_wp)*e, &
                max(scale*min(guide%high, 0.0_wp) + further, 0.0_wp)*e], [2, 2])
-            if (scale*norm2(beside) > 1.0_wp) then
-               p = reshape([p(:, 1), guide%foot, guide%foot + beside, guide%foot, p(:, 2)], [2, 5])
-               pixels = reshape([pixels(:, 1), 0.0_wp*[beside, beside, beside], pixels(:, 2)], [2, 5])
+            if (scale*norm2(aside) > 1.0_wp) then
+               p = reshape([p(:, 1), guide%foot, guide%foot + aside, guide%foot, p(:, 2)], [2, 5])
+               pixels = reshape([pixels(:, 1), 0.0_wp*[aside, aside, aside], pixels(:, 2)], [2, 5])
             end if
             call add(guide%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(guide%carrier)//'"', p, pixels, &
                line_weight, is_faint=.true.)

@@ -1,5 +1,4 @@
-!> The solver's log (--log): how each position was found. It depends on the solver's path, which
-!> the listing never does.
+!> The solver's log (--log): how each position was found. The log depends on the solver's path; the listing never does.
 module solver_log
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_words
@@ -13,7 +12,7 @@ module solver_log
 
 contains
 
-   !> The set's method and the columns.
+   !> Writes the set's method and the names of the columns.
    subroutine log_head(o, m)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -23,21 +22,20 @@ contains
          //'   BRANCH  SUBSTEPS  KANTOROVICH')
    end subroutine log_head
 
-   !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
-   !> the coordinates), sign of the determinant; the `branch`, and what was verified of it.
+   !> Writes the line of an instant: its number and time; how the iteration ended, its count, last residual and step
+   !> (over the size of the coordinates); the sign of the determinant; the branch and its certificate.
    subroutine log_instant(o, step, t, convergence, branch)
       type(output_t), intent(inout) :: o
-      integer, intent(in) :: step
-      real(wp), intent(in) :: t
+      integer, intent(in) :: step            !< number of the instant, from 0
+      real(wp), intent(in) :: t              !< time
       type(convergence_t), intent(in) :: convergence
       type(branch_t), intent(in) :: branch
       character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
       character(116) :: line
 
       write (line, '(i8, es25.16e3, 1x, a9, i6, 2es11.3, i13, a9, i10, es13.3)') step, t, &
-         adjustr(ending(convergence)), &
-         convergence%iterations, convergence%residual, convergence%step, convergence%determinant, &
-            adjustr(branch_words(branch%kind)), branch%substeps, branch%kantorovich_ratio
+         adjustr(ending(convergence)), convergence%iterations, convergence%residual, convergence%step, &
+         convergence%determinant, adjustr(branch_words(branch%kind)), branch%substeps, branch%kantorovich_ratio
       call put(o, line)
    end subroutine log_instant
 end module solver_log

@@ -9,15 +9,15 @@ module svg
    public :: page_t, begin_page, end_page, open_group, draw_window, close_group, draw_circle, draw_line, &
       draw_words, draw_columns, pixels, attribute, fitted
 
-   !> A page of pictures, one below the other. Its text is held until all are drawn: the height of a page stands in its
-   !> first line.
+   !> A page of pictures, one below the other. Its text is held until all are drawn, since its first line has the
+   !> height of the page.
    type :: page_t
       type(output_t) :: body
-      integer :: height = 0                  !< of what is drawn so far (pixels)
+      integer :: height = 0                  !< of all pictures so far (pixels)
    end type page_t
 
    !> The width of a page (pixels).
-   integer, parameter, public :: width = 800
+   integer, parameter, public :: page_width = 800
    !> The first line of a file that holds a picture.
    character(*), parameter :: xml_line = '<?xml version="1.0" encoding="US-ASCII"?>'
    !> The classes of the elements. Widths and sizes are in pixels.
@@ -49,12 +49,12 @@ module svg
       '.arrow{stroke:#a01060;stroke-width:2}', &
       '.tip.arrow{stroke:none;fill:#a01060}']
 
-   !> Pixels, and overlaps of this many of them, that differ by no more are the same: rounding errors do not choose.
+   !> Places and overlaps that differ by no more than this (pixels) are equal: rounding errors do not choose.
    real(wp), parameter, public :: tie = 1.0e-6_wp
 
 contains
 
-   !> Begins the file `o` of a `page`, which is empty.
+   !> Begins the file of a page, which is empty.
    subroutine begin_page(o, page)
       type(output_t), intent(inout) :: o
       type(page_t), intent(out) :: page
@@ -64,7 +64,7 @@ contains
       page%body%held = .true.
    end subroutine begin_page
 
-   !> Writes the `page` to the file `o`, with a white ground.
+   !> Writes a page to its file, with a white ground.
    subroutine end_page(o, page)
       type(output_t), intent(inout) :: o
       type(page_t), intent(in) :: page
@@ -72,70 +72,75 @@ contains
       integer :: i
 
       height = whole(max(1, page%height))
-      call put(o, '<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="'//whole(width)//'" height="' &
-         //height//'" viewBox="0 0 '//whole(width)//' '//height//'">')
+      call put(o, '<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="'//whole(page_width)//'" height="' &
+         //height//'" viewBox="0 0 '//whole(page_width)//' '//height//'">')
       call put(o, '<style type="text/css">')
       do i = 1, size(style)
          call put(o, trim(style(i)))
       end do
       call put(o, '</style>')
-      call put(o, '<rect width="'//whole(width)//'" height="'//height//'" fill="#fff"/>')
+      call put(o, '<rect width="'//whole(page_width)//'" height="'//height//'" fill="#fff"/>')
       call add(o, page%body%buffer(:page%body%used))
       call close_group(o, 'svg')
    end subroutine end_page
 
-   !> Begins a group of elements with the attributes `attributes`; `title`, if not '', is what a viewer says of it.
+   !> Begins a group of elements.
    subroutine open_group(o, attributes, title)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: attributes, title
+      character(*), intent(in) :: attributes   !< of the group
+      character(*), intent(in) :: title      !< a viewer shows it; '': none
 
       call put(o, '<g '//attributes//'>')
       if (len(title) > 0) call put(o, '<title>'//escaped(title)//'</title>')
    end subroutine open_group
 
-   !> Ends the `element` begun last: 'g' a group, 'svg' a picture.
+   !> Ends the element that was begun last.
    subroutine close_group(o, element)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: element
+      character(*), intent(in) :: element    !< 'g': a group; 'svg': a picture
 
       call put(o, '</'//element//'>')
    end subroutine close_group
 
-   !> A circle about `p` (2).
+   !> Writes a circle.
    subroutine draw_circle(o, p, radius, attributes)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2), radius
-      character(*), intent(in) :: attributes
+      real(wp), intent(in) :: p(2)           !< pixels of its centre
+      real(wp), intent(in) :: radius         !< pixels
+      character(*), intent(in) :: attributes   !< of the circle
 
       call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
    end subroutine draw_circle
 
-   !> Writes a line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it.
+   !> Writes a line through places.
    subroutine draw_line(o, element, p, attributes)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: element, attributes
-      real(wp), intent(in) :: p(:, :)
+      character(*), intent(in) :: element    !< 'polyline', or 'polygon', which closes it
+      character(*), intent(in) :: attributes   !< of the line
+      real(wp), intent(in) :: p(:, :)        !< (2, places) pixels
 
       call draw_columns(o, element//' '//attributes//' points="', p, ',', ' ')
    end subroutine draw_line
 
-   !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where
-   !> 'start', 'end'.
+   !> Writes words at a place.
    subroutine draw_words(o, p, anchor, attributes, words)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2)
-      character(*), intent(in) :: anchor, attributes, words
+      real(wp), intent(in) :: p(2)           !< pixels of a point of their foot line
+      character(*), intent(in) :: anchor     !< that point: 'start', 'middle' or 'end'
+      character(*), intent(in) :: attributes   !< of the words
+      character(*), intent(in) :: words      !< not escaped
 
       call put(o, '<text x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" text-anchor="'//anchor//'" '//attributes//'>' &
          //escaped(words)//'</text>')
    end subroutine draw_words
 
-   !> Writes an element that begins with `begins` and has the columns of `values` (:, :) in an attribute: `inside`
-   !> stands between the numbers of a column, `between` between columns.
+   !> Writes an element whose last attribute has the columns of an array.
    subroutine draw_columns(o, begins, values, inside, between)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: begins, inside, between
-      real(wp), intent(in) :: values(:, :)
+      character(*), intent(in) :: begins     !< the element up to the quote of that attribute
+      real(wp), intent(in) :: values(:, :)   !< (numbers, columns) pixels or degrees
+      character(*), intent(in) :: inside     !< between the numbers of a column
+      character(*), intent(in) :: between    !< between columns
       integer :: i, k
 
       call add(o, '<'//begins)
@@ -149,27 +154,27 @@ contains
       call put(o, '"/>')
    end subroutine draw_columns
 
-   !> Begins a window: of what follows only the part from `low` to `high` (2) is seen.
+   !> Begins a window: only this part of the following elements is seen.
    subroutine draw_window(o, low, high)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: low(2), high(2)
+      real(wp), intent(in) :: low(2), high(2)   !< pixels of its upper left and its lower right corner
 
       call put(o, '<svg x="'//pixels(low(1))//'" y="'//pixels(low(2))//'" width="'//pixels(high(1) - low(1)) &
          //'" height="'//pixels(high(2) - low(2))//'" viewBox="'//pixels(low(1))//' '//pixels(low(2))//' ' &
          //pixels(high(1) - low(1))//' '//pixels(high(2) - low(2))//'" overflow="hidden">')
    end subroutine draw_window
 
-   !> `value` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
+   !> Gives a number with at most two decimals. Half a hundredth, but for rounding errors, always goes up.
    pure function pixels(value) result(text)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< pixels or degrees
       character(:), allocatable :: text
 
       text = without_zeros(fixed(value + tie, 2, 0))
    end function pixels
 
-   !> `value` with six digits, without zeros at their end. A negative number keeps the zero before its point.
+   !> Gives a number with six digits, without zeros at their end. A negative number keeps the zero before its point.
    pure function fitted(value) result(text)
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value          !< in any unit
       character(:), allocatable :: text
       integer :: e
 
@@ -182,9 +187,9 @@ contains
       end if
    end function fitted
 
-   !> The number `digits` without zeros at the end of its decimals.
+   !> Removes zeros at the end of the decimals of a number.
    pure function without_zeros(digits) result(text)
-      character(*), intent(in) :: digits
+      character(*), intent(in) :: digits     !< the number
       character(:), allocatable :: text
 
       text = trim(adjustl(digits))
@@ -193,17 +198,18 @@ contains
       if (text(len(text):) == '.') text = text(:len(text) - 1)
    end function without_zeros
 
-   !> The attribute `name` with `value`.
+   !> Gives the text of an attribute.
    pure function attribute(name, value) result(text)
-      character(*), intent(in) :: name, value
+      character(*), intent(in) :: name       !< of the attribute
+      character(*), intent(in) :: value      !< not escaped
       character(:), allocatable :: text
 
       text = name//'="'//escaped(value)//'"'
    end function attribute
 
-   !> `text` as XML takes it; what is not printable ASCII becomes a question mark.
+   !> Escapes a text for XML; a character that is not printable ASCII becomes a question mark.
    pure function escaped(text) result(xml)
-      character(*), intent(in) :: text
+      character(*), intent(in) :: text       !< not escaped
       character(:), allocatable :: xml
       integer :: i
 

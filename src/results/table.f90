@@ -13,7 +13,7 @@ module table
    public :: format_t, cell_t, words_of_cells, choose_digits, write_cell, write_number, number_text, cell_text, &
       power_text, unit_of, add_name, add_number, add_cell, right, digits_after_first, order_margin
 
-   !> Digits behind the first one.
+   !> Digits after the first one.
    integer, parameter :: digits_after_first = 6
 
    !> How the numbers of a column are printed.
@@ -37,7 +37,7 @@ module table
    !> An empty cell of the listing between columns of words and numbers.
    character(1), parameter :: no_cell = '-'
    !> A number without a bound in a file: below, above.
-   character(*), parameter :: unbounded(2) = ['-inf', ' inf']
+   character(*), parameter :: unbounded_words(2) = ['-inf', ' inf']
 
 contains
 
@@ -60,7 +60,7 @@ contains
       real(wp), intent(in) :: error          !< the rounding error of `value`
       character(numeral_length), intent(in) :: words(cell_none:)   !< of `words_of_cells`
       character(numeral_length), intent(out) :: field   !< the cell
-      logical, intent(inout) :: masked       !< becomes true where a digit or a word is masked
+      logical, intent(inout) :: masked       !< becomes true if a digit or a word is masked
 
       if (cell == cell_number) then
          call write_number(format, more, value, error, field, masked)
@@ -81,7 +81,7 @@ contains
       real(wp), intent(in) :: value          !< in the deck's units and rad
       real(wp), intent(in) :: error          !< the rounding error of `value`
       character(numeral_length), intent(out) :: field   !< the cell
-      logical, intent(inout) :: masked       !< becomes true where a digit is masked
+      logical, intent(inout) :: masked       !< becomes true if a digit is masked
       real(wp) :: printed, off
 
       printed = value
@@ -141,8 +141,8 @@ contains
       end select
    end function cell_text
 
-   !> Chooses decimals and power of ten that show seven digits of a number. There is no power of ten where the number
-   !> and further decimals have room without one: from 0.001 to 9999999.
+   !> Chooses decimals and power of ten that show seven digits of a number. There is no power of ten if the number and
+   !> further decimals have room without one: from 0.001 to 9999999.
    pure subroutine choose_digits(order, more, format)
       real(wp), intent(in) :: order          !< log10 of the number
       integer, intent(in) :: more            !< further decimals for which there must be room
@@ -168,7 +168,7 @@ contains
       case (cell_count)
          call add(o, whole(nint(cell%value)))
       case (cell_unbounded)
-         call add(o, trim(adjustl(unbounded(merge(1, 2, cell%value < 0.0_wp)))))
+         call add(o, trim(adjustl(unbounded_words(merge(1, 2, cell%value < 0.0_wp)))))
       case (cell_word)
          call add_name(o, trim(cell%word))
       end select
@@ -190,7 +190,7 @@ contains
       call add(o, text(:length))
    end subroutine add_number
 
-   !> Appends a name as a cell of a file, in quotes where it holds a comma or a quote.
+   !> Appends a name as a cell of a file, in quotes if it holds a comma or a quote.
    subroutine add_name(o, name)
       type(output_t), intent(inout) :: o     !< the file
       character(*), intent(in) :: name       !< without trailing blanks
@@ -223,7 +223,7 @@ contains
 
    !> Gives a text at the end of a field.
    pure function right(text, n) result(field)
-      character(*), intent(in) :: text       !< which stands alone if it is longer
+      character(*), intent(in) :: text       !< the whole field if it is longer
       integer, intent(in) :: n               !< characters of the field
       character(max(n, len(text))) :: field
 

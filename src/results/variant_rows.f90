@@ -1,4 +1,4 @@
-!> The summary of a set with VARY cards: a row for each variant, with its values and what is asked of its motion.
+!> The summary of a set with VARY cards: a row for each variant, with its values and the answers about its motion.
 module variant_rows
    use kinds, only: wp, label_length
    use plane_vectors, only: in_degrees
@@ -24,8 +24,8 @@ module variant_rows
    private
    public :: summary_t, summary_column_t, variant_row_t, new_summary, new_row, fill_row
 
-   !> Roundings of a coordinate and of the difference of two.
-   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
+   !> The relative error of a stroke by roundings of two coordinates and their difference.
+   real(wp), parameter :: stroke_rounding = 4.0_wp*epsilon(1.0_wp)
 
    !> A column: its name in a file, and its form in the listing.
    type :: summary_column_t
@@ -40,7 +40,7 @@ module variant_rows
    type :: summary_t
       type(summary_column_t), allocatable :: columns(:)
       integer :: numbers = 0                        !< that vary: columns 2 to numbers + 1
-      type(table_t) :: extremes                     !< the columns of what EXTREMES asks for
+      type(table_t) :: extremes                     !< the columns of EXTREMES cards
    end type summary_t
 
    type, extends(counts_t) :: variant_row_t
@@ -51,11 +51,11 @@ module variant_rows
 
 contains
 
-   !> The columns of the summary of the `set`; `l`: its layout; `variation`: its variants.
+   !> Makes the columns of the summary of a set.
    function new_summary(set, l, variation) result(s)
       class(set_t), intent(in) :: set
       type(layout_t), intent(in) :: l
-      type(variation_t), intent(in) :: variation
+      type(variation_t), intent(in) :: variation   !< its variants
       type(summary_t) :: s
       character(:), allocatable :: drives(:), name
       integer :: i
@@ -95,24 +95,24 @@ contains
 
    contains
 
-      !> Adds the `column`.
+      !> Adds a column.
       subroutine add_column(column)
          type(summary_column_t), intent(in) :: column
 
          s%columns = [s%columns, column]
       end subroutine add_column
 
-      !> Adds the column of the last of the `numbers`. If earlier ones have its name, a number counts them.
+      !> Adds the column of a varied number. If earlier ones have its name, a number counts them.
       subroutine add_number(numbers)
-         type(varied_t), intent(in) :: numbers(:)
+         type(varied_t), intent(in) :: numbers(:)   !< (1 or more) the last one is added
          type(summary_column_t) :: c
          real(wp) :: largest
-         integer :: alike
+         integer :: same_named
 
          associate (one => numbers(size(numbers)))
             c = summary_column_t(dotted(trim(one%owner)//' '//one%word), .true., one%owner, one%word, one%unit)
-            alike = count(numbers%owner == one%owner .and. numbers%word == one%word)
-            if (alike > 1) c%name = trim(c%name)//'.'//whole(alike)
+            same_named = count(numbers%owner == one%owner .and. numbers%word == one%word)
+            if (same_named > 1) c%name = trim(c%name)//'.'//whole(same_named)
             largest = max(abs(one%first), abs(one%last))
             if (allocated(one%list)) largest = maxval(abs(one%list))
             call choose_digits(log10(max(largest, tiny(1.0_wp))), 0, c%format)
@@ -121,11 +121,11 @@ contains
          call add_column(c)
       end subroutine add_number
 
-      !> Adds the column of the values of drive `number` (0: none, the column is empty), whose name begins with
-      !> `start`; `above`, `below`: the lines over it, blank where it is in the file alone.
+      !> Adds the column of the values of a drive.
       subroutine add_drive(number, start, above, below)
-         integer, intent(in) :: number
-         character(*), intent(in) :: start, above, below
+         integer, intent(in) :: number       !< of the drive in the set; 0: none, the column is empty
+         character(*), intent(in) :: start   !< the beginning of the name of the column
+         character(*), intent(in) :: above, below   !< the lines over it; blank if it is only in the file
          type(summary_column_t) :: c
 
          c%name = start//'.drive'
@@ -142,7 +142,7 @@ contains
          call add_column(c)
       end subroutine add_drive
 
-      !> Adds the columns of what EXTREMES asks for.
+      !> Adds the columns of EXTREMES cards.
       subroutine add_extremes()
          type(summary_column_t) :: c
          type(request_t) :: request
@@ -158,6 +158,7 @@ contains
                c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
                   above=row_title(set, column%request), &
                   format=l%own(part)%format(column%dimension, column%order))
+
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
                   c%below = word//' '//extreme_words(which)
@@ -178,11 +179,11 @@ contains
       end subroutine add_extremes
    end function new_summary
 
-   !> The row of variant `n` of `variation`, with its values alone.
+   !> Makes the row of a variant, with its values only.
    function new_row(summary, variation, n) result(r)
       type(summary_t), intent(in) :: summary
       type(variation_t), intent(in) :: variation
-      integer, intent(in) :: n
+      integer, intent(in) :: n               !< number of the variant
       type(variant_row_t) :: r
       real(wp) :: values(summary%numbers)
       integer :: i
@@ -196,11 +197,11 @@ contains
       end do
    end function new_row
 
-   !> Fills the cells of `row`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
+   !> Fills the cells of the row of a variant, after its last instant.
    subroutine fill_row(summary, set, asked, row)
       type(summary_t), intent(in) :: summary
-      class(set_t), intent(in) :: set
-      type(answers_t), intent(in) :: asked
+      class(set_t), intent(in) :: set        !< the variant
+      type(answers_t), intent(in) :: asked   !< the answers to its cards
       type(variant_row_t), intent(inout) :: row
       type(strokes_t) :: strokes
       integer :: n, i, k, which, order
@@ -216,6 +217,7 @@ contains
          n = n + 3
          if (row%rejected /= '') row%cells(n) = cell_t(cell_word, word=row%rejected(:4))
       end if
+
       if (row%limit%kind /= 0) then
          row%cells(n + 1) = cell_t(cell_number, row%limit%t)
          if (row%limit%drive > 0) then
@@ -264,7 +266,7 @@ contains
                strokes = strokes_of(asked%extremes, one)
                ! It may be small: then the rounding of the difference counts.
                if (strokes%length%exists) row%cells(n + 1) = cell_t(cell_number, strokes%length%value, &
-                  strokes%length%error + rounding*maxval(abs(one%found(:, 0)%value)))
+                  strokes%length%error + stroke_rounding*maxval(abs(one%found(:, 0)%value)))
             end associate
             if (strokes%ratio > 0.0_wp) row%cells(n + 2) = cell_t(cell_number, strokes%ratio, strokes%error)
             n = n + 2
@@ -273,7 +275,7 @@ contains
 
    contains
 
-      !> The next cell.
+      !> Fills the next cell.
       subroutine next(cell)
          type(cell_t), intent(in) :: cell
 
@@ -282,7 +284,7 @@ contains
       end subroutine next
    end subroutine fill_row
 
-   !> Finds where the extremes of a column are.
+   !> Finds the coordinate and the derivative of a column of extremes.
    pure subroutine find_number(coordinates, column, k, order)
       type(coordinate_t), intent(in) :: coordinates(:)   !< of its mechanism
       type(table_column_t), intent(in) :: column
@@ -298,11 +300,11 @@ contains
       end do
    end subroutine find_number
 
-   !> The value of drive `number` (0: none) at the time `t`.
+   !> Makes the cell of the value of a drive at a time; an empty one without a drive.
    type(cell_t) function drive_cell(set, number, t) result(cell)
       class(set_t), intent(in) :: set
-      integer, intent(in) :: number
-      real(wp), intent(in) :: t
+      integer, intent(in) :: number          !< of the drive in the set; 0: none
+      real(wp), intent(in) :: t              !< time
       real(wp) :: f(3)
 
       if (number == 0) return

@@ -17,14 +17,14 @@ module variant_tables
    private
    public :: summary_head, summary_row, write_variant, write_variant_heads, write_variant_row, write_variants_end
 
-   !> Characters of the number of a variant, and at least of a column.
-   integer, parameter :: parameter_length = 10, least_width = 12
+   !> Characters of the number of a variant, and the least number of characters of a column.
+   integer, parameter :: variant_number_length = 10, least_width = 12
    !> Characters of an exponent.
    integer, parameter :: exponent_length = 4
 
 contains
 
-   !> The names of the columns.
+   !> Writes the names of the columns to a file.
    subroutine summary_head(o, summary)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: summary
@@ -38,7 +38,7 @@ contains
       call put(o, '')
    end subroutine summary_head
 
-   !> The `row` of the set `settings` with all digits; what there is not is empty.
+   !> Writes a row to a file with all digits; a cell without a value is empty.
    subroutine summary_row(o, summary, settings, row)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: summary
@@ -54,7 +54,7 @@ contains
       call put(o, '')
    end subroutine summary_row
 
-   !> The lines over the tables of one variant, that of the `row`: its number and its values.
+   !> Writes the lines over the tables of one variant: its number and its values.
    subroutine write_variant(o, l, summary, settings, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -80,7 +80,7 @@ contains
       call put(o, line)
    end subroutine write_variant
 
-   !> The heads of the table: for each of its lines of columns the names, powers of ten and units.
+   !> Writes the heads of the table: for each of its lines of columns the names, powers of ten and units.
    subroutine write_variant_heads(o, summary)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: summary
@@ -100,7 +100,7 @@ contains
                   if (.not. c%printed .or. (i > 1 .and. i < starts(n))) cycle
                   heads = [character(len(heads)) :: c%above, c%below, '', c%unit]
                   if (c%format%power /= 0) heads(3) = power_text(c%format%power)
-                  line = line//right(trim(heads(k)), merge(parameter_length, width(c), i == 1))
+                  line = line//right(trim(heads(k)), merge(variant_number_length, width(c), i == 1))
                end associate
             end do
             if (len_trim(line) > 0) call put(o, trim(line))
@@ -108,7 +108,7 @@ contains
       end do
    end subroutine write_variant_heads
 
-   !> The lines of the `row`, and below them why there is not all of it.
+   !> Writes the lines of a row, and below them the reason if it is not complete.
    subroutine write_variant_row(o, l, summary, set, row)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -121,7 +121,7 @@ contains
 
       starts = line_starts(summary)
       do n = 1, size(starts) - 1
-         line = right(whole(row%number), parameter_length)
+         line = right(whole(row%number), variant_number_length)
          do i = starts(n), starts(n + 1) - 1
             associate (c => summary%columns(i))
                if (c%printed) line = line//right(cell_text(c%format, c%by_size, row%cells(i), l%words), width(c))
@@ -137,7 +137,7 @@ contains
       end if
    end subroutine write_variant_row
 
-   !> The last line of a set of variants, below what `?` means in their rows if a closing tolerance leaves digits open.
+   !> Writes the last line of a set of variants. With a closing tolerance the line before explains `?` in their rows.
    subroutine write_variants_end(o, settings)
       type(output_t), intent(inout) :: o
       class(settings_t), intent(in) :: settings
@@ -145,13 +145,12 @@ contains
       if (settings%closing > 0.0_wp) call put(o, mask_words(settings))
       call put(o, '')
       call put(o, ' '//phrase(text_end, settings%polish)//' '//whole(settings%set_number)//':  ' &
-         //phrase(text_variants, &
-         settings%polish)//' ' &
-         //whole(settings%variants))
+         //phrase(text_variants, settings%polish)//' '//whole(settings%variants))
       call put(o, '')
    end subroutine write_variants_end
 
-   !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
+   !> Finds the first column of each line (lines + 1), after column 1 with which all begin; at last the number of
+   !> columns and one more.
    pure function line_starts(summary) result(starts)
       type(summary_t), intent(in) :: summary
       integer, allocatable :: starts(:)
@@ -164,12 +163,12 @@ contains
          used = used + width(summary%columns(i))
          if (used <= line_length) cycle
          starts = [starts, i]
-         used = parameter_length + width(summary%columns(i))
+         used = variant_number_length + width(summary%columns(i))
       end do
       starts = [starts, size(summary%columns) + 1]
    end function line_starts
 
-   !> Characters of a column in the listing.
+   !> Counts the characters of a column in the listing.
    pure integer function width(column)
       type(summary_column_t), intent(in) :: column
 

@@ -1,5 +1,5 @@
 !> The analysis of a set, each of its independent mechanisms by itself: its own steps and substeps, its own limits,
-!> change points and flags. Of the set the worst of them is reported.
+!> change points and flags. The worst of them is reported for the set.
 module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, &
@@ -25,17 +25,16 @@ module set_analysis
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, foresee_closure, renew_set_analysis, advance_set, &
-      accept_state, &
-      rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
+      accept_state, rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
       set_closing_diagnostics
 
-   !> The angles from which measures go on between the instants of TIME, where extremes are searched for.
+   !> The angles from which measures go on between the instants of TIME, if extremes are searched for.
    type :: path_t
       real(wp), allocatable :: turned(:, :)                 !< (measures, 0:steps) rad; huge: not known
    end type path_t
 
-   !> A LINE that turns by more than 120 degrees from one instant to the next, but for rounding, may have turned the
-   !> other way (rad).
+   !> A LINE that turns by more than this (rad) from one instant to the next may have turned the other way: 120
+   !> degrees, but for rounding.
    real(wp), parameter :: largest_turn = 2.0_wp*pi/3.0_wp + 1.0e-9_wp
 
    type :: set_analysis_t
@@ -44,43 +43,43 @@ module set_analysis
       ! Of classes, so that the compiler calls what frees one, and does not write it out wherever a set is freed.
       class(estimator_t), allocatable :: estimators(:)      !< (parts)
       class(motion_prover_t), allocatable :: provers(:)     !< (parts)
-      type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
+      type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, if they are asked for
       type(certificate_counts_t) :: worst                   !< of all instants, if the set has several parts
-      logical, allocatable :: told_drives(:)                !< (parts) surplus drives have been looked for
-      logical :: is_in_lane = .false.                       !< a lane has found `now`; the engine is not there
-      real(wp) :: growth = 0.0_wp                           !< then: by which roundings grow, whose digits are safe
+      logical, allocatable :: reported_drives(:)            !< (parts) surplus drives have been searched for
+      logical :: is_in_lane = .false.                       !< a lane has found `now`; the analyses have not
+      real(wp) :: growth = 0.0_wp                           !< then: factor of roundings; all digits are safe
       type(path_t), allocatable :: paths(:)                 !< (parts)
       logical :: has_turns = .false.                        !< some measure goes on from instant to instant
-      integer :: taken = 0                                  !< instants so far, if so
-      logical :: told_turn = .false.                        !< it is told that a LINE turns far from instant to instant
+      integer :: taken = 0                                  !< instants so far, if some measure does
+      logical :: reported_turn = .false.                    !< a LINE that turns far in a step has been reported
    end type set_analysis_t
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `findings`: those of its
-   !> structure, which give up what the engines need; without them it is found anew. Where all assemblies are asked
-   !> for, it begins in the nearest.
+   !> Makes the analysis of a set, ready for its first instant. If all assemblies are asked for, it begins in the
+   !> nearest.
    subroutine make_set_analysis(m, set, findings)
-      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(in) :: m     !< the set; its equations are as many as its unknowns
       type(set_analysis_t), intent(out) :: set
-      type(structure_report_t), intent(inout), optional :: findings
+      type(structure_report_t), intent(inout), optional :: findings   !< its structure, which is given up
 
       call new_set_motion(m, set%now, findings)
       call begin_analysis(set, findings)
    end subroutine make_set_analysis
 
-   !> Begins the analysis of the set s%now, which is divided.
+   !> Begins the analysis of a set that is divided into its mechanisms. Without findings, its structure is found.
    subroutine begin_analysis(set, findings)
-      type(set_analysis_t), intent(inout) :: set
-      type(structure_report_t), intent(inout), optional :: findings
+      type(set_analysis_t), intent(inout) :: set   !< set%now is divided
+      type(structure_report_t), intent(inout), optional :: findings   !< its structure, which is given up
       integer :: c
 
       associate (n => set%now%count)
          allocate (set%list(n))
-         allocate (set%told_drives(n), source=.false.)
+         allocate (set%reported_drives(n), source=.false.)
          allocate (estimator_t :: set%estimators(n))
          allocate (motion_prover_t :: set%provers(n))
       end associate
+
       if (set%now%assemblies) allocate (set%assemblies(set%now%count))
       do c = 1, set%now%count
          if (set%now%assemblies) call find_nearest(set%now%parts(c), instant(set%now, 0), set%assemblies(c))
@@ -94,10 +93,10 @@ contains
       call begin_paths(set)
    end subroutine begin_analysis
 
-   !> Finds the largest closure error of all instants of `set`, which has none yet, by a run of their own: no number of
-   !> the run is known better. Without a closing tolerance, and where equations agree without one, it is 0.
+   !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the
+   !> run is known better. Without a closing tolerance, or if equations agree without it, the error is 0.
    subroutine foresee_closure(set)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< before its first instant
       type(analysis_t) :: trial
       type(motion_t) :: q
       integer :: c, k
@@ -109,7 +108,7 @@ contains
          do k = 0, instant_count(set%now) - 1
             call advance(trial, instant(set%now, k), q)
          end do
-         ! That of an instant without a position is larger than the tolerance.
+         ! The error of an instant without a position is larger than the tolerance.
          if (redundancy_error(trial) > inconsistent_level) &
             set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
       end do
@@ -122,7 +121,7 @@ contains
 
       set%has_turns = .false.
       set%taken = 0
-      set%told_turn = .false.
+      set%reported_turn = .false.
       if (allocated(set%paths)) deallocate (set%paths)
       allocate (set%paths(set%now%count))
       do c = 1, set%now%count
@@ -136,13 +135,11 @@ contains
       end do
    end subroutine begin_paths
 
-   !> Makes `set`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
-   !> `make_set_analysis` makes it, with the structure and the memory that it has. `is_done`: these fit, and all of
-   !> `findings` is the same; otherwise `set` is of no use.
+   !> Makes the analysis of the variant before ready for the first instant of a variant, with its structure and memory.
    subroutine renew_set_analysis(m, set, is_done)
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: set
-      logical, intent(out) :: is_done        !< the structure is the same; otherwise `set` is of no use
+      type(mechanism_t), intent(in) :: m     !< the variant
+      type(set_analysis_t), intent(inout) :: set   !< of the variant before, if there is one
+      logical, intent(out) :: is_done        !< structure and findings are equal; otherwise `set` is of no use
 
       is_done = allocated(set%list) .and. m%method == method_newton
       if (is_done) is_done = size(set%list) == 1
@@ -151,6 +148,7 @@ contains
          ! These keep numbers of the mechanism.
          is_done = .not. (any(is_centre(own%requests%kind)) .or. allocated(own%tolerances) .or. own%assemblies)
          if (.not. is_done) return
+
          own%settings_t = m%settings_t
          set%now%settings_t = m%settings_t
          own%links(:) = m%links
@@ -166,13 +164,13 @@ contains
          set%now%motions(1) = new_motion(size(own%links))
          call make_estimator(set%estimators(1), own)
       end associate
-      set%told_drives = .false.
+      set%reported_drives = .false.
       set%is_in_lane = .false.
       set%now%has_begun = .false.
       call begin_paths(set)
    end subroutine renew_set_analysis
 
-   !> Solves instant `t` of the set.
+   !> Solves an instant of a set.
    subroutine advance_set(set, t)
       type(set_analysis_t), intent(inout) :: set
       real(wp), intent(in) :: t              !< time
@@ -181,12 +179,12 @@ contains
       set%is_in_lane = .false.
       do c = 1, size(set%list)
          call advance(set%list(c), t, set%now%motions(c))
-         if (set%now%motions(c)%mark == flag_inconsistent) call tell_surplus_drives(set, c)
+         if (set%now%motions(c)%mark == flag_inconsistent) call report_surplus_drives(set, c)
       end do
       call keep_instant(set)
    end subroutine advance_set
 
-   !> Takes the instant `t` of a set of one mechanism, with the motion that a lane has put into the engine's state.
+   !> Takes an instant of a set of one mechanism, with the motion that a lane has put into the state of its analysis.
    subroutine accept_state(set, t, is_taken)
       type(set_analysis_t), intent(inout) :: set
       real(wp), intent(in) :: t              !< time
@@ -205,9 +203,9 @@ contains
       if (is_taken) call keep_instant(set)
    end subroutine accept_state
 
-   !> Keeps what later instants need of the instant at which all motions of the set are, whether its engines or a lane
-   !> have found them. A row has no second place for what it keeps from instant to instant. An instant that a lane hands
-   !> back comes again from the engine. Times between two instants do not come, nor do a lane's if no row is asked for.
+   !> Keeps the numbers of an instant that later instants need, after the analyses or a lane have found it. A row has no
+   !> other place for numbers that it keeps from instant to instant. An instant that a lane hands back comes again from
+   !> the analysis. Times between two instants do not come, nor do instants of a lane if no row is asked for.
    subroutine keep_instant(set)
       type(set_analysis_t), intent(inout) :: set
       integer :: c
@@ -223,8 +221,7 @@ contains
       if (size(set%list) > 1) call count_worst_motion(set)
    end subroutine keep_instant
 
-   !> Keeps the angles of measures that go on from instant to instant. Tells once, at the first instant, that a LINE
-   !> turns far.
+   !> Keeps the angles of measures that go on from instant to instant. Reports the first LINE that turns far, once.
    subroutine keep_measures(set, part)
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: part               !< the number of the independent mechanism
@@ -237,20 +234,20 @@ contains
          if (.not. allocated(q%turned)) return
          if (allocated(set%paths(part)%turned) .and. set%taken <= set%now%steps) &
             set%paths(part)%turned(:, set%taken) = merge(q%turned%angle, huge(1.0_wp), q%turned%is_known)
-         if (.not. allocated(before) .or. set%told_turn) return
+         if (.not. allocated(before) .or. set%reported_turn) return
          do i = 1, size(before)
             if (own%measures(i)%kind /= measure_line) cycle
             if (.not. (before(i)%is_latest .and. q%turned(i)%is_latest)) cycle
             if (abs(q%turned(i)%angle - before(i)%angle) <= largest_turn) cycle
             call add_diagnostics([diagnostic_t(diagnostic_turned, part, measure=i, t=q%t, is_angle=.true., &
                value=abs(q%turned(i)%angle - before(i)%angle))], q)
-            set%told_turn = .true.
+            set%reported_turn = .true.
             return
          end do
       end associate
    end subroutine keep_measures
 
-   !> Counts the certificate of an instant of several mechanisms: it is that of its worst motion.
+   !> Counts the certificate of an instant of several mechanisms: the worst motion has it.
    subroutine count_worst_motion(set)
       type(set_analysis_t), intent(inout) :: set
 
@@ -265,31 +262,31 @@ contains
       end associate
    end subroutine count_worst_motion
 
-   !> Adds to the motion of independent mechanism number `part`, the first whose redundant equations are inconsistent,
-   !> the drives of which one may be too many; nothing if there are none.
-   subroutine tell_surplus_drives(set, part)
+   !> Reports the drives of which one may be too many, at the first instant at which redundant equations are
+   !> inconsistent; nothing if there are none.
+   subroutine report_surplus_drives(set, part)
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: part               !< its number
       logical :: are(size(set%now%parts(part)%drives))
 
-      if (set%told_drives(part)) return
-      set%told_drives(part) = .true.
+      if (set%reported_drives(part)) return
+      set%reported_drives(part) = .true.
       are = surplus_drives(set%list(part)%blocks, set%list(part)%geometry, size(are), set%list(part)%state)
       if (.not. any(are)) return
       associate (q => set%now%motions(part))
          if (.not. allocated(q%diagnostics)) allocate (q%diagnostics(0))
          q%diagnostics = [q%diagnostics, new_diagnostic(diagnostic_surplus, are)]
       end associate
-   end subroutine tell_surplus_drives
+   end subroutine report_surplus_drives
 
-   !> Finds the rows of requests of the set at its last instant, or at a time between the instants. Nothing else
-   !> changes. Without `always` nothing is estimated: errors and growth are 0.
+   !> Finds the rows of requests of a set at its last instant, or at a time between the instants. Nothing else changes.
    subroutine rows_at(set, list, t, rows, always, error, growth)
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
       type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
-      logical, intent(in), optional :: always   !< errors are estimated also where no digit of a table is in doubt
+      logical, intent(in), optional :: always   !< errors are estimated even if no digit of a table is in doubt
+      !> Without `always` nothing is estimated, and both are 0.
       real(wp), intent(out), optional :: error(3, 0:2, size(list))   !< in the deck's units and rad
       real(wp), intent(out), optional :: growth   !< the factor by which roundings grow
       integer :: i
@@ -302,13 +299,13 @@ contains
          end do
          if (present(growth)) growth = set%growth
       else
-         call find_by_engine()
+         call find_by_analysis()
       end if
 
    contains
 
-      !> Finds the rows with the engine at the motion of the time.
-      subroutine find_by_engine()
+      !> Finds the rows by the analysis at the time.
+      subroutine find_by_analysis()
          type(motion_t) :: q
          logical :: is_found
 
@@ -326,7 +323,7 @@ contains
                call take(c, set%now%motions(c))
             end if
          end associate
-      end subroutine find_by_engine
+      end subroutine find_by_analysis
 
       !> Gives the angles of measures at the instant of TIME before `t`.
       function turned_near(part) result(turned)
@@ -342,7 +339,7 @@ contains
          turned%is_known = turned%angle < huge(1.0_wp)
       end function turned_near
 
-      !> Takes the rows of the motion `q` of independent mechanism number `part`, and its errors.
+      !> Takes the rows of a motion of an independent mechanism, and their errors.
       subroutine take(part, q)
          integer, intent(in) :: part            !< its number
          type(motion_t), intent(in) :: q
@@ -364,7 +361,7 @@ contains
       end subroutine take
    end subroutine rows_at
 
-   !> Finds how far the last motion of independent mechanism `part` is from its first: see `motions_apart`.
+   !> Finds the distance (3) of the last motion of an independent mechanism from its first, as `motions_apart` gives it.
    pure function apart_from_first(set, part) result(apart)
       type(set_analysis_t), intent(in) :: set
       integer, intent(in) :: part               !< its number
@@ -373,11 +370,10 @@ contains
       apart = motions_apart(set%now%parts(part), set%now%first(part), set%now%motions(part))
    end function apart_from_first
 
-   !> How far the motion found last is known, and its sensitivities to the numbers with tolerances, where there are any.
-   !> `always`: also where no digit of a table is in doubt.
+   !> Estimates the errors of the motion found last, and finds its sensitivities to numbers with tolerances.
    subroutine sample_set(set, always)
       type(set_analysis_t), intent(inout) :: set
-      logical, intent(in) :: always          !< also if no digit of a table is in doubt
+      logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
       integer :: c
 
       do c = 1, size(set%list)
@@ -413,7 +409,7 @@ contains
       end do
    end subroutine prove_set
 
-   !> The largest bounds (0:2) of the errors of any link that are proved, in the characteristic length and rate of its
+   !> Finds the largest proved bounds (0:2) of the errors of any link, in the characteristic length and rate of its
    !> mechanism.
    pure function set_bounds(set) result(largest)
       type(set_analysis_t), intent(in) :: set
@@ -429,7 +425,7 @@ contains
       end do
    end function set_bounds
 
-   !> Tells what there is to say after the last instant: of BRANCH cards after whose instants no change point was
+   !> Gives the diagnostics (any number) after the last instant: BRANCH cards after whose instants no change point was
    !> passed, in their order.
    pure function set_closing_diagnostics(set) result(list)
       type(set_analysis_t), intent(in) :: set

@@ -1,5 +1,5 @@
-!> The motion of a set at one instant, as the writers take it: that of each of its independent mechanisms (its
-!> parts), how far it is known, and the rows that the set asks for, in the order of the cards.
+!> The motion of a set at one instant, as the writers take it: the motions of its independent mechanisms (its parts),
+!> their errors, and the rows that the set asks for, in the order of the cards.
 module set_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, wanted_links
@@ -19,9 +19,9 @@ module set_motion
    private
    public :: set_motion_t, new_set_motion, is_flagged, has_words, find_row_in_set
 
-   !> Of each part, as many as the set has.
+   !> The motion of a set.
    type, extends(set_t) :: set_motion_t
-      type(motion_t), allocatable :: motions(:)
+      type(motion_t), allocatable :: motions(:)     !< (parts), as the next three
       type(error_estimate_t), allocatable :: errors(:)
       type(sensitivities_t), allocatable :: sensitivities(:)
       type(motion_proof_t), allocatable :: proofs(:)
@@ -48,6 +48,7 @@ contains
       else
          call divide(m, motions%set_t)
       end if
+
       allocate (motions%motions(motions%count), motions%errors(motions%count), motions%sensitivities(motions%count), &
          motions%proofs(motions%count))
       allocate (motions%first(merge(motions%count, 0, any([(any(motions%parts(c)%requests%extremes), c=1, &
@@ -62,21 +63,21 @@ contains
             call leave_out_unmoved(motions%parts(c), structure%blocks, structure%geometry)
          end if
       end do
+
       if (allocated(motions%columns)) motions%columns = pack(motions%columns, &
-         [(has_row(request_of(motions, motions%columns(c)%request)), &
-         c=1, size(motions%columns))])
+         [(has_row(request_of(motions, motions%columns(c)%request)), c=1, size(motions%columns))])
    end subroutine new_set_motion
 
-   !> Tells whether a request has a row anywhere: `leave_out_unmoved` takes all from that of a ratio.
+   !> Tells whether a request has a row anywhere: `leave_out_unmoved` takes all rows from a request for a ratio.
    pure logical function has_row(request)
       type(request_t), intent(in) :: request
 
       has_row = request%drive == 0 .or. request%in_columns
    end function has_row
 
-   !> Takes their rows from the requests for ratios of what the drive cannot move. That is asked at positions that close
-   !> nothing, where the unknowns that depend on the drive have rates of their own: a drive that moves something there
-   !> can move it anywhere but at single positions.
+   !> Takes the rows from requests for ratios that the drive cannot move. The test is at positions at which no loop
+   !> closes, and the unknowns that depend on the drive have arbitrary rates: a drive that moves something there can
+   !> move it anywhere but at single positions.
    subroutine leave_out_unmoved(m, b, x)
       type(mechanism_t), intent(inout) :: m
       type(blocks_t), intent(in) :: b
@@ -104,6 +105,7 @@ contains
          end do
          state%drive_value(0, 1:) = arbitrary([(k, k=1, size(m%drives))] + 2*b%unknowns)
          state%drive_value(1, d) = 1.0_wp
+
          moves = 0
          do i = 1, size(b%list)
             associate (own => b%unknown(b%list(i)%first:b%list(i)%last))

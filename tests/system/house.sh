@@ -63,10 +63,7 @@ equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: r
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 # Each dummy has its meaning, unit and shape where it is declared, but for interfaces of LAPACK and these files.
 unexplained='lapack_routines'
-unexplained="$unexplained|continuation/change_point_passage|deck/deck_lengths|results/animation"
-unexplained="$unexplained|results/assembly_table|results/circuits_picture|results/circuits_table"
-unexplained="$unexplained|results/column_table|results/dxf|results/extremes_table|results/listing|results/phrases"
-unexplained="$unexplained|results/picture|results/solver_log|results/svg|results/variant_rows"
+unexplained="$unexplained|continuation/change_point_passage"
 explained=$(find src -name '*.f90' -o -name '*.F90' -o -name '*.inc' | LC_ALL=C sort | grep -vE "($unexplained)[.]")
 equal 'dummies without their meaning' '' "$(awk -f tests/system/dummies.awk $explained)"
 printf '      integer, intent(in) :: a !< One.\n      real(wp), intent(in) :: b\n      type(x_t), intent(in) :: c\n' > "$BUILD/order/dummies.f90"
