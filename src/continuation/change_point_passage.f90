@@ -14,24 +14,23 @@ module change_point_passage
    private
    public :: leave, go_by_value
 
-   !> How far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
+   !> So far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
    !> length: far enough for rates, near enough for the same branch.
    real(wp), parameter :: short_step = (100.0_wp*epsilon(1.0_wp))**0.125_wp
-   !> After an instant at a singular position the motion takes the other branch where a drive has gone so far, in the
+   !> After an instant at a singular position the motion takes the other branch when a drive has gone so far, in the
    !> units of the blocks: the branches are still close there, and no longer singular.
-   real(wp), parameter :: leaving = 1.0e-5_wp
+   real(wp), parameter :: drive_change_after_rest = 1.0e-5_wp
 
 contains
 
-   !> Leaves the singular position of the last instant, at the time `last`, at which the `blocks` stand, towards `t`. If
-   !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
-   !> that they select. `list`: a diagnostic for each block, for a motion that goes back; diagnostic_dead_end: the
-   !> branch of a card is not found.
+   !> Leaves the singular position of the last instant, for a motion that goes back from there. If there are BRANCH
+   !> cards, it is then followed on the branch that they select, from shortly after that instant.
    subroutine leave(following, last, t, blocks, list)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: last, t
-      integer, intent(in) :: blocks(:)
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      real(wp), intent(in) :: last               !< time of the last instant
+      real(wp), intent(in) :: t                  !< time to which the motion goes
+      integer, intent(in) :: blocks(:)           !< numbers of the blocks that stand there
+      type(diagnostic_t), allocatable, intent(out) :: list(:)   !< (blocks); diagnostic_dead_end: no branch is found
       type(place_t) :: before
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: at_end(:)
@@ -46,7 +45,7 @@ contains
       end do
       if (size(following%branch_requests%cards) == 0) return
 
-      beside = time_beside(following%path, last, t, leaving)
+      beside = time_beside(following%path, last, t, drive_change_after_rest)
       following%branch_requests%stood_until = beside
       call record_checkpoint(following, before)
       call continue_to(following, beside, step)
@@ -72,16 +71,14 @@ contains
       end do
    end subroutine leave
 
-   !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
-   !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a singular position
-   !> and never across. So it is followed by the drive's value instead, from turn to turn. Then the `step` arrives. If
-   !> `t` itself is at a singular position, `list` is that of `change_diagnostics`, and at a change point the step
-   !> stands; otherwise `list` is not allocated.
+   !> Follows the motion by the value of the one drive that moves, from turn to turn, if the step by time has failed or
+   !> has ended at a position without velocities. Reason: the drive stops or turns about there. By time the motion comes
+   !> ever closer to a singular position and never across.
    subroutine go_by_value(following, t, step, list)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: t
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      real(wp), intent(in) :: t                  !< time to which the motion goes
+      type(step_record_t), intent(inout) :: step !< of the continuation to `t`; it arrives, or stands on a change point
+      type(diagnostic_t), allocatable, intent(out) :: list(:)   !< allocated if `t` is at a singular position
       type(place_t) :: before, reached
       type(diagnostic_t), allocatable :: passed(:)
       integer :: drive
@@ -113,15 +110,15 @@ contains
       call follow_from(following, before)
    end subroutine go_by_value
 
-   !> Follows the motion to the value of `drive` at `t`, the other drives held, from one place at which it turns to the
-   !> next. It begins a little way back, since rates are uncertain close to a change point. `passed`: change points on
-   !> the way; `arrived`: it came there; `stands`: at a singular position.
+   !> Follows the motion to the value of a drive at `t`, the other drives held, from one place at which the drive turns
+   !> to the next. It begins a little way back, since rates are uncertain near a change point.
    subroutine go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
       type(following_t), intent(inout) :: following
-      integer, intent(in) :: drive
-      real(wp), intent(in) :: t
-      type(diagnostic_t), allocatable, intent(out) :: passed(:)
-      logical, intent(out) :: arrived, stands
+      integer, intent(in) :: drive               !< its number
+      real(wp), intent(in) :: t                  !< time to which the motion goes
+      type(diagnostic_t), allocatable, intent(out) :: passed(:)   !< change points on the way
+      logical, intent(out) :: arrived            !< it has come to `t`,
+      logical, intent(out) :: stands             !< and `t` is at a singular position
       type(step_record_t) :: one
       type(place_t) :: first
       real(wp) :: turn, next
@@ -146,9 +143,10 @@ contains
 
    contains
 
-      !> Follows the motion to this `value` of the drive, in as much time as from `turn` to the time `to`.
+      !> Follows the motion to a value of the drive, at a constant rate.
       subroutine go_to(to, value)
-         real(wp), intent(in) :: to, value
+         real(wp), intent(in) :: to              !< time at which it has this value; it begins at the time `turn`
+         real(wp), intent(in) :: value           !< rad or unit of length
          real(wp) :: now(3)
 
          now = drive_at(following%path, drive, following%t)
@@ -163,12 +161,11 @@ contains
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
-   !> The motion that is followed becomes that at the `parameter`, where the drives have the same values. `passed`: so
-   !> it does.
+   !> Makes the motion that is followed go on at another parameter of the path, at which the drives have the same values.
    subroutine resume_motion(following, parameter, passed)
       type(following_t), intent(inout) :: following
-      real(wp), intent(in) :: parameter
-      logical, intent(out) :: passed
+      real(wp), intent(in) :: parameter          !< of the path: time or a drive's value
+      logical, intent(out) :: passed             !< it does
 
       call begin_at(following%history, parameter)
       following%t = parameter

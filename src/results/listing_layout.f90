@@ -22,8 +22,8 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
-   public :: row_title, line_length, name_length, table_row_length, end_of_column, column_name, column_unit, angle_unit, &
-      choose_time_digits, write_folded
+   public :: row_title, line_length, name_length, table_row_length, end_of_column, column_name, column_unit, &
+      angle_unit, choose_time_digits, write_folded
 
    !> The largest number of characters of a line.
    integer, parameter :: line_length = 120

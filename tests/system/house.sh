@@ -63,7 +63,6 @@ equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: r
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 # Each dummy has its meaning, unit and shape where it is declared, but for interfaces of LAPACK and these files.
 unexplained='lapack_routines'
-unexplained="$unexplained|continuation/change_point_passage"
 explained=$(find src -name '*.f90' -o -name '*.F90' -o -name '*.inc' | LC_ALL=C sort | grep -vE "($unexplained)[.]")
 equal 'dummies without their meaning' '' "$(awk -f tests/system/dummies.awk $explained)"
 printf '      integer, intent(in) :: a !< One.\n      real(wp), intent(in) :: b\n      type(x_t), intent(in) :: c\n' > "$BUILD/order/dummies.f90"
