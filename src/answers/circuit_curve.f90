@@ -196,9 +196,9 @@ contains
    !> Finds the point of the curve at a distance from a point along its tangent.
    subroutine step_along(curve, from, step, to, ok)
       type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: from
+      type(curve_point_t), intent(in) :: from   !< the known point
       real(wp), intent(in) :: step           !< the distance, rad and lengths of the curve
-      type(curve_point_t), intent(out) :: to
+      type(curve_point_t), intent(out) :: to   !< the point that is found
       logical, intent(out) :: ok             !< `to` is regular, and near the place that tangent and bend predict
       real(wp) :: q(3, size(from%q, 2))
 
@@ -221,7 +221,7 @@ contains
    !> Gives the distance of two points along the tangent of the first, in rad and lengths of the curve.
    pure real(wp) function step_between(curve, from, to) result(h)
       type(curve_t), intent(in) :: curve
-      type(curve_point_t), intent(in) :: from, to
+      type(curve_point_t), intent(in) :: from, to   !< the first and the second point
 
       h = dot_product(from%tangent, offset_from(curve, from%q, to%q, .false.))
    end function step_between

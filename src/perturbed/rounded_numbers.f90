@@ -56,7 +56,7 @@ contains
       real(wp) :: origin(2), size_of, largest
       integer :: i, j, quarters
 
-      ! Numbers that are off leave redundant equations open by more than the tolerance allows.
+      ! With numbers that are off the closure error of redundant equations exceeds the tolerance.
       if (m%closing > 0.0_wp) off%closing = huge(1.0_wp)
       time_off = 0.0_wp
       if (k > 0 .and. .not. length > 0.0_wp) &

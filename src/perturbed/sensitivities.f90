@@ -87,7 +87,7 @@ contains
       call make_ready(estimator%perturbed, 0, m, x, i)
       estimator%place%room = huge(1.0_wp)
       call find_rows(middle)
-      ! Within a closing tolerance a change that opens redundant equations more than they are open jams all the same.
+      ! A change that enlarges the closure error of redundant equations jams, even within a closing tolerance.
       estimator%place%room = inconsistent_level + more_open*estimator%place%opened
 
       do i = 1, size(m%requests)

@@ -57,7 +57,7 @@ contains
 
    !> Gives the ball that holds the differences of two balls.
    elemental type(ball_t) function subtract(first, second) result(c)
-      type(ball_t), intent(in) :: first, second
+      type(ball_t), intent(in) :: first, second   !< the second is subtracted from the first
 
       c%mid = first%mid - second%mid
       c%radius = (first%radius + second%radius + rounding*abs(c%mid))*up

@@ -243,7 +243,7 @@ contains
 
       radius = -1.0_wp
       call apply(size(work%r), size(work%x), work%inverse, work%open, work%x)
-      ! What is not a number lies in no ball.
+      ! A NaN lies in no ball.
       if (.not. (all(work%x <= 1.0_wp) .and. all(work%at_centre <= max_rate))) return
       eta = max(0.0_wp, maxval(work%x))
       if (present(others)) eta = eta + others

@@ -90,7 +90,7 @@ contains
       integer, intent(in) :: others(:)       !< numbers of the frames for whose links there is room, too
       type(canvas_t), intent(out) :: canvas
       type(element_t), allocatable :: list(:)
-      real(wp) :: low(2), high(2), from(2), to(2)    ! what is drawn; the centrodes within the latter
+      real(wp) :: low(2), high(2), from(2), to(2)    ! the extent; and the limits for centrodes
       real(wp) :: room
       integer :: height, top, i, k
 
@@ -222,7 +222,7 @@ contains
       end select
    end subroutine draw_shape
 
-   !> Notes a shape at the position that the canvas shows, so that names keep clear of it.
+   !> Records a shape at the position that the canvas shows, so that names keep clear of it.
    subroutine record_shape(canvas, shape)
       type(canvas_t), intent(inout) :: canvas
       type(element_t), intent(in) :: shape
@@ -318,7 +318,7 @@ contains
       call draw_words(canvas%output, [from - 8.0_wp, level + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//unit)
    end subroutine draw_bar
 
-   !> Notes the lines through points, which names should not cross.
+   !> Records the lines through points, which names should not cross.
    pure subroutine add_lines(canvas, points, weight)
       type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: points(:, :)   !< (2, points) pixels
@@ -338,7 +338,7 @@ contains
       end do
    end subroutine add_lines
 
-   !> Notes a box that names should not cover.
+   !> Records a box that names should not cover.
    pure subroutine add_box(canvas, p, corner)
       type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: p(2)           !< pixel of its upper left corner
@@ -360,7 +360,7 @@ contains
    end function cell_of
 
    !> Finds the place of a name at which it covers the least of all that is drawn, or comes too near to it. The places
-   !> are on eight sides at several distances. The name is noted as drawn.
+   !> are on eight sides at several distances. The name is recorded as drawn.
    subroutine place_name(canvas, p, clear, name, label)
       type(canvas_t), intent(inout) :: canvas
       real(wp), intent(in) :: p(:, :)        !< (2, places) pixels: the name stands near one of these

@@ -87,7 +87,7 @@ contains
 
    contains
 
-      !> Makes the column of a drive: its kind over what it drives.
+      !> Makes the column of a drive: its kind over the name of the driven link, point or pair.
       subroutine set_drive_column(column)
          type(listed_column_t), intent(inout) :: column   !< has the number of the drive
          character(:), allocatable :: name

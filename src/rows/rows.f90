@@ -30,7 +30,7 @@ module rows
       logical :: due = .false.               !< and in the CSV and the table
       logical :: in_doubt = .false.          !< some digit may be in doubt: `doubt` is estimated
       real(wp) :: doubt(3, 0:2) = 0.0_wp     !< the rounding error of the value; 0 without an estimate
-      real(wp) :: error(3, 0:2) = 0.0_wp     !< the estimated error of the value, where errors are asked for
+      real(wp) :: error(3, 0:2) = 0.0_wp     !< the estimated error of the value, if errors are asked for
       logical :: has_digit(3, 0:2) = .true.  !< at least one digit of the number is known
       type(other_row_t), allocatable :: others(:)   !< WORST, RSS and one for each tolerance; then ASSEMBLY. Or none
    end type finished_row_t
@@ -137,7 +137,7 @@ contains
 
       !> Adds a row with the name and the form of `row`.
       subroutine add(word, value, doubt)
-         character(*), intent(in) :: word    !< what it is: WORST, ...
+         character(*), intent(in) :: word    !< of `other_row_t`: WORST, ...
          real(wp), intent(in) :: value(3, 0:2)   !< in the deck's units and radians
          real(wp), intent(in) :: doubt(3, 0:2)   !< the rounding error of `value`
          type(other_row_t) :: one

@@ -40,7 +40,7 @@ module set_analysis
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
-      ! Of classes, so that the compiler calls what frees one, and does not write it out wherever a set is freed.
+      ! Of classes: the compiler then calls one procedure that frees them, instead of its code wherever a set is freed.
       class(estimator_t), allocatable :: estimators(:)      !< (parts)
       class(motion_prover_t), allocatable :: provers(:)     !< (parts)
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, if they are asked for
