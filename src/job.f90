@@ -267,7 +267,7 @@ contains
       integer :: k
 
       call make_set_analysis(with_all_links(m), a)
-      d = new_drawing(m, 1, .false., .false.)
+      d = new_drawing(m, merge(1, 0, m%steps >= 0), .false., .false.)
       call new_paths(m, a%now, paths)
       do k = 0, merge(m%steps, instant_count(m) - 1, m%steps >= 0)
          call advance_set(a, instant(m, k))

@@ -384,7 +384,10 @@ contains
       convergence%step = max(convergence%step, step)
       convergence%change = max(convergence%change, change)
 
-      if (.not. any(ended == [ended_converged, ended_stalled])) return
+      if (.not. any(ended == [ended_converged, ended_stalled])) then
+         convergence%determinant = 0
+         return
+      end if
       if (moves .and. .not. singular) call judge()
       is_singular = singular
       jacobian%sign_of = sign_of

@@ -140,4 +140,8 @@ equal 'a tiny dyad by DENSE: wrong digits, any masked' '0 yes' "$(paste "$w/NEWT
       if ($i - $(i + 10) > 1.5*unit || $(i + 10) - $i > 1.5*unit) wrong++ } }
    END { print wrong + 0, masked }')"
 
+# The log of an instant without a position: no determinant has a sign there.
+"$kinmat" tests/system/decks/two_sizes.deck --no-listing --quiet --log "$w/log"
+equal 'signs of determinants of instants without a position' 0 "$(awk '$3 == "DIVERGED" { print $7 }' "$w/log" | sort -u)"
+
 conclude

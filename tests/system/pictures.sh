@@ -329,6 +329,14 @@ done
 equal 'a motion that closes, and one that does not' '1 0' "$(flags "$w/cad.dxf" PATHS | sort -u) $(flags "$w/cad.dxf" 2-PATHS | sort -u)"
 equal 'entities of the second set' 'CIRCLE 2-JOINTS 4,LINE 2-LINKS 6,POLYLINE 2-PATHS 1,SEQEND 2-PATHS 1,VERTEX 2-PATHS 5' \
    "$(entities "$w/cad.dxf" | tr , '\n' | grep ' 2-' | paste -s -d,)"
+# Instants of AT cards alone: no instant is a frame.
+sed 's/^TIME .*/AT                              3.0             0.0             1.0/' "$w/two.deck" > "$w/at.deck"
+"$kinmat" "$w/at.deck" --no-listing --dxf "$w/at.dxf" --table "$w/at.csv"
+equal 'a set of AT cards alone: status' 0 $?
+vertices "$w/at.dxf" PATHS | awk '{ printf "%.10e %.10e\n", $1, $2 }' > "$w/of.dxf"
+awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /[.]x$/) x[++n] = c; for (c = 1; c <= NF; c++) if ($c ~ /[.]phi$/) { name = $c; sub(/phi$/, "x", name); turns[name] = 1 }
+   for (k = 1; k <= n; k++) if (!($x[k] in turns)) point = x[k]; next } { printf "%.10e %.10e\n", $point, $(point + 1) }' "$w/at.csv" > "$w/of.table"
+equal 'a set of AT cards alone: vertices as in the table' "3 $(cat "$w/of.table")" "$(wc -l < "$w/of.dxf") $(cat "$w/of.dxf")"
 equal 'it begins and ends' 'SECTION ENTITIES ENDSEC EOF' "$(awk 'NR == 2 || NR == 4' "$w/cad.dxf" | paste -s -d ' ') $(tail -n 4 "$w/cad.dxf" | awk 'NR % 2 == 0' | paste -s -d ' ')"
 if python3 -c 'import ezdxf' 2> /dev/null; then
    equal 'ezdxf reads it' '2' "$(python3 -c 'import ezdxf, sys; print(len({e.dxf.layer for e in ezdxf.readfile(sys.argv[1]).modelspace() if e.dxftype() == "POLYLINE"}))' "$w/cad.dxf" 2>&1)"
