@@ -89,6 +89,18 @@ awk 'on { print } /^END/ { on = 1 }' input/andrews.deck > "$w/andrews.deck"
 equal 'Andrews: status' 0 $?
 equal 'Andrews: the matrices' 1 "$(grep -c '^ MATRIX .* ROUNDING   NOT SOLVED AT [0-9]* INSTANTS OR MORE$' "$w/andrews.txt")"
 
+# METHOD NEWTON alone: redundant equations, and more equations than the full matrix is for; a set of one instant has no steps.
+only_newton() {
+   "$kinmat" --study "$2" > "$w/out" 2> "$w/err"
+   equal "$1" "0 $3 11 NEWTON" "$? $(sed -n 4p "$w/out") $(rows "$w/out" | awk '{ n[$1]++ } END { for (m in n) print n[m], m }')"
+}
+awk '{ print } /^END/ { exit }' input/parallel_cranks.deck > "$w/cranks.deck"
+only_newton 'redundant equations' "$w/cranks.deck" ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT'
+tests/make_deck windows 30 3 > "$w/windows.deck"
+only_newton 'many equations' "$w/windows.deck" " METHODS DENSE AND MATRIX ARE NOT TRIED: $((3*$(grep -c '^LINK' "$w/windows.deck"))) EQUATIONS"
+awk '/^TIME/ { next } /^AT/ { $0 = sprintf("AT%33s", "0.1") } { print }' "$w/four_bar.deck" > "$w/one.deck"
+equal 'one instant' '0  NOT STUDIED: ONE INSTANT' "$("$kinmat" --study "$w/one.deck" > "$w/out" 2>&1; echo "$?" "$(tail -n 1 "$w/out")")"
+
 # What is refused.
 only=' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet'
 deck=$w/four_bar.deck

@@ -103,6 +103,12 @@ toleranced '' < input/four_bar.deck | awk -v law="$(card ADD POWER '' '' 0.0001 
 differences 'a full turn by a change' "$w/turn.deck" 1e-7 1e-8
 toleranced 'JOINT POINT DRIVE' < input/drawing.deck > "$w/drawing.deck"
 differences 'a drawing' "$w/drawing.deck" 1e-7 1e-8
+# A body vector without a length, which a tolerance gives it: the block's guide goes through the pin. The lever turns by 1/|OB|.
+awk -v bar="$(card TOLER '' '' '' 0.01 0.01)" '{ sub(/^PRISM   O-LEVER B /, "PRISM   O-LEVER G "); print }
+   /^POINT   B / { sub(/B /, "G "); print; print bar } /^END/ { exit }' input/yoke.deck | at 0.0 1.5 7.0 > "$w/block.deck"
+differences 'a body vector without a length' "$w/block.deck" 1e-7 1e-8
+equal 'a body vector without a length: the lever' 0.44721360 "$("$kinmat" --no-listing --csv - "$w/block.deck" |
+   awk -F, '$4 == "LINK PER POINT G ETA" && $5 == "LEVER" && $3 == 0 { printf "%.8f", $8*atan2(1, 1)/45 }')"
 # Numbers that are as drawn follow the drawing: direction, length and value of a driven cylinder; h of a guide at an angle,
 # on a link of the ground that has tolerances, with beta, and a driven slide; the value of a driven place.
 tolerance() { card TOLER '' '' '' "$@"; }

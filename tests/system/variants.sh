@@ -226,6 +226,11 @@ for k in 1 2 3 4 5 6 7 8; do
 done > "$w/joined.csv"
 same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
 
+# More variants in all sets than a whole number counts: 215 sets of 3162**2.
+moving_four_bar "$(vary R1 3162 '' 0.5 1.25)" "$(vary R1 3162 '' 3.25 3.75)" '' '' "$(card AT '' '' '' 0.0)" > "$w/grid.deck"
+for i in $(seq 215); do cat "$w/grid.deck"; done > "$w/grids.deck"
+rejected 'variants of all sets' 1 ' *** TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK' --no-listing --summary "$w/grids.csv" "$w/grids.deck"
+
 # The shares of tolerances stand in the tables of a variant: rows alone do without, and are the same.
 moving_four_bar "$(vary R1 3 '' 0.5 1.25)" "$(card TOLER '' '' '' 0.01)" '' '' "$(card TIME 4 '' '' 0.0 1.0; card PRINT ALL)" > "$w/toler.deck"
 "$kinmat" "$w/toler.deck" --summary "$w/tables.csv" > "$w/out"
