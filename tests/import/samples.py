@@ -189,6 +189,18 @@ def samples():
     lift = [('0', k, -k, 'anchor="true"'), ('1', 2.2*k, 0.6*k, ''), ('2', 0.0, 0.0, 'anchor="true"'), ('3', 4*k, k, '')]
     yield 'actuator.linkage2', linkage(lift, [('0', '01', 'actuator="true" throw="%r" cpm="15"' % (0.5*k)), ('1', '213', '')]), \
         lambda t: by_id(lifted(t, (1, -1), (2.2, 0.6), (0, 0), (4, 1), 2*0.5*15/60), {'R': '1', 'T': '3'})
+    # A bracket that slides without turning over two pins on ground; two bars turn about one of these pins.
+    bracket = [('0', 0.0, 0.0, ''), ('1', 4*k, 0.0, ''), ('2', k, 0.0, 'anchor="true" slider="true"', '0', '1'),
+               ('3', 3*k, 0.0, 'anchor="true" slider="true"', '0', '1'), ('4', -2*k, 0.0, 'anchor="true"'), ('5', k, 2*k, ''), ('6', k, -2*k, '')]
+    yield 'bracket.linkage2', linkage(bracket, [('0', '01', ''), ('1', '40', 'actuator="true" throw="%r" cpm="15"' % (0.5*k)), ('2', '25', ''),
+                                                ('3', '26', ''), ('4', '50', ''), ('5', '60', '')]), \
+        lambda t: pushed(0.25*t)
+
+
+def pushed(x):
+    """The bracket at x; a bar of 2 about (1, 0), and a bar of the root of 5 from it to the bracket."""
+    bx, by = meet((1, 0), 2, (x, 0), math.sqrt(5), side((1, 0), (0, 0), (1, 2)))
+    return {'0': (x, 0.0), '1': (4 + x, 0.0), '5': (bx, by), '6': (bx, -by)}
 
 
 def guided(angle):
