@@ -36,7 +36,7 @@ parts() {
    what is as drawn|90|tests/system/as_drawn.sh
    slots|10|tests/system/slots.sh
    lengths|50|tests/system/lengths.sh
-   what a drawing needs|30|tests/system/drawn.sh
+   what a drawing needs|55|tests/system/drawn.sh
    tables become decks|15|tests/system/columns.sh
    extremes|42|tests/system/answers.sh
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40

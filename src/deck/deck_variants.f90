@@ -29,10 +29,11 @@ module deck_variants
    character(2), parameter :: real_words(3) = ['R1', 'R2', 'R3']
    !> The cards whose numbers can vary, and the kinds of these numbers.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
-      form_drive, form_add, form_rise, form_time, form_length]
+      form_drive, form_add, form_rise, form_time, form_length, form_cylinder]
    integer, parameter :: parameter_kinds(*) = [parameter_link, parameter_link, parameter_point, parameter_pair, &
       parameter_pair, &
-      parameter_joint, parameter_drive, parameter_drive, parameter_drive, parameter_time, parameter_length]
+      parameter_joint, parameter_drive, parameter_drive, parameter_drive, parameter_time, parameter_length, &
+      parameter_stroke]
 
    !> A number that varies.
    type :: varied_t
@@ -88,6 +89,7 @@ contains
                call add_card_error(set, field_unused, k, label_a)
             else
                call find_holes(k, above, holes)
+               if (is_placed(above, holes)) call add_card_error(set, toler_placed, k, card_name)
 
                do i = 1, 3
                   if (.not. card%given(i)) cycle
@@ -153,6 +155,26 @@ contains
             holes = pack(holes, set%mechanism%points(holes)%link == link)
          end if
       end subroutine find_holes
+
+      !> Tells whether two lengths give the place of a hole of a TOLER card, or of all points that it moves together.
+      logical function is_placed(above, holes)
+         integer, intent(in) :: above        !< number of the card above it
+         integer, intent(in) :: holes(:)     !< (0 to 2) points, as `find_holes` gives them
+         integer, allocatable :: points(:)
+         integer :: j
+
+         is_placed = .false.
+         associate (card => set%cards(above), m => set%mechanism)
+            if (all(card%form /= [form_point, form_joint]) .or. card%subject == 0) return
+            if (.not. allocated(m%lengths)) return
+            points = holes
+            if (size(holes) == 0) points = [(j, j=card%subject, card%subject + merge(1, 0, card%form == form_joint))]
+            associate (by_two => [(m%points(points(j))%hole > 0 .and. &
+                  count(m%lengths%hole(2) == m%points(points(j))%hole) == 2, j=1, size(points))])
+               is_placed = merge(all(by_two), any(by_two), size(holes) == 0)
+            end associate
+         end associate
+      end function is_placed
 
       !> Adds the tolerance of a number.
       subroutine add_tolerance(number, size_of, text)

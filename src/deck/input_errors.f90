@@ -74,6 +74,7 @@ module input_errors
       star_twice = error_code_t(43, 'IS GIVEN TWICE: ALSO ON THE CARD THAT THIS ONE CONTINUES'), &
       card_alone = error_code_t(45, 'MUST FOLLOW THE CARD TO WHICH IT APPLIES'), &
       toler_none = error_code_t(46, 'IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'), &
+      toler_placed = error_code_t(48, 'IS FOR A PLACE THAT TWO LENGTHS GIVE: PUT IT BELOW THE LENGTH CARDS'), &
       toler_link = error_code_t(44, 'IS NO LINK OF THE JOINT ABOVE: NAME ONE OF ITS LINKS, OR BOTH', own_layout)
    ! Names.
    type(error_code_t), parameter, public :: &

@@ -81,6 +81,7 @@ module mechanism
    integer, parameter :: parameter_time = 7     !< T0 or T1 of TIME
    integer, parameter :: parameter_length = 8   !< the length `subject`, in the order in which lengths are put
    integer, parameter :: parameter_hole = 9   !< x or y, in the drawing, of the hole of point `subject` of a JOINT card
+   integer, parameter :: parameter_stroke = 10   !< least or greatest length of cylinder `subject`, a pair
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)

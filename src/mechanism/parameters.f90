@@ -6,10 +6,8 @@ module parameters
    use kinds, only: wp, label_length
    use plane_vectors, only: pi, degree, direction, rotated, point_of
    use mechanism, only: mechanism_t, drive_t, parameter_t, parameter_link, parameter_point, parameter_joint, &
-      parameter_pair, &
-      parameter_drive, parameter_knot, parameter_time, parameter_length, parameter_hole, term_harmonic, term_power, &
-         term_table, &
-      term_kinds
+      parameter_pair, parameter_drive, parameter_knot, parameter_time, parameter_length, parameter_hole, &
+      parameter_stroke, term_harmonic, term_power, term_table, term_kinds
    use scales, only: is_length
    use splines, only: new_spline
    use drawn_values, only: follow_drawing
@@ -103,6 +101,9 @@ contains
                   //one%link)
             end associate
             return
+         case (parameter_stroke)
+            name = 'CYLINDER '//trim(m%pairs(k)%name)//' '//trim(merge('LEAST   ', 'GREATEST', number%place == 1))
+            return
          case (parameter_time)
             name = 'TIME T'//whole(number%place - 1)
             if (number%place == 2 .and. m%turns > 0.0_wp) name = 'TIME TURNS'
@@ -137,7 +138,7 @@ contains
       select case (number%kind)
       case (parameter_link)
          unit = unit_of(number%place == 3)
-      case (parameter_point, parameter_joint, parameter_length, parameter_hole)
+      case (parameter_point, parameter_joint, parameter_length, parameter_hole, parameter_stroke)
          unit = unit_of(.false.)
       case (parameter_pair)
          unit = unit_of(number%place /= 2)
@@ -223,6 +224,8 @@ contains
 
          case (parameter_length)
             x => m%lengths(k)%length
+         case (parameter_stroke)
+            x => m%pairs(k)%stroke(i)
          case (parameter_knot)
             x => m%drives(k)%terms(number%term)%table%x(i)
          case (parameter_time)

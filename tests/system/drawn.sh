@@ -133,6 +133,20 @@ for case in '2.0 2.8 2.000000000 2.800000000' '1.6 2.0 1.600000000 2.000000000' 
    equal "ends of strokes $1 $2: RANGE" "RAM $3 RAM $4 RAM RAM2 $3 RAM2 $4 RAM2" "$(awk '/^ SLIDE RAM/ && NF == 2 { printf "%s%s", n++ ? " " : "", $2 }
       /^   (MIN|MAX) / { sub(/:/, "", $5); printf " %s %s", $2, $5 }' "$w/out")"
 done
+# Strokes that vary: a greatest length of 2.2, 2.4 and 2.75, by the law of cosines; one below the least length has its error.
+boom 1.8 2.4 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card TIME 6 '' '' 0.0 6.0)" RANGE |
+   sed "s/^CYLINDER.*/&\n$(card VARY R2 LIST '' 2.2 2.4 2.75)\n$(card VARY R2 LIST '' 1.8)/" > "$w/deck"
+"$kinmat" --no-listing --summary "$w/csv" "$w/deck" > "$w/out" 2>&1
+equal 'strokes that vary' "$(awk 'BEGIN { pi = atan2(0, -1); a = atan2(1, 1.5) - atan2(-1, 2); n = split("2.2 2.4 2.75", most, " ")
+   for (k = 1; k <= n; k++) {
+      c = (8.25 - most[k]^2)/(2*sqrt(16.25)); limit = (atan2(sqrt(1 - c*c), c) - a)*180/pi
+      printf "%d %.9f STROKE;", int(limit/10) + 1, limit
+   } print "0 0.000000000 E078;" }')" \
+   "$(awk -F, 'NR > 1 { printf "%d %.9f %s;", $4, $13, $8 } END { print "" }' "$w/csv")"
+equal 'strokes that vary: their name' CYLINDER.RAM.GREATEST "$(head -n 1 "$w/csv" | cut -d, -f3)"
+boom 1.8 2.4 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card AT '' '' '' 0.0)" | sed "s/^CYLINDER.*/&\n$(card TOLER '' '' '' '' 0.1)/" > "$w/deck"
+equal 'a tolerance of a stroke' 'E046  CARD 10  COLUMN 49  FIELD REAL-2: "0.1" IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE' \
+   "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/.*[*] E046/E046/p')"
 # A step over the length 0, with both sides solved, is not made: both eyes at one radius.
 through() {
    card UNITS M DEG S; card GROUND BASE; card LINK GATE; card LINK BARREL; card LINK ROD

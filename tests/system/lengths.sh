@@ -178,6 +178,20 @@ plate "$turn" "$hours" | sed 's/^LINK    ROD .*/LINK    ROD     C       C/' |
    error 'no drawing' 'E072 CARD 3 COLUMN 17 FIELD LABEL-B: "O" NEEDS A DRAWING, THAT IS JOINT CARDS: AXES ALONG A BAR BEGIN AT A JOINT'
 card TOLER BASE '' '' 0.1 | { read -r bar; inline "$bar" | sed '1d;$d'; } |
    error 'a hole of another link' 'E044 CARD 8 COLUMN 9 FIELD LABEL-A: "BASE" IS NO LINK OF THE JOINT ABOVE: NAME ONE OF ITS LINKS, OR BOTH'
+# Two lengths give the place of C on the plate, none that on the rod.
+placed() { plate "$(card LENGTH A C '' 50.0)" "$(card LENGTH B C '' 55.0)" "$turn" "$(card AT '' '' '' 0.0)" | sed "s/^JOINT   C .*/&\n$1/"; }
+for link in '' PLATE; do
+   placed "$(card TOLER "$link" '' '' 0.1)" |
+      error "the place of two lengths, $link" 'E048 CARD 13 COLUMN 1 FIELD NAME: "TOLER" IS FOR A PLACE THAT TWO LENGTHS GIVE: PUT IT BELOW THE LENGTH CARDS'
+done
+for link in ROD BOTH; do
+   placed "$(card TOLER "$link" '' '' 0.1)" | made placed
+   run placed
+   equal "a hole beside two lengths: $link" '0 0' "$status $(wc -c < "$w/placed.err" | tr -d ' ')"
+done
+plate "$(card POINT F PLATE '' 60.0 80.0)" "$(card TOLER '' '' '' 0.1)" "$(card LENGTH A F '' 60.0)" "$(card LENGTH B F '' 40.0)" "$turn" "$hours" |
+   sed 's/^LINK    PLATE.*/LINK    PLATE/' |
+   error 'a point that two lengths place' 'E048 CARD 16 COLUMN 1 FIELD NAME: "TOLER" IS FOR A PLACE THAT TWO LENGTHS GIVE: PUT IT BELOW THE LENGTH CARDS'
 inline "$(card TOLER ROD '' '' 0.1)" "$(card TOLER ROD '' '' 0.1)" | sed '1d;$d' |
    error 'a hole twice' 'E042 CARD 9 COLUMN 1 FIELD NAME: "TOLER" IS A SECOND * OR TOLER CARD FOR THE SAME CARD'
 inline "$(card TOLER ROD '' '' 0.1)" "$(card TOLER '' '' '' 0.1)" | sed '1d;$d' |
