@@ -65,6 +65,29 @@ equal 'a coupler that does not fit by 1.0' '2  END OF SET 1:  INSTANTS SOLVED 0,
 with parallel_cranks "$(card METHOD '' '' '' '' 1.0E-3)" > "$w/deck"
 equal 'a closing tolerance, and NEWTON by default' 0 "$("$kinmat" "$w/deck" > "$w/listing"; echo $?)"
 
+# boom STROKE1 STROKE2 CARD...: a boom on a cylinder from F (2, -1) to E (1.5, 1), with the boom's bearing at 0
+boom() {
+   card UNITS M DEG S; card GROUND BASE; card LINK BOOM; card LINK BARREL; card LINK ROD
+   card JOINT O BASE BOOM 0.0 0.0; card JOINT F BASE BARREL 2.0 -1.0; card JOINT E ROD BOOM 1.5 1.0
+   card CYLINDER F E RAM "$1" "$2"
+   shift 2
+   printf '%s\n' "$@"
+   card END
+}
+# A table of variants says what its `?` are, of rounding and of the closure error, once below all variants; none without `?`.
+for n in 1 3; do
+   cranks 1 5.0E-3 | sed -e '/^PRINT/d' -e "s/^DRIVE.*/&\n$(card VARY R2 $n '' 1.0 $([ $n = 1 ] || echo 2.0))/" \
+      -e "s/^END/$(card EXTREMES LINKS C1)\n&/" -e "s/^TIME .*/$(card TIME 12 '' '' 0.0 1.0)/" > "$w/deck"
+   "$kinmat" --quiet "$w/deck" > "$w/listing"
+   equal "$n variants with a closing tolerance" '1 yes' "$(grep -c '^ --- ?: DIGITS LOST TO ROUNDING OR TO THE CLOSURE ERROR$' "$w/listing") \
+$(awk '/^ RESULTS/ { on = 1 } on && /[0-9]\?/ { digits = 1 } /^ --- \?/ && digits { print "yes" }' "$w/listing")"
+done
+sed 's/^END/LANG    PL\n&/' "$w/deck" > "$w/polish.deck"
+equal 'variants with a closing tolerance, in Polish' 1 "$("$kinmat" --quiet "$w/polish.deck" | grep -c '^ --- ?: CYFRY UTRACONE PRZEZ ZAOKRAGLENIE LUB BLAD ZAMKNIECIA$')"
+boom '' '' "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card TIME 6 '' '' 0.0 6.0)" "$(card EXTREMES PAIRS RAM)" |
+   sed "s/^JOINT   E.*/&\n$(card VARY R1 3 '' 1.5 1.75)/" > "$w/deck"
+equal 'variants without ?' 0 "$("$kinmat" --quiet "$w/deck" | grep -c '^ --- ?:')"
+
 # What is out of range, and methods that take no redundant equations.
 for value in 0.02 -1.0E-3 1.0E-11; do
    with parallel_cranks "$(card METHOD NEWTON '' '' '' $value)" > "$w/deck"
@@ -100,15 +123,6 @@ $(card ADD HARMONIC '' '' 1.0 1.0)"; do
    equal "turns beside: $wrong" $expected "$(grep -c E077 "$w/out")"
 done
 
-# boom STROKE1 STROKE2 CARD...: a boom on a cylinder from F (2, -1) to E (1.5, 1), with the boom's bearing at 0
-boom() {
-   card UNITS M DEG S; card GROUND BASE; card LINK BOOM; card LINK BARREL; card LINK ROD
-   card JOINT O BASE BOOM 0.0 0.0; card JOINT F BASE BARREL 2.0 -1.0; card JOINT E ROD BOOM 1.5 1.0
-   card CYLINDER F E RAM "$1" "$2"
-   shift 2
-   printf '%s\n' "$@"
-   card END
-}
 # Lengths by the law of cosines: L**2 = |F|**2 + |E|**2 - 2 |F| |E| cos(angle between).
 boom 1.8 2.4 "$(card DRIVE ANGLE BOOM '' '' 10.0)" "$(card TIME 6 '' '' 0.0 6.0)" "$(card PRINT PAIRS RAM)" RANGE ASSEMBLY CIRCUITS > "$w/deck"
 "$kinmat" -o "$w/out" --csv "$w/csv" "$w/deck"
