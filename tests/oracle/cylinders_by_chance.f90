@@ -8,6 +8,7 @@ program cylinders_by_chance
    use kinds, only: wp
    use dice, only: dice_t, new_dice, between, chance, throw
    use arguments, only: argument, number
+   use printed_cards, only: card, polar
    implicit none
 
    real(qp), parameter :: pi = acos(-1.0_qp), turn = 2*pi
@@ -346,13 +347,6 @@ contains
       if (present(down_at)) down_at = minloc(modulo(-list%rho, turn), dim=1)
    end subroutine neighbours
 
-   function polar(r, angle) result(v)
-      real(wp), intent(in) :: r, angle
-      real(wp) :: v(2)
-
-      v = r*[cos(angle), sin(angle)]
-   end function polar
-
    function text_of(x) result(text)
       real(wp), intent(in) :: x
       character(16) :: text
@@ -420,20 +414,6 @@ contains
 
       write (text, '(i0)') n
    end function whole
-
-   !> Prints a card.
-   subroutine card(name, l1, l2, l3, reals)
-      character(*), intent(in) :: name, l1
-      character(*), intent(in), optional :: l2, l3, reals(:)
-      character(80) :: line
-
-      line = name
-      line(9:16) = l1
-      if (present(l2)) line(17:24) = l2
-      if (present(l3)) line(25:32) = l3
-      if (present(reals)) write (line(33:), '(3a16)') reals
-      print '(a)', trim(line)
-   end subroutine card
 
    !> Reads what the listing in `file` says of assemblies, ranges and circuits.
    subroutine read_listing(file)

@@ -7,6 +7,7 @@ program lengths_by_chance
    use kinds, only: wp
    use dice, only: dice_t, new_dice, between, chance, throw, disorder
    use arguments, only: argument, number
+   use printed_cards, only: card, polar
    implicit none
 
    !> A0, A, B, B0 and C, E, D0: crank A0 A, coupler A B C, rocker B0 B, and a dyad C E, E D0.
@@ -213,13 +214,6 @@ contains
       r = p + along*u + sign(sqrt(max(square, 0.0_qp)), side_of)*[-u(2), u(1)]
    end subroutine meet
 
-   function polar(r, angle) result(v)
-      real(wp), intent(in) :: r, angle
-      real(wp) :: v(2)
-
-      v = r*[cos(angle), sin(angle)]
-   end function polar
-
    function unit(v) result(u)
       real(qp), intent(in) :: v(2)
       real(qp) :: u(2)
@@ -301,20 +295,6 @@ contains
 
       write (text, '(f15.12)') x
    end function text_of
-
-   !> Prints a card.
-   subroutine card(name, l1, l2, l3, reals)
-      character(*), intent(in) :: name, l1
-      character(*), intent(in), optional :: l2, l3, reals(:)
-      character(80) :: line
-
-      line = name
-      line(9:16) = l1
-      if (present(l2)) line(17:24) = l2
-      if (present(l3)) line(25:32) = l3
-      if (present(reals)) write (line(33:), '(3a16)') reals
-      print '(a)', trim(line)
-   end subroutine card
 
    !> Compares the CSV on standard input with the closed forms.
    subroutine check()
