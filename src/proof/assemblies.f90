@@ -17,6 +17,8 @@ module assemblies
    use link_motion, only: move_links
    use ball_equations, only: ball_numbers_t
    use ball_numbers, only: new_ball_numbers
+   use balls, only: ball_t
+   use link_bounds, only: bound_links
    use position_proof, only: placed_t, new_placed, prove_position
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
@@ -27,7 +29,7 @@ module assemblies
    integer, parameter :: max_assemblies = 1000
    !> Distances that differ by less than this part are equal: rounding shall not choose.
    real(wp), parameter :: equal_distance_part = sqrt(epsilon(1.0_wp))
-   !> A cylinder shorter than this part of the characteristic length may have the length 0.
+   !> A cylinder shorter than this part of the characteristic length may have the length 0, whatever is proved.
    real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
 
    !> An assembly.
@@ -177,7 +179,7 @@ contains
             if (assemblies%are_more) exit
             call prove_position(p, following%blocks, following%path, following%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call record_assembly(following, found, chosen, is_proved, assemblies)
+            call record_assembly(m, following, found, chosen, is_proved, q, assemblies)
             i = i - 1
             cycle
          end if
@@ -205,30 +207,37 @@ contains
 
    !> Puts an assembly among the others, the nearest first. If distances are equal they keep the order in which they
    !> were found. An assembly with a cylinder of negative length is only counted.
-   subroutine record_assembly(following, found, chosen, is_proved, assemblies)
+   subroutine record_assembly(m, following, found, chosen, is_proved, proof, assemblies)
+      type(mechanism_t), intent(in) :: m
       type(following_t), intent(in) :: following   !< its state is the assembly
       type(block_positions_t), intent(in) :: found(:)   !< (blocks)
       integer, intent(in) :: chosen(:)       !< (blocks) numbers of the positions of the assembly
-      logical, intent(in) :: is_proved       !< the assembly is proved
+      logical, intent(in) :: is_proved       !< the assembly is proved,
+      type(placed_t), intent(in) :: proof    !< and lies in these balls
       type(assemblies_t), intent(inout) :: assemblies
       type(assembly_t) :: one
       type(motion_t) :: q
-      real(wp) :: length
+      type(ball_t) :: links(3, 0:2, size(m%links))
+      real(wp) :: length, zero, off(2, 0:2)
       logical :: finite
       integer :: i, k
 
       q = new_motion(size(following%guess%links, 2))
       call move_links(following%geometry%chain, size(following%geometry%chain%links), following%state, q, finite)
       one%is_proved = is_proved
+      off = 0.0_wp
+      if (is_proved) call bound_links(m, following%geometry, proof%ball_state_t, q, links, off)
       do i = 1, size(following%geometry%cylinders)
          associate (c => following%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
-            ! A length of 0 within rounding is kept, and nothing is proved of its sign.
-            if (abs(length) <= zero_length*following%geometry%span) one%is_proved = .false.
-            one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, length)
+            ! A length that may be 0 is kept, and nothing is proved of its sign.
+            zero = max(zero_length*following%geometry%span, &
+               3.0_wp*off(1, 0) + off(2, 0)*(norm2(c%p) + norm2(c%q) + abs(length)))
+            if (abs(length) <= zero) one%is_proved = .false.
+            one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, max(length, 0.0_wp))
          end associate
-         if (length < -zero_length*following%geometry%span) assemblies%negative = assemblies%negative + 1
-         if (length < -zero_length*following%geometry%span) return
+         if (length < -zero) assemblies%negative = assemblies%negative + 1
+         if (length < -zero) return
       end do
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]

@@ -180,6 +180,22 @@ equal 'a law that begins below 0' E109 "$("$kinmat" "$w/deck" 2>&1 | grep -o E10
 boom '' '' "$(card DRIVE ANGLE BARREL '' 180.0)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'only lengths below 0' ' *** NO POSITION FOUND
  *** CYLINDER RAM: ONLY LENGTHS BELOW 0, FOR A SLIDE THROUGH 0 USE PRISM' "$("$kinmat" "$w/deck" | grep '[*][*][*]')"
+# near_zero Y: bars of 1 and 1 with feet 2 - 1E-12 apart hold B at h = 1E-6, which 4 roundings of the numbers move by 1E-8. A rod
+# follows B, and its cylinder has the length h - Y.
+near_zero() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK ONE; card LINK TWO; card LINK ROD
+   card JOINT A0 BASE CRANK -1.0; card JOINT A CRANK ONE 0.0 0.0; card JOINT B ONE TWO 1.0 0.3; card JOINT D TWO BASE 1.999999999999
+   card LENGTH A B '' 1.0; card LENGTH D B '' 1.0
+   card POINT P BASE '' 2.0 "$1"; card POINT Q ROD '' 2.0 0.3; card POINT S ROD '' 1.0 0.3
+   card CYLINDER P Q RAM; card SLOT S B GROOVE; card DRIVE ANGLE CRANK '' 0.0 1.0; card AT '' '' '' 0.0; card ASSEMBLY; card END
+}
+for case in '0.5E-6:PROVED 1' '0.99E-6:NOT PROVED 1' '1.01E-6:NOT PROVED 1' '1.5E-6: 2'; do
+   near_zero "${case%%:*}" > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out" 2>&1
+   equal "a proved ball and the length 0: ${case%%:*}" "${case#*:}" \
+      "$(sed -n 's/^ ASSEMBLY 1 .*DETERMINANTS [-+]*  *\([A-Z ]*PROVED\).*/\1/p' "$w/out") $(sed -n 's/^ --- ASSEMBLIES WITH A CYLINDER.*: //p' "$w/out")"
+   equal "no stroke, no mark: ${case%%:*}" 0 "$(grep -c 'PROVED.*OUT OF STROKE' "$w/out")"
+done
 through 2.0 "$(card DRIVE SLIDE CYL '' '' 0.1)" "$(card AT '' '' '' 0.0)" > "$w/deck"
 equal 'a drawing out of its stroke' 1 "$("$kinmat" --check "$w/deck" 2>&1 | grep -c 'IS DRAWN OUT OF STROKE')"
 for stroke in '0.0 2.4' '1.8 -2.4'; do
