@@ -1,8 +1,7 @@
 #!/bin/sh
 # make coverage: how many lines of each file of src/ the tests run, by gcov: the unit tests, and all parts that call the command
 # or the library. Files below 90 per cent come first. BUILD: the directory of the builds; each is compiled again, without
-# optimization. Processes that end by _exit or by a signal write their counts, too (coverage_counts.c). Tests of short memory and
-# of too many open files fail in these builds: to write counts takes both.
+# optimization. Processes that end by _exit or by a signal write their counts, too (coverage_counts.c).
 cover=$BUILD/coverage
 : "${MAKE:=make}"
 tests/run.sh --list | grep -vE '^(real128|single precision|results of the methods|what is installed|the stand-in|the sources|the closed forms|the documents|estimates of errors|proofs|nothing false|the digits|the method of 1987|what is hard|the tool of mutants)' \

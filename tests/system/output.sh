@@ -230,6 +230,10 @@ for more in 4000 8000 12000 16000 24000 32000; do
       told "$more kB more than enough for two sets, --jobs $jobs" 3 $? ' *** NOT ENOUGH MEMORY FOR THE DECK'
    done
 done
+# Memory that ends after the deck is read: a net of many links.
+(cd "$home" && tests/make_deck windows 3000 3) > windows
+(ulimit -v $((memory + 12000)); exec "$kinmat" windows) > out 2> err
+told 'no memory after the deck' 3 $? ' *** NOT ENOUGH MEMORY FOR THE DECK'
 
 # Decks that cannot be read.
 "$kinmat" /proc/self/mem > out 2> err
