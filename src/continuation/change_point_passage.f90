@@ -161,7 +161,7 @@ contains
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
-   !> Makes the motion that is followed go on at another parameter of the path, at which the drives have the same values.
+   !> Makes the motion that is followed go on at another parameter of the path. The drives have the same values there.
    subroutine resume_motion(following, parameter, passed)
       type(following_t), intent(inout) :: following
       real(wp), intent(in) :: parameter          !< of the path: time or a drive's value
