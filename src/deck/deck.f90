@@ -174,7 +174,7 @@ contains
       associate (set => progress%set)
          call build_mechanism(set)
          call build_variation(set, progress%sets(progress%closed)%variation)
-         if (set%errors%count == progress%errors_before) then
+         if (set%errors%count == progress%errors_before .and. set%names_certain) then
             call check_terms(set)
             call check_unused(set)
             call check_centres(set)

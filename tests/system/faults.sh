@@ -845,6 +845,9 @@ equal 'no link is ground' "$(grep -c '^POINT .*BASE' "$w/deck")" \
 explained 'a deck in free format' '/^(TITLE|END)/ { print; next } { $1 = $1; print }' \
    ' *** E011  CARD 2  COLUMN 7  FIELD NAME: "M" IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65
  LAYOUT    |UNITS   LENGTH  RAD/DEG TIME'
+explained 'a second set in free format' '/^(TITLE|END)/ { print; next } { $1 = $1 } /^REVOLUTE/ && !n++ { print "END" } 1' \
+   ' *** E011  CARD 2  COLUMN 7  FIELD NAME: "M" IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65
+ LAYOUT    |UNITS   LENGTH  RAD/DEG TIME'
 explained 'numbers that touch' '/^DRIVE/ { $0 = "DRIVE   ANGLE   CRANK           0.52359877559829910.0" } 1' \
    ' *** E022  CARD 18  COLUMN 49  FIELD REAL-2: "910.0" TOUCHES THE NUMBER BEFORE IT: KEEP A BLANK BETWEEN 0.52359877559829 AND 910.0, OR 0.523598775598299 AND 10.0
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
