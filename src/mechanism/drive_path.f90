@@ -176,13 +176,14 @@ contains
    end function time_beside
 
    !> Finds the time at which the fastest drive has made a part of its way between two parameters, by its law. If the
-   !> drive is so slow there that its value does not give the time, it is the time until which the drive slows down.
+   !> drive is so slow there that its value does not give the time, or turns back on the way, at its dead point, it is
+   !> the time until which the drive slows down.
    pure real(wp) function time_at_part(path, p1, p2, part) result(at)
       type(drive_path_t), intent(in) :: path
       real(wp), intent(in) :: p1, p2         !< parameters of the path, in the deck's unit of time
       real(wp), intent(in) :: part           !< of the way, from 0 to 1
       real(wp), dimension(size(path%laws)) :: start, way
-      real(wp) :: span(2), low, high
+      real(wp) :: span(2), low, high, first(3), last(3)
       integer :: i, k
 
       start = values_at(path, p1)
@@ -194,6 +195,10 @@ contains
       at = time_of(part)
       low = time_of(part - not_told)
       high = time_of(part + not_told)
+      first = drive_at(path, i, p1)
+      last = drive_at(path, i, p2)
+      if (first(2)*last(2) < 0.0_wp) low = p1
+      if (first(2)*last(2) < 0.0_wp) high = p2
       if (.not. slows_down(low) .or. slows_down(high)) return
       do k = 1, digits(1.0_wp)
          call halve(slows_down(middle_of(low, high)), low, high)

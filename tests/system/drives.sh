@@ -135,4 +135,35 @@ equal 'beyond a limit and back between two instants' \
    ' *** NO POSITION: BEYOND THE LIMIT OF MOTION AT T = 0.4946899 S
  *** DRIVE ANGLE CRANK = 90.89528299 DEG' \
    "$("$kinmat" "$w/deck" 2>&1 | sed -n '/LIMIT OF/p; s/^\( [*]* DRIVE .*\), LINKS .*/\1/p')"
+# A piston comes to its dead point, at crank + rod, at t = 45 and turns back there: x = 4 - (t - 45)^2/4096. The crank turns
+# on through it, by the law of cosines, whatever the steps.
+for steps in 4 7 18 45; do
+   { cat <<'DECK'
+GROUND  BASE
+LINK    CRANK                   0.0             0.0             52.0
+LINK    ROD                     0.61            0.79            -15.0
+LINK    PISTON                  3.5
+POINT   O       BASE
+POINT   WAY     BASE
+POINT   O-CR    CRANK
+POINT   A-CR    CRANK           1.0
+POINT   A-ROD   ROD
+POINT   B-ROD   ROD             3.0
+POINT   B       PISTON
+REVOLUTEO       O-CR    PAIR-O
+REVOLUTEA-CR    A-ROD   PAIR-A
+REVOLUTEB-ROD   B       PAIR-B
+PRISM   WAY     B       GUIDE
+DRIVE   X       B               3.505615234375  0.02197265625   -0.00048828125
+PRINT   LINKS   CRANK
+UNITS   M       DEG     S
+DECK
+     ends $steps 0.0 90.0; } > "$w/deck"
+   "$kinmat" "$w/deck" --csv "$w/csv" > "$w/lst" 2> "$w/err"
+   equal "piston on its dead point, $steps steps: time" ' --- CHANGE POINT AT T = 45.00000 S, LINKS CRANK, ROD: PASSED ON THE SMOOTH BRANCH' \
+      "$(grep 'CHANGE POINT AT' "$w/lst")"
+   equal "piston on its dead point, $steps steps: crank" "$((steps + 1))" "$(LC_ALL=C awk -F, '$5 == "CRANK" { x = 4 - ($3 - 45)^2/4096
+      c = (x^2 - 8)/(2*x); phi = atan2(sqrt(c < 1 ? 1 - c^2 : 0), c)*45/atan2(1, 1); if ($3 > 45) phi = -phi
+      n += ($8 - phi)^2 < 1e-12 } END { print n }' "$w/csv")"
+done
 conclude
