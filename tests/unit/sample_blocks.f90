@@ -2,33 +2,16 @@
 module sample_blocks
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use spanning_tree, only: spanning_tree_t, new_tree, assign_axes
+   use spanning_tree, only: spanning_tree_t, new_tree
    use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
    use blocks, only: blocks_t, geometry_t
    use block_structure, only: new_blocks
    use block_numbers, only: fill_numbers, lipschitz_of
    implicit none
    private
-   public :: plain_blocks, tree_blocks
+   public :: plain_blocks
 
 contains
-
-   !> The tree of `m`, as blocks `b` without equations, and the axes of its links, as `x`; lengths in units of `length`.
-   subroutine tree_blocks(m, length, b, x)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: length
-      type(blocks_t), intent(out) :: b
-      type(geometry_t), intent(out) :: x
-
-      b%tree = new_tree(m)
-      b%unknowns = b%tree%orientations + b%tree%slides + 2*maxval(b%tree%root)
-      x%equations%length = length
-      allocate (x%unit(0:b%unknowns), source=1.0_wp)
-      associate (a => x%equations%axes)
-         allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
-         call assign_axes(m, b%tree, a)
-      end associate
-   end subroutine tree_blocks
 
    !> The equations `e` of `m` with their numbers `x`, lengths in units of `length`.
    subroutine make_equations(m, length, e, x)

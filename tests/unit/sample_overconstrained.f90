@@ -5,7 +5,7 @@ module sample_overconstrained
    use sample_mechanisms, only: four_bar
    implicit none
    private
-   public :: parallelogram, three_cranks
+   public :: parallelogram, antiparallelogram, crossed_rocker, three_cranks
 
 contains
 
@@ -25,7 +25,25 @@ contains
       m%pairs%name = ['A0      ', 'A       ', 'B       ', 'B0      ']
    end function parallelogram
 
-   !> The same with a third crank, from (1, 1) to the coupler's point (1, 1), longer than the others by `excess`.
+   !> The same crossed, with cranks of length `crank`.
+   function antiparallelogram(crank, phi) result(m)
+      real(wp), intent(in) :: crank, phi
+      type(mechanism_t) :: m
+
+      m = parallelogram(phi)
+      m%points([4, 8])%offset(1) = crank
+      m%links(4)%position(3) = crossed_rocker(crank, phi)
+      m%links(3)%position(3) = m%links(4)%position(3) + phi
+   end function antiparallelogram
+
+   !> The angle r of its rocker, with the crank at `p`: tan(r/2) = -(4 + crank)/(4 - crank) tan(p/2). The coupler is at p + r.
+   pure real(wp) function crossed_rocker(crank, p)
+      real(wp), intent(in) :: crank, p
+
+      crossed_rocker = 2.0_wp*atan2(-(4.0_wp + crank)*sin(0.5_wp*p), (4.0_wp - crank)*cos(0.5_wp*p))
+   end function crossed_rocker
+
+   !> The parallelogram with a third crank, from (1, 1) to the coupler's point (1, 1), longer than the others by `excess`.
    function three_cranks(phi, excess) result(m)
       real(wp), intent(in) :: phi, excess
       type(mechanism_t) :: m
