@@ -10,7 +10,7 @@
 module homotopy
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use plane_vectors, only: pi
-   use lapack, only: zgesv
+   use lapack, only: zgetf2, zgetrs
    use bilinear, only: bilinear_t, path_start_t, path_end_t, ends_t, finiteness, infinity_level
    implicit none
    private
@@ -37,8 +37,8 @@ module homotopy
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
    !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
    real(dp), parameter :: t_near_end = 0.1_dp, tenth = 0.1_dp
-   !> The first step and the least, parts of the way: to `t_near_end`, by a tenth, and to the end.
-   real(dp), parameter :: steps_near_end(2) = [0.05_dp, 1.0e-5_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
+   !> The first step and the least, parts of the way: to `t_near_end`, by the first tenth, and to the end.
+   real(dp), parameter :: steps_near_end(2) = [0.02_dp, 1.0e-5_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
    real(dp), parameter :: steps_to_end(2) = 0.3_dp
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
@@ -124,12 +124,13 @@ contains
    !> Finds the point (p) at which p linear forms in p unknowns are zero.
    function common_zero(forms) result(z)
       complex(dp), intent(in) :: forms(0:, :)   !< (0:p, p) of each form the constant and the coefficients
-      complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2))
-      integer :: pivots(size(forms, 2)), info
+      complex(dp) :: z(size(forms, 2)), a(size(forms, 2), size(forms, 2)), x(size(forms, 2), 1)
+      logical :: is_regular
 
       a = transpose(forms(1:, :))
-      z = -forms(0, :)
-      call zgesv(size(z), 1, a, size(z), pivots, z, size(z), info)
+      x(:, 1) = -forms(0, :)
+      call solve(a, x, is_regular)
+      z = x(:, 1)
    end function common_zero
 
    !> Goes to the next of all choices of numbers from 1 to n, in increasing order. The last choice stays.
@@ -155,6 +156,7 @@ contains
       type(path_start_t), allocatable, intent(inout), optional :: near
       type(paths_t) :: h
       complex(dp) :: z(2*bilinear%p, size(start%z, 2))
+      real(dp) :: step
       type(path_end_t) :: list(size(start%z, 2))
       logical :: is_done, is_infinite, is_twin(size(start%z, 2)), is_whole
       integer :: count_of, k, j
@@ -177,7 +179,8 @@ contains
       count_of = 0
       do k = 1, size(list)
          associate (e => list(count_of + 1))
-            call follow(h, 1.0_dp, t_near_end, steps_near_end, z(:, k), is_done)
+            step = steps_near_end(1)
+            call follow(h, 1.0_dp, t_near_end, step, steps_near_end(2), z(:, k), is_done)
             is_whole = is_whole .and. is_done
             if (is_done) call follow_to_end(bilinear, h, start%chart, z(:, k), e, is_infinite, is_done)
          end associate
@@ -209,22 +212,24 @@ contains
       logical, intent(out) :: is_infinite       !< it is at infinity
       logical, intent(out) :: is_done           !< it was found
       complex(dp), dimension(size(start)) :: z, last
-      real(dp) :: t, finite(0:max_tenths)
+      real(dp) :: t, step, try, finite(0:max_tenths)
       integer :: k
 
 
       is_infinite = .false.
       t = t_near_end
+      step = steps_by_tenth(1)
       z = start
       do k = 0, max_tenths
          call record_end(z)
          finite(k) = finiteness(bilinear, ending%x, ending%y)
          last = z
-         call follow(paths, t, 0.0_dp, steps_to_end, last, is_done)
+         try = steps_to_end(1)
+         call follow(paths, t, 0.0_dp, try, steps_to_end(2), last, is_done)
          if (is_done) exit
          if (k == max_tenths) exit
          last = z
-         call follow(paths, t, tenth*t, steps_by_tenth, last, is_done)
+         call follow(paths, t, tenth*t, step, steps_by_tenth(2), last, is_done)
          if (.not. is_done) exit
          z = last
          t = tenth*t
@@ -268,32 +273,35 @@ contains
 
    !> Follows a path between two values of t: the tangent by Runge and Kutta's rule, then Newton's correction. Steps are
    !> divided down to the least. If this fails, the point is the last one found.
-   subroutine follow(paths, from, to, steps, point, is_done)
+   subroutine follow(paths, from, to, step, least, point, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to       !< values of t
-      real(dp), intent(in) :: steps(2)       !< the first and the least, parts of the way
+      real(dp), intent(inout) :: step        !< the first, afterwards the one before the end, parts of the way
+      real(dp), intent(in) :: least          !< the least, part of the way
       complex(dp), intent(inout) :: point(:) !< (2p) z at the first t; then at the second
       logical, intent(out) :: is_done        !< the second t is reached
-      complex(dp) :: next(size(point))
-      real(dp) :: s, step, correction, t, rate
+      complex(dp), dimension(size(point)) :: tangent, next, next_tangent
+      real(dp) :: s, h, correction, t, rate
 
       s = 0.0_dp
-      step = steps(1)
+      call correct(paths, from, point, tangent, correction, is_done)
+      if (.not. is_done) return
       do
-         step = min(step, 1.0_dp - s)
-         call predict(paths, from, to, s, step, point, next, is_done)
-         call find_t(from, to, s + step, t, rate)
-         if (is_done) call correct(paths, t, next, correction, is_done)
+         h = min(step, 1.0_dp - s)
+         call predict(paths, from, to, s, h, point, tangent, next, is_done)
+         call find_t(from, to, s + h, t, rate)
+         if (is_done) call correct(paths, t, next, next_tangent, correction, is_done)
          if (is_done) then
             point = next
-            s = s + step
+            tangent = next_tangent
+            s = s + h
             if (s >= 1.0_dp - epsilon(1.0_dp)) return
             ! The error of a step goes with its fifth power.
-            step = step*min(3.0_dp, max(0.5_dp, (aimed_correction/max(correction, epsilon(1.0_dp)))**0.2_dp))
+            step = h*min(3.0_dp, max(0.5_dp, (aimed_correction/max(correction, epsilon(1.0_dp)))**0.2_dp))
          else
-            step = 0.4_dp*step
+            step = 0.4_dp*h
          end if
-         if (step < steps(2)) exit
+         if (step < least) exit
       end do
       is_done = .false.
    end subroutine follow
@@ -315,63 +323,80 @@ contains
 
    !> Predicts z after a step along the tangent, by Runge and Kutta's rule of fourth order. It fails if a tangent does
    !> not exist or the step is longer than the point is large.
-   subroutine predict(paths, from, to, covered, step, point, next, is_done)
+   subroutine predict(paths, from, to, covered, step, point, tangent, next, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: from, to       !< values of t
       real(dp), intent(in) :: covered        !< part of the way before the step
       real(dp), intent(in) :: step           !< part of the way
       complex(dp), intent(in) :: point(:)    !< (2p) z before the step
-      complex(dp), intent(out) :: next(:)    !< (2p) z after it
+      complex(dp), intent(in) :: tangent(:)  !< (2p) its derivative by t
+      complex(dp), intent(out) :: next(:)    !< (2p) z after the step
       logical, intent(out) :: is_done        !< `next` was found
       real(dp), parameter :: stage_places(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
       real(dp), parameter :: stage_weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp]/6.0_dp
-      complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), tangent(size(point))
+      complex(dp) :: a(size(point), size(point)), x(size(point)), r(size(point)), slope(size(point), 1)
       real(dp) :: t, rate
-      integer :: pivots(size(point)), info, k
+      integer :: k
 
-      next = point
-      tangent = 0.0_dp
-      do k = 1, size(stage_places)
-         x = point + stage_places(k)*step*tangent
+      call find_t(from, to, covered, t, rate)
+      slope(:, 1) = rate*tangent
+      next = point + stage_weights(1)*step*slope(:, 1)
+      do k = 2, size(stage_places)
+         x = point + stage_places(k)*step*slope(:, 1)
          is_done = size_of(x) <= 1.0_dp/epsilon(1.0_dp)
          if (.not. is_done) return
          call find_t(from, to, covered + stage_places(k)*step, t, rate)
-         call assemble(paths, t, x, a, r, tangent)
-         call zgesv(size(point), 1, a, size(point), pivots, tangent, size(point), info)
-         is_done = info == 0
+         call assemble(paths, t, x, a, r, slope(:, 1))
+         call solve(a, slope, is_done)
          if (.not. is_done) return
-         tangent = rate*tangent
-         next = next + stage_weights(k)*step*tangent
+         slope = rate*slope
+         next = next + stage_weights(k)*step*slope(:, 1)
       end do
       is_done = size_of(next - point) <= size_of(point)
    end subroutine predict
 
    !> Corrects a point by Newton's method. It fails if the first correction is not small, or a later one not smaller.
-   subroutine correct(paths, t, point, correction, is_done)
+   subroutine correct(paths, t, point, tangent, correction, is_done)
       type(paths_t), intent(inout) :: paths
       real(dp), intent(in) :: t              !< of the homotopy
       complex(dp), intent(inout) :: point(:) !< (2p) z
+      complex(dp), intent(out) :: tangent(:) !< (2p) its derivative by t, before the last correction
       real(dp), intent(out) :: correction    !< the first one, relative to the point
       logical, intent(out) :: is_done        !< z is found
-      complex(dp) :: a(size(point), size(point)), r(size(point))
-      integer :: pivots(size(point)), info, k
+      complex(dp) :: a(size(point), size(point)), r(size(point), 2)
+      integer :: k
       real(dp) :: now, before
 
-      is_done = .false.
       before = 2.0_dp*max_prediction_error
       do k = 1, max_corrections
-         call assemble(paths, t, point, a, r)
-         call zgesv(size(point), 1, a, size(point), pivots, r, size(point), info)
-         if (info > 0) return
-         now = size_of(r)/size_of(point)
+         call assemble(paths, t, point, a, r(:, 1), r(:, 2))
+         call solve(a, r, is_done)
+         if (.not. is_done) return
+         tangent = r(:, 2)
+         now = size_of(r(:, 1))/size_of(point)
          if (k == 1) correction = now
-         if (.not. now <= 0.5_dp*before) return
-         point = point - r
+         is_done = now <= 0.5_dp*before
+         if (.not. is_done) return
+         point = point - r(:, 1)
          is_done = now <= merge(sqrt(rounding_correction), rounding_correction, t > 0.0_dp)
          if (is_done) return
          before = now
       end do
    end subroutine correct
+
+   !> Solves linear equations for several right-hand sides.
+   subroutine solve(a, sides, is_done)
+      complex(dp), intent(inout) :: a(:, :)  !< (n, n) the matrix, then its factors
+      complex(dp), intent(inout) :: sides(:, :)   !< (n, any number) right-hand sides, then solutions
+      logical, intent(out) :: is_done        !< the matrix is not singular
+      integer :: pivots(size(sides, 1)), info
+
+      associate (n => size(sides, 1))
+         call zgetf2(n, n, a, n, pivots, info)
+         is_done = info == 0
+         if (is_done) call zgetrs('N', n, size(sides, 2), a, n, pivots, sides, n, info)
+      end associate
+   end subroutine solve
 
    !> Gives the largest real or imaginary part of a point.
    pure real(dp) function size_of(point)
@@ -391,8 +416,9 @@ contains
       complex(dp), intent(in) :: point(:)    !< (2p) z
       complex(dp), intent(out) :: a(:, :)    !< (2p, 2p) the Jacobian by z
       complex(dp), intent(out) :: residual(:)   !< (2p)
-      complex(dp), intent(out), optional :: slope(:)   !< (2p) minus the derivative by t
-      complex(dp) :: x(0:paths%p), y(0:paths%p)
+      complex(dp), intent(out) :: slope(:)   !< (2p) minus the derivative by t
+      complex(dp), dimension(0:paths%p) :: x, y, by_x
+      complex(dp) :: by_y
       integer :: j, k
 
       if (abs(t - paths%t) > 0.0_dp) paths%h(:, :, :) = paths%f + t*paths%more
@@ -400,19 +426,18 @@ contains
       associate (p => paths%p)
          x = [(1.0_dp, 0.0_dp), point(:p)]
          y = [(1.0_dp, 0.0_dp), point(p + 1:)]
-         do j = 1, 2*p
-            a(j, :p) = matmul(paths%h(1:, :, j), y)
-            residual(j) = sum(paths%h(0, :, j)*y) + sum(a(j, :p)*x(1:))
-            do k = 1, p
-               a(j, p + k) = sum(x*paths%h(:, k, j))
-            end do
-         end do
-         if (.not. present(slope)) return
+         residual = 0.0_dp
          slope = 0.0_dp
          do j = 1, 2*p
+            by_x = 0.0_dp
             do k = 0, p
+               by_x = by_x + paths%h(:, k, j)*y(k)
+               by_y = sum(x*paths%h(:, k, j))
+               if (k > 0) a(j, p + k) = by_y
+               residual(j) = residual(j) + by_y*y(k)
                slope(j) = slope(j) - sum(x*paths%more(:, k, j))*y(k)
             end do
+            a(j, :p) = by_x(1:)
          end do
       end associate
    end subroutine assemble
