@@ -119,9 +119,13 @@ contains
       real(qp), allocatable :: error(:, :, :)
       logical :: resting(size(m%links)), was_flagged(0:max(0, instant_count(m) - 1))
       character(:), allocatable :: fault
+      type(set_t) :: whole
       integer, allocatable :: crossing(:)
       integer :: k
 
+      ! Not divided: links are counted as in the deck.
+      whole%settings_t = m%settings_t
+      whole%parts = [m]
       scales = scales_by_hand(m)
       links%phi%v = real(m%links%position(3), qp)
       was_flagged = .false.
@@ -149,7 +153,7 @@ contains
             was_flagged(k) = .true.
             call put(o, ' *** OUT OF STROKE')
          end if
-         call write_diagnostics(o, m, diagnostics)
+         call write_diagnostics(o, whole, 1, diagnostics)
       end do
       ! All of these motions are followed from their first instant on.
       tally%followed = instant_count(m) - 1
