@@ -49,7 +49,7 @@ contains
       character(:), allocatable, intent(out) :: message   !< lines for standard error; '': none
       ! Kept: the system takes back the memory of thousands of sets in a part of the time that freeing each would take.
       type(mechanism_t), allocatable, save :: sets(:)
-      type(structure_report_t), allocatable, save :: findings(:)
+      type(structure_report_t), allocatable, save :: structure_report(:)
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
       integer :: i, processes, count_sets
@@ -65,7 +65,7 @@ contains
          if (allocated(options%files(out_circuits)%text) .and. .not. any(sets%circuits)) call fail(failure, &
             status_rejected, 'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
       end if
-      if (.not. allocated(failure)) call check_structure(sets, findings, failure)
+      if (.not. allocated(failure)) call check_structure(sets, structure_report, failure)
       if (allocated(failure) .and. len(message) == 0) message = said()//' *** '//failure%text
       if (.not. allocated(failure)) call open_outputs(options, o%first, o%last, count_sets, o, failure)
 
@@ -76,7 +76,7 @@ contains
          processes = process_count(sets, o)
          if (processes > 1) call run_shares(o, processes, status, message)
          do while (next_part(o))
-            call run_sets(sets, findings, o)
+            call run_sets(sets, structure_report, o)
          end do
          call close_outputs(o, 1, out_shared)
          if (allocated(o%failure)) call move_alloc(o%failure, failure)
@@ -176,10 +176,10 @@ contains
 
    !> Computes and writes the sets of the part at hand, one after another. The texts of all parts in their order are the
    !> text of the whole.
-   subroutine run_sets(sets, findings, writers)
+   subroutine run_sets(sets, structure_report, writers)
       type(writers_t), intent(inout) :: writers
       type(mechanism_t), intent(inout) :: sets(writers%first:)
-      type(structure_report_t), intent(inout) :: findings(writers%first:)
+      type(structure_report_t), intent(inout) :: structure_report(writers%first:)
       type(page_t), target :: pages(out_svg:out_circuits)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
@@ -199,7 +199,8 @@ contains
          if (before >= writers%own_last) exit
          associate (count => max(1, sets(i)%variants))
             if (before < writers%own_last .and. before + count >= writers%own_first) &
-               call run_set(sets(i), i, writers%own_first - before, writers%own_last - before, findings(i), writers)
+               call run_set(sets(i), i, writers%own_first - before, writers%own_last - before, structure_report(i), &
+                  writers)
             before = before + count
          end associate
          if (is_over(writers)) then
@@ -280,22 +281,22 @@ contains
 
    !> Solves and writes a set, or some of its variants. If the file of its table cannot be opened, the run is broken
    !> off.
-   subroutine run_set(m, i, first, last, findings, writers)
+   subroutine run_set(m, i, first, last, structure_report, writers)
       type(mechanism_t), intent(inout) :: m
       integer, intent(in) :: i               !< number of the set in the deck
       integer, intent(in) :: first, last     !< the first and the last variant, which may be below 1 or beyond the count
-      type(structure_report_t), intent(inout) :: findings
+      type(structure_report_t), intent(inout) :: structure_report
       type(writers_t), intent(inout) :: writers
       type(failure_t), allocatable :: failure
       type(counts_t) :: counts
       type(set_analysis_t) :: a
       type(answers_t) :: asked
 
-      call new_set_motion(m, a%now, findings)
+      call new_set_motion(m, a%now, structure_report)
       if (writers%asked(out_listing) .and. first <= 1) then
          writers%layout = new_layout(a%now)
-         call find_groups(m, findings)
-         call listing_head(writers%files(out_listing), m, findings)
+         call find_groups(m, structure_report)
+         call listing_head(writers%files(out_listing), m, structure_report)
       end if
       ! It is as large as the deck, and only the head of the listing has it.
       if (allocated(m%echo)) deallocate (m%echo)
@@ -318,7 +319,7 @@ contains
       end if
 
       if (m%variants == 0) then
-         call run_motion(a, findings, .true., writers, counts, asked)
+         call run_motion(a, structure_report, .true., writers, counts, asked)
          if (counts%flagged + counts%unproved > 0) writers%status = status_flagged
          call close_outputs(writers, out_shared + 1, out_last)
       else

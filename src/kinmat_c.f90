@@ -105,11 +105,11 @@ contains
       character(:), allocatable, intent(out) :: report   !< all errors of cards; '' if there are none
       type(failure_t), allocatable, intent(out) :: failure
       type(mechanism_t), allocatable :: sets(:)
-      type(structure_report_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: structure_report(:)
       integer :: i
 
       call read_deck_text(text, sets, report, failure)
-      if (.not. allocated(failure)) call check_structure(sets, findings, failure)
+      if (.not. allocated(failure)) call check_structure(sets, structure_report, failure)
       if (allocated(failure)) return
       if (number < 1 .or. number > size(sets)) then
          call fail(failure, status_rejected, 'THE DECK HAS NO SET OF THIS NUMBER')
@@ -118,7 +118,7 @@ contains
       end if
       if (allocated(failure)) return
 
-      call make_set_analysis(sets(number), handle%set, findings(number))
+      call make_set_analysis(sets(number), handle%set, structure_report(number))
       handle%table = new_table(handle%set%now)
       allocate (handle%rows(size(handle%set%now%rows)), handle%values(table_width(handle%table)))
       handle%names = [character(column_name_length) :: 't', handle%table%drives, handle%table%columns%name]

@@ -21,9 +21,9 @@ contains
 
    !> Solves and prints the motion of a set, instant by instant. If the run is broken off, the last line of the listing
    !> tells so.
-   subroutine run_motion(set, findings, full, writers, counts, asked)
+   subroutine run_motion(set, structure_report, full, writers, counts, asked)
       type(set_analysis_t), intent(inout) :: set
-      type(structure_report_t), intent(inout) :: findings
+      type(structure_report_t), intent(inout) :: structure_report
       logical, intent(in) :: full            !< with tables
       type(writers_t), intent(inout) :: writers
       class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those
@@ -32,7 +32,7 @@ contains
       logical :: due
       integer :: k
 
-      call begin_analysis(set, findings)
+      call begin_analysis(set, structure_report)
       call foresee_closure(set)
       call begin_printing(p, writers, set, full)
       if (writers%asked(out_listing) .or. set%now%variants > 0) call new_answers(set, p%lists, asked)

@@ -112,7 +112,7 @@ contains
       subroutine start(run, row)
          type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
          type(variant_row_t), intent(inout) :: row
-         type(structure_report_t) :: findings
+         type(structure_report_t) :: structure_report
          logical :: is_done
 
          call build_variant(variation, row%number, run%m, row%rejected)
@@ -121,23 +121,23 @@ contains
          ! A variant with the structure of the one before takes over what that has made.
          call renew_set_analysis(run%m, run%s, is_done)
          if (.not. is_done) then
-            call check_variant(run%m, findings, row)
+            call check_variant(run%m, structure_report, row)
             run%is_over = row%rejected /= ''
             if (run%is_over) return
-            call make_set_analysis(run%m, run%s, findings)
+            call make_set_analysis(run%m, run%s, structure_report)
          end if
          call begin_run(run)
       end subroutine start
 
       !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
-      subroutine check_variant(variant, findings, row)
+      subroutine check_variant(variant, structure_report, row)
          type(mechanism_t), intent(in) :: variant
-         type(structure_report_t), intent(out) :: findings
+         type(structure_report_t), intent(out) :: structure_report
          type(variant_row_t), intent(inout) :: row
          character(:), allocatable :: faults
 
-         findings = find_structure(variant)
-         faults = faults_text(variant, findings, variant%set_number)
+         structure_report = find_structure(variant)
+         faults = faults_text(variant, structure_report, variant%set_number)
          row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
       end subroutine check_variant
 
@@ -145,17 +145,17 @@ contains
       subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant   !< becomes the variant
          type(variant_row_t), intent(inout) :: row
-         type(structure_report_t) :: findings
+         type(structure_report_t) :: structure_report
          type(set_analysis_t) :: a
          type(answers_t) :: asked
 
          call build_variant(variation, row%number, variant, row%rejected)
-         if (row%rejected == '') call check_variant(variant, findings, row)
+         if (row%rejected == '') call check_variant(variant, structure_report, row)
          if (row%rejected == '') then
-            call new_set_motion(variant, a%now, findings)
+            call new_set_motion(variant, a%now, structure_report)
             if (full .and. writers%asked(out_listing)) writers%layout = new_layout(a%now)
             if (writers%asked(out_log)) call log_head(writers%files(out_log), variant)
-            call run_motion(a, findings, full, writers, row, asked)
+            call run_motion(a, structure_report, full, writers, row, asked)
             call fill_row(summary, a%now, asked, row)
          else
             call fill_row(summary, set, asked, row)

@@ -22,7 +22,7 @@ parts() {
    drawings of other programs|50|tests/system/import.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|255|tests/system/output.sh
-   unit tests|430|"$MAKE" --no-print-directory unit
+   unit tests|415|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|1100|"$BUILD/release/check_forms" input/*.deck

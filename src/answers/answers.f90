@@ -9,7 +9,7 @@ module answers
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: record_instant
    use dwells, only: dwell_t, find_dwells
-   use tolerance_contributions, only: shares_t, record_sensitivities
+   use tolerance_contributions, only: contributions_t, record_sensitivities
    use ranges, only: range_t
    use circuits, only: circuits_t
    use set_circuits, only: find_ranges, find_all_circuits
@@ -23,7 +23,7 @@ module answers
       logical :: wants_contributions = .false.
       type(extremes_t) :: extremes
       type(dwell_t), allocatable :: dwells(:)       !< after the last instant
-      type(shares_t) :: shares
+      type(contributions_t) :: shares
       type(proofs_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one)
       integer :: assemblies = -1                    !< of all parts, if they are asked for and all are known; or -1

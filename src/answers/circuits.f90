@@ -40,11 +40,11 @@ module circuits
    end type circuit_branch_t
 
    !> A change point.
-   type :: meeting_t
+   type :: intersection_t
       real(wp), allocatable :: q(:, :)         !< (3, links) its position
       real(wp) :: value = 0.0_wp               !< the drive's (rad or deck's length)
       logical, allocatable :: circuits(:)      !< (circuits) which meet there
-   end type meeting_t
+   end type intersection_t
 
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
@@ -57,7 +57,7 @@ module circuits
       type(circuit_t), allocatable :: list(:)
       type(circuit_branch_t), allocatable :: branches(:)
       type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links if known
-      type(meeting_t), allocatable :: meetings(:)
+      type(intersection_t), allocatable :: meetings(:)
    end type circuits_t
 
    !> A slide is followed farther than its largest value in the assemblies of the first instant, by this factor.
@@ -106,7 +106,7 @@ contains
 
       do i = 1, size(found%list)
          call add_branches(found, held, i)
-         call add_meetings(found, i)
+         call add_intersections(found, i)
       end do
       call add_assemblies(found, all_of_them%list)
    end subroutine find_circuits
@@ -320,7 +320,7 @@ contains
    end subroutine add_assemblies
 
    !> Adds the change points of a circuit.
-   subroutine add_meetings(found, i)
+   subroutine add_intersections(found, i)
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i               !< number of the circuit
       real(wp) :: value
@@ -336,12 +336,12 @@ contains
                value = p%value(0) + found%list(i)%shift
                if (.not. any(found%list(i)%points%is_dead)) value = near_first(found%curve, p%value(0))
                found%meetings = [found%meetings, &
-                  meeting_t(p%q, drive_value(found%curve, value), spread(.false., 1, size(found%list)))]
+                  intersection_t(p%q, drive_value(found%curve, value), spread(.false., 1, size(found%list)))]
             end if
             found%meetings(j)%circuits(i) = .true.
          end associate
       end do
-   end subroutine add_meetings
+   end subroutine add_intersections
 
    !> Removes whole turns from a value of the free drive: the result is within half a turn of the first instant's.
    pure real(wp) function near_first(curve, given) result(value)

@@ -54,14 +54,14 @@ contains
       real(wp), intent(in) :: t              !< time
       type(node_t), intent(inout) :: node
       logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
-      real(wp) :: growth
+      real(wp) :: amplification
       integer :: i
 
       if (.not. allocated(node%samples)) allocate (node%samples(size(track%coordinates)))
       node%t = t
       node%is_known = .true.
       associate (rows => track%rows, error => track%error)
-         call rows_at(set, track%requests, t, rows, always, error, growth)
+         call rows_at(set, track%requests, t, rows, always, error, amplification)
          node%is_lost = any(rows%known < 0)
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
@@ -69,7 +69,7 @@ contains
                sample%f = rows(row)%value(k, :)
                sample%known = rows(row)%known
                sample%meets = rows(row)%state == points_coincide
-               sample%growth = growth
+               sample%amplification = amplification
                sample%error = error(k, :, row)
                node%is_known = node%is_known .and. sample%known == 2
                ! If points of a measure coincide the node is known, and a length has its value.
@@ -274,7 +274,8 @@ contains
       real(wp) :: left(0:2), largest(0:2)
 
       largest = max(abs(before%f), abs(middle%f), abs(after%f))
-      left = max(noise_part, epsilon(1.0_wp)*max(before%growth, middle%growth, after%growth))*max(size_of, largest)
+      left = max(noise_part, epsilon(1.0_wp)*max(before%amplification, middle%amplification, &
+         after%amplification))*max(size_of, largest)
       left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(before%t), abs(after%t))*largest(1:)
       left = max(before%error, middle%error, after%error, left)
    end function left_open

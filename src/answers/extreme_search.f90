@@ -182,10 +182,10 @@ contains
             extremes%tracks(part)%filled = 0
             call accept_limits(from, to%t, near)
             low = near(places)
-            call look_at(near(1), .true.)
+            call evaluate_at(near(1), .true.)
             call add_interval(extremes%open, extremes%way, from%t, &
                merge(near(1), to%t, extremes%tracks(part)%filled > 0), 0.0_wp)
-            call look_at(low, .true.)
+            call evaluate_at(low, .true.)
          end if
          if (to%is_open) then
             call accept_limits(to, from%t, near)
@@ -194,12 +194,12 @@ contains
 
          do i = 1, size(times)
             if ((times(i) - low)*extremes%way > 0.0_wp .and. (high - times(i))*extremes%way > 0.0_wp) &
-               call look_at(times(i), .false.)
+               call evaluate_at(times(i), .false.)
          end do
 
          if (.not. to%is_open) return
-         call look_at(high, .true.)
-         call look_at(near(1), .true.)
+         call evaluate_at(high, .true.)
+         call evaluate_at(near(1), .true.)
          call search_waiting(extremes, set, part)
          low = from%t
          if (extremes%tracks(part)%filled > 0) low = extremes%tracks(part)%nodes(1)%t
@@ -269,7 +269,7 @@ contains
       end subroutine accept_limits
 
       !> Takes a node at a time, and searches up to it. If its motion is not known, the time is a gap.
-      subroutine look_at(t, always)
+      subroutine evaluate_at(t, always)
          real(wp), intent(in) :: t           !< time
          logical, intent(in) :: always       !< errors are estimated even if no digit of a table is in doubt
 
@@ -281,6 +281,6 @@ contains
                call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
             end if
          end associate
-      end subroutine look_at
+      end subroutine evaluate_at
    end subroutine search_instant
 end module extreme_search

@@ -19,7 +19,7 @@ module nodes
       real(wp) :: error(0:2) = 0.0_wp   !< of `f`, if digits of a table could be in doubt
       integer :: known = -1             !< as in `row_t`; 2: all of `f`
       logical :: meets = .false.        !< points of a measure coincide: at most its value is known
-      real(wp) :: growth = 0.0_wp       !< factor of roundings, if no digits could be in doubt
+      real(wp) :: amplification = 0.0_wp       !< factor of roundings, if no digits could be in doubt
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
    end type sample_t
 

@@ -7,19 +7,19 @@ module tolerance_contributions
    use rows, only: finished_row_t, word_worst
    implicit none
    private
-   public :: shares_t, share_t, record_sensitivities, equal_share_part
+   public :: contributions_t, contribution_t, record_sensitivities, equal_share_part
 
    !> A quantity at the instant at which its root of squares is greatest so far.
-   type :: share_t
+   type :: contribution_t
       real(wp) :: root = 0.0_wp, worst = 0.0_wp     !< root of squares and worst case, in the unit of the quantity
       real(wp) :: t = 0.0_wp                        !< time of the instant
       real(wp), allocatable :: s(:)                 !< (numbers) the sensitivities; not allocated: none was known yet
-   end type share_t
+   end type contribution_t
 
-   type :: shares_t
-      type(share_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
+   type :: contributions_t
+      type(contribution_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
       logical, allocatable :: jams(:, :)            !< (numbers, parts) redundant equations do not allow a change
-   end type shares_t
+   end type contributions_t
 
    !> Roots and contributions that differ by less than this part are equal: the first counts.
    real(wp), parameter :: equal_share_part = max(1.0e-9_wp, 4096.0_wp*epsilon(1.0_wp))
@@ -28,7 +28,7 @@ contains
 
    !> Takes the sensitivities of an instant. For each quantity the instant with the largest root of squares is kept.
    subroutine record_sensitivities(shares, motions, rows)
-      type(shares_t), intent(inout) :: shares
+      type(contributions_t), intent(inout) :: shares
       type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
       integer :: i, j, n, c

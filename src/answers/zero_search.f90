@@ -106,11 +106,11 @@ contains
       type(sample_t), intent(out) :: sample
       logical, intent(in), optional :: with_errors   !< errors are estimated even if no digit is in doubt
       type(row_t) :: row(1)
-      real(wp) :: error(3, 0:2, 1), growth
+      real(wp) :: error(3, 0:2, 1), amplification
 
-      call rows_at(set, [column%request], t, row, with_errors, error, growth)
+      call rows_at(set, [column%request], t, row, with_errors, error, amplification)
       sample = sample_t(t, row(1)%value(column%column, :), error(column%column, :, 1), known_at(row(1)), &
-         row(1)%state == points_coincide, growth)
+         row(1)%state == points_coincide, amplification)
    end subroutine evaluate_column
 
    !> Finds a zero of a derivative of a column less a level. Newton's method runs in a bracket, which is halved if the
@@ -320,7 +320,7 @@ contains
          ! An estimate of errors takes nine solutions.
          call evaluate_column(set, column, t, zero, i == 2)
          open = zero%error(order)
-         if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*column%noise(order)
+         if (.not. open > 0.0_wp) open = zero%amplification*(epsilon(1.0_wp)/noise_part)*column%noise(order)
          zero%t_error = abs(ends(2) - ends(1))
          if (slope > 0.0_wp) zero%t_error = width + epsilon(1.0_wp)*maxval(abs(ends)) &
             + (open/step + rounding_part*noise)/slope

@@ -47,7 +47,7 @@ module block_assemblies
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0
       integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
       integer :: real = 0                       !< positions
-      logical :: is_wide = .false.              !< a group has too many unknowns: not solved
+      logical :: is_large = .false.              !< a group has too many unknowns: not solved
       logical :: is_open = .false.              !< rates are open in some position
       logical :: moves = .false.                !< some positions are not separate: it can move with its drives held
    end type block_positions_t
@@ -75,7 +75,7 @@ contains
       found%x = reshape([real(wp) ::], [b%list(i)%shape%n, 0])
       found%sign_of = [integer ::]
       found%rates_open = [logical ::]
-      if (b%list(i)%direct) then
+      if (b%list(i)%explicit) then
          call solve_block(b, x, i, .true., w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
@@ -83,7 +83,7 @@ contains
          return
       end if
       call make_form(b, x, i, s, f)
-      found%is_wide = found%is_wide .or. f%system%p > largest_group
+      found%is_large = found%is_large .or. f%system%p > largest_group
       found%moves = found%moves .or. f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. f%system%p > largest_group) return
 

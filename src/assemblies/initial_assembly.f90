@@ -69,7 +69,7 @@ contains
       ! Whole turns of a drive close nothing, and the links would have to travel them.
       s%u%value = guess%values
       do k = 1, size(b%needed)
-         if (.not. b%list(b%needed(k))%direct) call add_turns(b, x, b%needed(k), s)
+         if (.not. b%list(b%needed(k))%explicit) call add_turns(b, x, b%needed(k), s)
       end do
       guess%values(:) = s%u%value
       guess%choice = choice_t()
@@ -139,7 +139,7 @@ contains
       is = .true.
       do i = size(b%list), 1, -1
          later = later + sum(square, mask=places == i)
-         if (.not. b%list(i)%direct) is = about_equal*(separation_of(b, x, i, s) &
+         if (.not. b%list(i)%explicit) is = about_equal*(separation_of(b, x, i, s) &
             - sqrt(sum(square(1, :), mask=places(1, :) == i))) >= sqrt(later)
          if (.not. is) return
       end do
@@ -181,7 +181,7 @@ contains
       do i = 1, size(found)
          associate (own => own_unknowns(b, i))
             latest(i) = largest_known(b, i, last)
-            last(own) = merge(latest(i), i, b%list(i)%direct)
+            last(own) = merge(latest(i), i, b%list(i)%explicit)
             call set_values(b, i, guess%values(own), s)
             allocate (found(i)%x(size(own), 0), found(i)%distance(0))
          end associate
@@ -315,7 +315,7 @@ contains
       call set_values(b, i, start, s)
       call solve_block(b, x, i, .true., w, s, found%ending)
       if (is_solved(found%ending)) call record_position(values_of(b, i, s), found%ending%singular)
-      if (b%list(i)%direct) return
+      if (b%list(i)%explicit) return
       if (size(found%distance) > 0) then
          found%beyond = separation_of(b, x, i, s) - angles
          if (about_equal*found%beyond >= budget) return
@@ -327,7 +327,7 @@ contains
          call record_position(every%x(:, k), every%sign_of(k) == 0)
       end do
       ! There is one more if Newton's method has found none of them.
-      found%are_all = .not. (every%moves .or. every%is_wide .or. every%failed > 0) &
+      found%are_all = .not. (every%moves .or. every%is_large .or. every%failed > 0) &
          .and. size(found%distance) <= size(every%sign_of)
       if (found%are_all .and. size(found%distance) > 0) return
 

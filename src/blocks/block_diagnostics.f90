@@ -71,7 +71,7 @@ contains
 
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
-            if (b%list(i)%direct) cycle
+            if (b%list(i)%explicit) cycle
             if (singular) then
                call add_mobility(b, x, s, i, list)
                cycle
@@ -160,7 +160,7 @@ contains
       allocate (list(0))
       if (history%filled == 0) return
       do k = 1, size(b%moving)
-         if (b%list(b%moving(k))%direct) cycle
+         if (b%list(b%moving(k))%explicit) cycle
          left = time_to_limit(b%moving(k))
          if (abs(left) <= 0.0_wp) left = time_to_infinity(b%moving(k))
          if (abs(left) <= 0.0_wp) cycle

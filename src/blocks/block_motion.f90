@@ -48,7 +48,7 @@ contains
       b%moving = pack(b%needed, moving_blocks(b, b%needed))
       b%is_found = wanted_links(m) .and. b%tree%orientation > 0
       do i = 1, size(m%links)
-         if (b%is_found(i)) b%is_found(i) = .not. b%list(b%block_of(b%tree%orientation(i)))%direct
+         if (b%is_found(i)) b%is_found(i) = .not. b%list(b%block_of(b%tree%orientation(i)))%explicit
       end do
       associate (revolute => .not. has_guide(m%pairs%kind))
          b%joint = reshape([m%points(pack(m%pairs%point_i, revolute))%link, &
@@ -149,7 +149,7 @@ contains
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
             call record_missing(b, i, merge(missing_rates, missing_nothing, s%is_singular(i) .or. &
-               (all_at_once .and. .not. b%list(i)%direct)), missing)
+               (all_at_once .and. .not. b%list(i)%explicit)), missing)
          end associate
       end do
       call flag_links(x%chain, missing, found)
@@ -174,8 +174,8 @@ contains
       missing = missing_nothing
       do k = 1, size(b%needed)
          i = b%needed(k)
-         call record_missing(b, i, merge(missing_nothing, missing_all, b%list(i)%direct), missing)
-         if (.not. b%list(i)%direct) cycle
+         call record_missing(b, i, merge(missing_nothing, missing_all, b%list(i)%explicit), missing)
+         if (.not. b%list(i)%explicit) cycle
          if (missing(b%unknown(b%list(i)%first)) == missing_nothing) call solve_explicit(b, x, i, s)
       end do
       driven = s
@@ -184,7 +184,7 @@ contains
       end do
       call flag_links(x%chain, missing, found)
       call move_links(x%chain, x%chain%wanted, driven, found, finite)
-      if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%direct, s, w, found)
+      if (size(b%ratios) > 0) call get_ratios(b, x, path, .not. b%list%explicit, s, w, found)
    end subroutine get_driven_links
 
    !> Records what is missing of the unknowns of a block: what its own equations leave out, and what the blocks on which

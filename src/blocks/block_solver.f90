@@ -192,7 +192,7 @@ contains
          k = k + 1
          i = list(k)
          associate (block => blocks(i))
-            if (block%direct) then
+            if (block%explicit) then
                associate (row => equations(block%first_row), f => unknowns(unknown(block%first)))
                   call find_direct(row, constants(block%first_row), values, unknowns(row%other), f)
                   if (unknown(block%first) <= b%orientations) then

@@ -55,7 +55,7 @@ module convergence
       real(wp) :: min_pivot = 0.0_wp           !< METHOD DENSE: of its factors, over the largest
       real(wp) :: change = 0.0_wp              !< the largest change of a value from the initial guess
       real(wp) :: kantorovich_ratio = 0.0_wp   !< that change over the distance within which the root is the only one
-      real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
+      real(wp) :: amplification = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
       logical :: keeps_signs = .true.          !< the determinants have those of the motion that is followed
       logical :: singular = .false.            !< a position was found, and its Jacobian has no inverse

@@ -25,7 +25,7 @@ module predictor
    use block_rank, only: jacobian_of, relative_sign
    implicit none
    private
-   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, is_even, &
+   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, has_equal_steps, &
       largest_predicted_change, order_weights
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted
@@ -132,7 +132,7 @@ contains
       if (.not. s%excursion > 0.0_wp) return
       do k = 1, size(list)
          associate (i => list(k))
-            if (.not. s%is_singular(i)) convergence%growth = max(convergence%growth, &
+            if (.not. s%is_singular(i)) convergence%amplification = max(convergence%amplification, &
                x%blocks(i)%lipschitz*max(s%jacobian(i)%inverse, history%jacobian(i)%inverse)**2)
          end associate
       end do
@@ -183,7 +183,7 @@ contains
 
       do k = 1, size(b%needed)
          associate (i => b%needed(k))
-            if (b%list(i)%direct) then
+            if (b%list(i)%explicit) then
                call solve_explicit(b, x, i, s)
             else if (history%filled == 0) then
                call set_values(b, i, estimated(own_unknowns(b, i)), s)
@@ -240,7 +240,7 @@ contains
       known = 0
       if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > max_uncertain_part) then
          known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
-      else if (is_even(history, step)) then
+      else if (has_equal_steps(history, step)) then
          do k = 1, size(history%predicted)
             associate (p => history%past(history%predicted(k)))
                d = step*(rate_weight(0)*p%rate(0) + rate_weight(1)*p%rate(1) + rate_weight(2)*p%rate(2) &
@@ -311,13 +311,13 @@ contains
 
    !> Tells whether three motions are remembered at equal steps, the next comes after an equal step, and no other order
    !> is asked for.
-   pure logical function is_even(history, step)
+   pure logical function has_equal_steps(history, step)
       type(history_t), intent(in) :: history
       real(wp), intent(in) :: step                      !< from the latest motion, in the deck's unit of time
 
-      is_even = history%filled == 3 .and. history%order == own_predictor
-      if (.not. is_even) return
-      is_even = abs(history%t(0) - history%t(1) - step) <= equal_step_part*abs(step) &
+      has_equal_steps = history%filled == 3 .and. history%order == own_predictor
+      if (.not. has_equal_steps) return
+      has_equal_steps = abs(history%t(0) - history%t(1) - step) <= equal_step_part*abs(step) &
          .and. abs(history%t(1) - history%t(2) - step) <= equal_step_part*abs(step)
-   end function is_even
+   end function has_equal_steps
 end module predictor

@@ -24,8 +24,9 @@
 !> | the others   | has a position       | arrive    | on_motion | change points: passed, here, or returned from     |
 !> | on_motion    | is not reached       | stop_at   | lost      | closure error, or the end of the motion           |
 !> | lost, beyond | is not reached       | stop_at   | lost      | closure error                                     |
-!> | on_motion    | is beyond a limit    | pass_over | beyond    | the end of the motion                             |
-!> | lost, beyond | is beyond a limit    | pass_over | beyond    | that it is beyond                                 |
+!> | on_motion    | is beyond a limit    | skip_instant | beyond    | the end of the motion
+!> | | lost, beyond | is beyond a limit    | skip_instant | beyond    | that it is beyond
+!> |
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
@@ -46,11 +47,11 @@ module analysis
    use strokes, only: find_length_limit, flag_strokes
    use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, &
       step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
-      go_on_from, go_back, place_t, record_checkpoint, return_to, passed_of, limit_t, limit_before, branch_t, &
+      accept_substep, revert, place_t, record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, &
       certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
-   public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
+   public :: analysis_t, make_analysis, renew_analysis, advance, evaluate_at, restore_instant, redundancy_error
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: creeping_part = 1.0e-3_wp
@@ -73,7 +74,8 @@ module analysis
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
-      !> The motion followed is at a time that is no instant (`look_at`); its place and iterations at the last instant.
+      !> The motion followed is at a time that is no instant (`evaluate_at`); its place and iterations at the last
+      !> instant.
       logical :: is_left = .false.
       type(place_t) :: left
       integer :: left_iterations = 0
@@ -120,13 +122,13 @@ contains
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
 
-      call come_back(analysis)
+      call restore_instant(analysis)
       iterations = analysis%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       if (allocated(found%by)) deallocate (found%by)
       found%t = t
       if (limit_before(analysis%limits, t) > 0) then
-         call pass_over(analysis, t, found)
+         call skip_instant(analysis, t, found)
          return
       end if
 
@@ -179,7 +181,7 @@ contains
          call continue_to(analysis%following_t, near, step)
          if (step%ending >= step_there .and. &
             .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
-            call go_on_from(analysis%following_t, near)
+            call accept_substep(analysis%following_t, near)
       end if
       call follow(analysis, t, step, list)
    end subroutine begin
@@ -224,7 +226,7 @@ contains
       real(wp), intent(in) :: t                            !< time until which no drive moves
       type(step_record_t), intent(inout) :: step
 
-      if (analysis%is_left) call return_to(analysis%following_t, analysis%left)
+      if (analysis%is_left) call restore(analysis%following_t, analysis%left)
       call set_drive_values(analysis%path, t, analysis%state)
       associate (moving => analysis%blocks%moving)
          call solve_blocks(analysis%blocks, analysis%geometry, pack(moving, .not. analysis%state%is_singular(moving)), &
@@ -235,8 +237,8 @@ contains
    end subroutine rest
 
    !> Finds the motion at a time that is no instant of the deck, by continuity from the last instant, or from a time
-   !> looked at before: of many in a row each costs a short step. The analysis stays there until `come_back`.
-   subroutine look_at(analysis, t, found, is_found)
+   !> looked at before: of many in a row each costs a short step. The analysis stays there until `restore_instant`.
+   subroutine evaluate_at(analysis, t, found, is_found)
       type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t                            !< the time
       type(motion_t), intent(inout) :: found
@@ -259,21 +261,21 @@ contains
          is_found = found%known == 2 .and. is_solved(analysis%convergence)
       end if
       if (.not. is_found) then
-         call go_back(analysis%following_t, step)
+         call revert(analysis%following_t, step)
       else if (step%tries > 1) then
-         call go_on_from(analysis%following_t, t)
+         call accept_substep(analysis%following_t, t)
       end if
-   end subroutine look_at
+   end subroutine evaluate_at
 
    !> Follows the motion from the last instant again, if it was left.
-   subroutine come_back(analysis)
+   subroutine restore_instant(analysis)
       type(analysis_t), intent(inout) :: analysis
 
       if (.not. analysis%is_left) return
-      call return_to(analysis%following_t, analysis%left)
+      call restore(analysis%following_t, analysis%left)
       analysis%iterations = analysis%left_iterations
       analysis%is_left = .false.
-   end subroutine come_back
+   end subroutine restore_instant
 
    !> Takes the motion at the end of a step, with certificate and remarks. A regular motion is followed from there on.
    subroutine arrive(analysis, step, list, found)
@@ -319,9 +321,9 @@ contains
       if (allocated(analysis%dense)) goes_on = .not. any(analysis%state%is_singular(analysis%blocks%needed))
       if (allocated(analysis%singular)) deallocate (analysis%singular)
       if (goes_on) then
-         call go_on_from(analysis%following_t, found%t)
+         call accept_substep(analysis%following_t, found%t)
       else
-         call go_back(analysis%following_t, step)
+         call revert(analysis%following_t, step)
          if (any(analysis%state%is_singular(analysis%blocks%needed))) analysis%singular = analysis%state%is_singular
       end if
       if (analysis%follows) then
@@ -427,13 +429,13 @@ contains
       if (analysis%follows .and. .not. inconsistent .and. abs(t - analysis%place%t) > 0.0_wp) &
          analysis%limits(merge(2, 1, t > analysis%place%t)) = limit_t(.true., &
          merge(analysis%t + near_limit_part*(t - analysis%place%t), t, step%ending == step_blocked), list)
-      call go_back(analysis%following_t, step)
+      call revert(analysis%following_t, step)
       if (analysis%follows) analysis%phase = lost
       if (allocated(analysis%singular)) deallocate (analysis%singular)
    end subroutine stop_at
 
    !> Leaves out an instant beyond a limit: nothing is solved for. The first of such instants gets the reason.
-   subroutine pass_over(analysis, t, found)
+   subroutine skip_instant(analysis, t, found)
       type(analysis_t), intent(inout) :: analysis
       real(wp), intent(in) :: t                            !< its time
       type(motion_t), intent(inout) :: found
@@ -453,7 +455,7 @@ contains
          end if
       end associate
       analysis%phase = beyond
-   end subroutine pass_over
+   end subroutine skip_instant
 
    !> Takes the motion at found%t by the method, if the blocks have found one, and flags all that does not exist. If all
    !> drives rest, a motion that has come to a singular position rests there. This does not hold for a first position,

@@ -9,7 +9,7 @@ module change_point_passage
    use branch_switching, only: switch_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use following, only: following_t, step_record_t, step_there, step_stands, place_t, solve_at, continue_to, &
-      go_on_from, go_back, follow_from, record_checkpoint, return_to, passed_of
+      accept_substep, revert, follow_from, record_checkpoint, restore, passed_of
    implicit none
    private
    public :: leave, go_by_value
@@ -51,10 +51,10 @@ contains
       call continue_to(following, beside, step)
       if (step%ending < step_there) call go_by_value(following, beside, step, at_end)
       if (step%ending < step_there .or. passed_of(step) > 0 .or. following%convergence%singular) then
-         call return_to(following, before)
+         call restore(following, before)
          return
       end if
-      call go_on_from(following, beside)
+      call accept_substep(following, beside)
       do k = 1, size(blocks)
          call decide(following%branch_requests, blocks(k), links_of(following%blocks, following%geometry, blocks(k)), &
             last, beside, last, list(k)%other)
@@ -62,7 +62,7 @@ contains
          call switch_branch(following%blocks, following%geometry, following%history, following%work, following%state, &
             blocks(k), following%convergence, found)
          if (found) then
-            call go_on_from(following, beside)
+            call accept_substep(following, beside)
          else
             list(k)%kind = diagnostic_dead_end
             following%place = before
@@ -90,7 +90,7 @@ contains
       if (drive == 0) return
 
       call record_checkpoint(following, reached)
-      call go_back(following, step)
+      call revert(following, step)
       call record_checkpoint(following, before)
       call go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
       deallocate (following%path%leg)
@@ -98,7 +98,7 @@ contains
       following%place = before
       if (.not. arrived) then
          ! As the step has ended: that tells where the limit is, and which.
-         call return_to(following, reached)
+         call restore(following, reached)
          following%place = before
          return
       end if
@@ -130,7 +130,7 @@ contains
          call go_to(next, value - sign(short_step/following%drives%unit(drive), value_at(following%path, drive, &
             next) - value))
       end associate
-      if (.not. arrived .or. stands .or. passed_of(one) > 0) call return_to(following, first)
+      if (.not. arrived .or. stands .or. passed_of(one) > 0) call restore(following, first)
       allocate (passed(0))
       do while (abs(t - turn) > 0.0_wp)
          next = next_turn(following%path, drive, turn, t)
@@ -138,7 +138,7 @@ contains
          if (.not. arrived) return
          if (allocated(one%passed)) passed = [passed, one%passed]
          turn = next
-         if (stands .and. abs(t - turn) > 0.0_wp) call go_back(following, one)
+         if (stands .and. abs(t - turn) > 0.0_wp) call revert(following, one)
       end do
 
    contains
@@ -157,7 +157,7 @@ contains
          call continue_to(following, to, one)
          arrived = one%ending >= step_there
          stands = arrived .and. following%convergence%singular
-         if (arrived .and. .not. stands) call go_on_from(following, to)
+         if (arrived .and. .not. stands) call accept_substep(following, to)
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
@@ -172,6 +172,6 @@ contains
       call solve_at(following, parameter)
       passed = following%convergence%keeps_signs .and. is_solved(following%convergence) &
          .and. .not. following%convergence%singular
-      if (passed) call go_on_from(following, parameter)
+      if (passed) call accept_substep(following, parameter)
    end subroutine resume_motion
 end module change_point_passage

@@ -28,7 +28,7 @@ module following
    implicit none
    private
    public :: following_t, step_record_t, begin_following, move_memory, begin_motion, solve_at, measure_closure_error, &
-      continue_to, go_on_from, go_back, follow_from, place_t, record_checkpoint, return_to, passed_of
+      continue_to, accept_substep, revert, follow_from, place_t, record_checkpoint, restore, passed_of
    public :: step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -253,7 +253,7 @@ contains
          end if
 
          here = merge(t, following%t + substep, is_last)
-         call attempt(following, here, step, accepted)
+         call try_substep(following, here, step, accepted)
          if (is_last .and. accepted) then
             step%ending = step_there
             return
@@ -261,7 +261,7 @@ contains
          if (step%tries == 1) call record_checkpoint(following, following%place)
          grows = accepted .and. (longer < max_longer .or. .not. following%convergence%singular)
          accepted = accepted .and. .not. following%convergence%singular
-         if (accepted) call go_on_from(following, here)
+         if (accepted) call accept_substep(following, here)
 
          if (.not. following%follows) return
          if (.not. is_solved(following%convergence) .and. abs(substep) <= small_substep_part*longest) &
@@ -275,7 +275,7 @@ contains
    end subroutine continue_to
 
    !> Solves for a motion, and tells whether it is accepted as the continuation of the one that is followed.
-   subroutine attempt(following, t, step, accepted)
+   subroutine try_substep(following, t, step, accepted)
       type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t              !< parameter of the path
       type(step_record_t), intent(inout) :: step
@@ -300,7 +300,7 @@ contains
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
       step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, following%convergence%kantorovich_ratio)
-   end subroutine attempt
+   end subroutine try_substep
 
    !> Finds the lengths (0:2, cylinders) of the motion that is followed, with their derivatives, in the deck's units.
    function lengths_followed(following) result(lengths)
@@ -367,7 +367,7 @@ contains
       integer :: i
 
       associate (c => following%convergence, path => following%path)
-         ratio = c%kantorovich_ratio + c%growth*following%state%excursion
+         ratio = c%kantorovich_ratio + c%amplification*following%state%excursion
          if (ratio > max_kantorovich_ratio) then
             call examine(following%drives, path, following%t, t, change, away)
             h = t - following%t
@@ -377,7 +377,7 @@ contains
                off = last(1) - first(1) - h*(first(2) + 0.5_wp*h*first(3))
                if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, following%drives%unit(i)*abs(off))
             end do
-            ratio = c%kantorovich_ratio + c%growth*away
+            ratio = c%kantorovich_ratio + c%amplification*away
          end if
          c%kantorovich_ratio = ratio
       end associate
@@ -415,25 +415,25 @@ contains
    end function passed_of
 
    !> Makes the motion found last the one that is followed.
-   subroutine go_on_from(following, t)
+   subroutine accept_substep(following, t)
       type(following_t), intent(inout) :: following
       real(wp), intent(in) :: t              !< parameter of the path of that motion
 
       call accept(following%blocks, following%geometry, following%state, following%history)
       following%t = t
       following%follows = .true.
-   end subroutine go_on_from
+   end subroutine accept_substep
 
    !> Follows the motion again from the place at which a step began: instants after one without a motion are as if that
    !> had not been asked for. From close to a dead point no step back would be small enough.
-   subroutine go_back(following, step)
+   subroutine revert(following, step)
       type(following_t), intent(inout) :: following
       type(step_record_t), intent(in) :: step
 
       if (step%tries < 2) return
       call follow_from(following, following%place)
       following%branch_requests = following%place%branch_requests
-   end subroutine go_back
+   end subroutine revert
 
    !> Follows the motion at a place again; the motion found last stays.
    subroutine follow_from(following, place)
@@ -457,7 +457,7 @@ contains
    end subroutine record_checkpoint
 
    !> Follows the motion again from a place, to which a later step can go back.
-   subroutine return_to(following, place)
+   subroutine restore(following, place)
       type(following_t), intent(inout) :: following
       type(place_t), intent(in) :: place
 
@@ -467,7 +467,7 @@ contains
       following%branch_requests = place%branch_requests
       following%convergence = place%convergence
       call record_checkpoint(following, following%place)
-   end subroutine return_to
+   end subroutine restore
 
    !> Gives the side of the limit beyond which an instant lies, 1 or 2; 0: beyond none that is known.
    pure integer function limit_before(limits, t) result(k)

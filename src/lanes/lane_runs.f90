@@ -6,9 +6,9 @@ module lane_runs
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant, instant_count
    use motion, only: flag_none
-   use predictor, only: is_even
+   use predictor, only: has_equal_steps
    use drive_deviation, only: judge_step
-   use analysis, only: come_back
+   use analysis, only: restore_instant
    use set_analysis, only: set_analysis_t, advance_set, accept_state
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
@@ -203,13 +203,13 @@ contains
       if (run%s%now%motions(1)%known < 2 .or. run%s%now%motions(1)%mark /= flag_none) return
       step = instant(run%m, run%at + 1) - instant(run%m, run%at)
       associate (a => run%s%list(1))
-         call come_back(a)
+         call restore_instant(a)
          if (.not. a%follows .or. any(a%limits%known) .or. run%s%now%motions(1)%rests) return
          call judge_step(a%drives, (1.0_wp + step_margin)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
          if (.not. is_covered(a%following_t)) return
-         if (.not. is_even(a%history, step)) return
+         if (.not. has_equal_steps(a%history, step)) return
          if (.not. allocated(lanes%moving)) call make_lanes(lanes, a%following_t)
          call load_lane(lanes, i, a%following_t, is_done)
          lanes%excursion(i) = away
@@ -243,7 +243,7 @@ contains
       logical, intent(out) :: is_done        !< the motion is taken
       integer :: u, k
 
-      call come_back(run%s%list(1))
+      call restore_instant(run%s%list(1))
       associate (s => run%s%list(1)%state)
          do u = 1, ubound(s%u, 1)
             associate (x => s%u(u))
@@ -269,7 +269,7 @@ contains
       integer, intent(in) :: i               !< the number of the lane
 
       associate (a => run%s%list(1))
-         call come_back(a)
+         call restore_instant(a)
          call unload_lane(lanes, i, a%following_t)
          run%s%is_in_lane = .false.
          a%t = a%history%t(0)

@@ -24,7 +24,7 @@ module lane_steps
       real(wp) :: refused(lane_count) = 0.0_wp      !< above 0: lanes cannot certify that it continues the motion
       real(wp) :: correction(lane_count) = 0.0_wp   !< the largest of a predicted value, rad or unit of length
       real(wp) :: ratio(lane_count) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
-      real(wp) :: growth(lane_count) = 0.0_wp       !< of that ratio per excursion of the drives
+      real(wp) :: amplification(lane_count) = 0.0_wp       !< of that ratio per excursion of the drives
    end type step_check_t
 
 contains
@@ -40,7 +40,7 @@ contains
       call predict_lanes(lanes, t, check)
       do k = 1, size(lanes%moving)
          i = lanes%moving(k)
-         if (lanes%blocks%list(i)%direct) then
+         if (lanes%blocks%list(i)%explicit) then
             call find_lane_direct(lanes, i)
          else
             call solve_block(lanes, i, lanes%blocks%list(i)%shape%n, check)
@@ -48,7 +48,7 @@ contains
       end do
       ! These comparisons are false if something is no number.
       check%refused = check%refused + merge(0.0_wp, 1.0_wp, check%correction <= largest_correction) &
-         + merge(0.0_wp, 1.0_wp, check%ratio + check%growth*lanes%excursion <= max_kantorovich_ratio)
+         + merge(0.0_wp, 1.0_wp, check%ratio + check%amplification*lanes%excursion <= max_kantorovich_ratio)
    end subroutine solve_lanes
 
    !> Finds value, rate and acceleration of the drives.
@@ -222,7 +222,7 @@ contains
             + merge(0.0_wp, 1.0_wp, block%pivot(l, next) >= suspicious_pivot*max(largest(l), 1.0_wp))
          check%correction(l) = max(check%correction(l), change(l))
          check%ratio(l) = max(check%ratio(l), change(l)*block%lipschitz(l)*block%inverse(l, next))
-         check%growth(l) = max(check%growth(l), &
+         check%amplification(l) = max(check%amplification(l), &
             block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, before))**2)
       end do
    end subroutine judge

@@ -363,7 +363,7 @@ contains
    !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
    !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
    !> times as much for the direction. If points coincide, nothing can grow: 0.
-   pure recursive real(wp) function amplification_in_measure(m, q, i, rate) result(growth)
+   pure recursive real(wp) function amplification_in_measure(m, q, i, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
       integer, intent(in) :: i               !< its number
@@ -371,18 +371,18 @@ contains
       real(wp) :: d(2, 0:2), distance, v
       integer :: k
 
-      growth = 0.0_wp
+      amplification = 0.0_wp
       associate (measure => m%measures(i), subjects => m%measures(i)%subjects)
          if (any(measure%kind == [measure_distance, measure_line])) then
             d = point_motion(m, q, subjects(2)%number) - point_motion(m, q, subjects(1)%number)
             distance = norm2(d(:, 0))
             if (distance <= coincidence_limit*measure%length) return
             v = norm2(d(:, 1))/(distance*rate)
-            growth = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
-            if (measure%kind == measure_line) growth = growth*measure%length/distance
+            amplification = 1.0_wp + v + v**2 + norm2(d(:, 2))/(distance*rate**2)
+            if (measure%kind == measure_line) amplification = amplification*measure%length/distance
          else
             do k = 1, size(subjects)
-               if (subjects(k)%kind == request_measure) growth = max(growth, &
+               if (subjects(k)%kind == request_measure) amplification = max(amplification, &
                   abs(subjects(k)%factor)*amplification_in_measure(m, q, subjects(k)%number, rate))
             end do
          end if

@@ -72,7 +72,7 @@ contains
       has_cylinders = any([(any(set%parts(c)%pairs%is_cylinder), c=1, set%count)])
    end function has_cylinders
 
-   !> Gives a drive with its law.
+   !> Gives a drive with its law. Assign the result: gfortran loses the memory of one that is used in an expression.
    pure type(drive_t) function drive_of(set, i)
       class(set_t), intent(in) :: set
       integer, intent(in) :: i               !< number of the drive in the set
@@ -95,7 +95,9 @@ contains
       integer, intent(in) :: i               !< number of the drive in the set
       character(:), allocatable :: name
 
-      name = trim(drive_name(set%parts(set%drives(i)%part), drive_of(set, i)))
+      associate (own => set%parts(set%drives(i)%part))
+         name = trim(drive_name(own, own%drives(set%drives(i)%number)))
+      end associate
    end function drive_title
 
    !> Counts the drives of its mechanism before a drive that drive the same coordinate.

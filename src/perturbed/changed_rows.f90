@@ -197,7 +197,7 @@ contains
             associate (i => b%needed(k), block => b%list(b%needed(k)))
                lack = missing_nothing
                if (worst > missing_nothing) lack = largest_known(b, i, missing)
-               if (place%only_driven .and. .not. block%direct) lack = missing_all
+               if (place%only_driven .and. .not. block%explicit) lack = missing_all
                if (lack < missing_all) then
                   call solve_block(b, x, i, .true., w, s, c)
                   place%ratio = max(place%ratio, c%kantorovich_ratio)

@@ -34,13 +34,13 @@ module error_estimate
    real(wp), parameter :: closure_errors_a_digit = 1.0_wp
 
    !> How far the motion at one instant is known. It is `taken` if anything moves, and digits of the tables could be
-   !> `in_doubt`, which are masked then, or errors are `asked` for.
+   !> `may_lose_digits`, which are masked then, or errors are `asked` for.
    type :: error_estimate_t
       logical :: taken = .false.             !< an estimate was made
       logical :: asked = .false.             !< --errors: wanted at every instant
-      real(wp) :: growth = 0.0_wp            !< factor of roundings at this instant; huge if numbers are large
+      real(wp) :: amplification = 0.0_wp            !< factor of roundings at this instant; huge if numbers are large
       type(sizes_t) :: sizes                 !< if `taken`: numbers are compared with these
-      logical :: in_doubt = .false.          !< the growth is so large that digits may be lost
+      logical :: may_lose_digits = .false.          !< the growth is so large that digits may be lost
       !> (3, 0:2, requests) The largest change by a rounding of all numbers, or `nothing_known`.
       real(wp), allocatable :: changes(:, :, :)
       !> (3, 0:2, requests) --errors: the error by numbers and by the roundings of the calculation itself: rates of
@@ -88,9 +88,9 @@ contains
 
       found%taken = .false.
       found%asked = always
-      call find_amplification(estimator%sizes, m, b, x, state, q, found%growth, found%in_doubt)
-      found%in_doubt = found%in_doubt .or. estimator%closure > 0.0_wp
-      if (.not. (always .or. found%in_doubt)) return
+      call find_amplification(estimator%sizes, m, b, x, state, q, found%amplification, found%may_lose_digits)
+      found%may_lose_digits = found%may_lose_digits .or. estimator%closure > 0.0_wp
+      if (.not. (always .or. found%may_lose_digits)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &

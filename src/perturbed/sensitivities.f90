@@ -111,7 +111,7 @@ contains
             end do
             do i = 1, size(m%requests)
                found%known(i) = min(found%known(i), order)
-               if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
+               if (.not. (estimate%taken .and. estimate%may_lose_digits)) cycle
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
                   where (rounding < nothing_known) &

@@ -67,25 +67,25 @@ contains
    !> grow without limit. If rates do not exist, blocks still have found the position to the last digits; all equations
    !> at once have lost up to half of them. These have one unit of length for large links and small ones. Pivots of
    !> blocks do not show their errors, and they always are in doubt.
-   pure subroutine find_amplification(sizes, m, b, x, s, q, growth, in_doubt)
+   pure subroutine find_amplification(sizes, m, b, x, s, q, amplification, may_lose_digits)
       type(sizes_t), intent(in) :: sizes
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(state_t), intent(in) :: s
       type(motion_t), intent(in) :: q
-      real(wp), intent(out) :: growth        !< factor of a rounding, relative to the characteristic sizes; or huge
-      logical, intent(out) :: in_doubt       !< digits of the tables may be lost
+      real(wp), intent(out) :: amplification   !< factor of a rounding, relative to the characteristic sizes; or huge
+      logical, intent(out) :: may_lose_digits       !< digits of the tables may be lost
       real(wp) :: law, angle, size_of, usual, of_angles, inverse
       real(wp) :: largest(2, 0:2)
       integer :: k
 
       law = sizes%law(0) + sizes%law(1)*abs(q%t)
-      growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. m%method /= method_newton)
-      in_doubt = growth > 0.0_wp .or. law > safe_angle
+      amplification = merge(huge(amplification), 0.0_wp, q%known >= 0 .and. m%method /= method_newton)
+      may_lose_digits = amplification > 0.0_wp .or. law > safe_angle
       if (q%known < 2 .or. q%rests) return
-      growth = huge(growth)
-      in_doubt = .true.
+      amplification = huge(amplification)
+      may_lose_digits = .true.
 
       call find_largest(size(q%position, 2), q%position, q%velocity, q%acceleration, largest)
       angle = max(largest(2, 0), law)
@@ -102,24 +102,25 @@ contains
       ! A block has p, the least pivot of its Jacobian (at most 1), L, its Lipschitz constant, and C, its `coarse`.
       ! Numbers grow by L/p^2; with C above `usual_coarse` also by C/p and C L/p^2. Angles grow by C/p in positions and,
       ! over `rate_digits`, by C L^2/p^3 in accelerations.
-      growth = 0.0_wp
+      amplification = 0.0_wp
       of_angles = 1.0_wp
       do k = 1, size(b%needed)
          associate (block => x%blocks(b%needed(k)))
-            if (b%list(b%needed(k))%direct) cycle
+            if (b%list(b%needed(k))%explicit) cycle
             inverse = 1.0_wp/max(min(1.0_wp, s%jacobian(b%needed(k))%pivot), smallest_pivot)
             associate (turned => block%lipschitz*inverse)
-               growth = max(growth, turned*inverse)
-               if (block%coarse > usual_coarse) growth = max(growth, block%coarse*inverse*max(1.0_wp, turned))
+               amplification = max(amplification, turned*inverse)
+               if (block%coarse > usual_coarse) amplification = max(amplification, block%coarse*inverse*max(1.0_wp, &
+                  turned))
                of_angles = max(of_angles, block%coarse*inverse*max(1.0_wp, turned**2/rate_digits))
             end associate
          end associate
       end do
-      growth = usual*growth
-      in_doubt = max(usual, growth) > max_amplification .or. m%method /= method_newton
+      amplification = usual*amplification
+      may_lose_digits = max(usual, amplification) > max_amplification .or. m%method /= method_newton
       if (.not. angle > usual_angle) return
-      in_doubt = in_doubt .or. angle*size_of*of_angles > safe_angle
-      growth = growth*max(1.0_wp, angle/usual)
+      may_lose_digits = may_lose_digits .or. angle*size_of*of_angles > safe_angle
+      amplification = amplification*max(1.0_wp, angle/usual)
    end subroutine find_amplification
 
    !> Finds the largest of the lengths and of the angles in positions, velocities and accelerations; on plain arrays,
@@ -141,23 +142,25 @@ contains
 
    !> Finds the largest growth of roundings of a motion in the poles and curves of its mechanism, relative to their
    !> characteristic sizes. At infinity and at rest the growth is huge.
-   pure real(wp) function amplification_in_centres(m, q) result(growth)
+   pure real(wp) function amplification_in_centres(m, q) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(row_t) :: row
       integer :: i
 
-      growth = 0.0_wp
+      amplification = 0.0_wp
       do i = 1, size(m%requests)
          if (.not. is_centre(m%requests(i)%kind)) cycle
          call find_row(m, q, m%requests(i), row)
-         if (row%state /= centre_finite) growth = huge(1.0_wp)
+         if (row%state /= centre_finite) amplification = huge(1.0_wp)
          if (row%state /= centre_finite) return
          associate (length => m%requests(i)%length, v => row%value(3, 1), a => row%value(3, 2))
             if (m%requests(i)%kind == request_pole) then
-               growth = max(growth, (1.0_wp + norm2(row%value(:2, 2))/length)*m%requests(i)%rate/abs(row%weight))
+               amplification = max(amplification, (1.0_wp + norm2(row%value(:2, &
+                  2))/length)*m%requests(i)%rate/abs(row%weight))
             else
-               growth = max(growth, (1.0_wp + row%value(1, 2)/length)*(3.0_wp/v + (v + a)/abs(row%weight)))
+               amplification = max(amplification, (1.0_wp + row%value(1, 2)/length)*(3.0_wp/v + (v + &
+                  a)/abs(row%weight)))
             end if
          end associate
       end do
@@ -165,17 +168,17 @@ contains
 
    !> Finds the largest growth of roundings of a motion in the measures of its mechanism, relative to their
    !> characteristic sizes.
-   pure real(wp) function amplification_in_measures(m, q, rate) result(growth)
+   pure real(wp) function amplification_in_measures(m, q, rate) result(amplification)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
       real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
       integer :: i
 
-      growth = 0.0_wp
+      amplification = 0.0_wp
       if (.not. allocated(m%measures)) return
       do i = 1, size(m%requests)
          if (m%requests(i)%kind == request_measure) &
-            growth = max(growth, amplification_in_measure(m, q, m%requests(i)%subject, rate))
+            amplification = max(amplification, amplification_in_measure(m, q, m%requests(i)%subject, rate))
       end do
    end function amplification_in_measures
 end module significance_check

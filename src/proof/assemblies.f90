@@ -79,7 +79,7 @@ contains
       places = places_of(f%blocks, f%geometry)
       do i = 1, size(f%blocks%list)
          associate (shape => f%blocks%list(i)%shape)
-            if (f%blocks%list(i)%direct .or. shape%n == 0) cycle
+            if (f%blocks%list(i)%explicit .or. shape%n == 0) cycle
             one%block = i
             one%unknowns = shape%n
             one%is_redundant = shape%rows > shape%n
@@ -90,7 +90,7 @@ contains
       end do
       call search(m, f, assemblies)
       assemblies%is_known = .not. (assemblies%are_more &
-         .or. any(assemblies%blocks%is_wide .or. assemblies%blocks%failed > 0))
+         .or. any(assemblies%blocks%is_large .or. assemblies%blocks%failed > 0))
    end subroutine find_assemblies
 
    !> Finds all assemblies of a mechanism, and the one in which a run begins. The deck's estimate chooses it, unless

@@ -130,15 +130,15 @@ contains
             placed%u(own(k))%acceleration = ball_t(s%u(own(k))%acceleration, 0.0_wp)
          end do
 
-         is_proved = block%direct
-         if (block%direct) then
-            associate (row => b%rows(block%first_row), direct => placed%u(own(1)))
+         is_proved = block%explicit
+         if (block%explicit) then
+            associate (row => b%rows(block%first_row), explicit => placed%u(own(1)))
                call find_direct(row, numbers%rows(block%first_row), placed%drive, placed%u(row%other), exact)
-               call set_radius(b, own(1), distance(exact%value, direct%value%mid), placed%ball_state_t)
-               direct%rate%radius = distance(exact%rate, direct%rate%mid)
-               direct%acceleration%radius = distance(exact%acceleration, direct%acceleration%mid)
-               placed%open(0, block%first_row) = direct%value%radius
-               placed%open(1, block%first_row) = direct%rate%radius
+               call set_radius(b, own(1), distance(exact%value, explicit%value%mid), placed%ball_state_t)
+               explicit%rate%radius = distance(exact%rate, explicit%rate%mid)
+               explicit%acceleration%radius = distance(exact%acceleration, explicit%acceleration%mid)
+               placed%open(0, block%first_row) = explicit%value%radius
+               placed%open(1, block%first_row) = explicit%rate%radius
             end associate
             return
          end if

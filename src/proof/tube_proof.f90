@@ -84,7 +84,7 @@ contains
                end associate
             end do
 
-            if (block%direct) then
+            if (block%explicit) then
                ! The unknown is the sum of another one and a drive, and its cubic is the sum of their cubics.
                associate (row => b%rows(block%first_row))
                   radius = (ends_open(block%first_row) + tube%radius(row%other) &

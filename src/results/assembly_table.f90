@@ -78,7 +78,7 @@ contains
          //' '//phrase(text_at_infinity, m%polish)//' + '//whole(one%failed)//' '//phrase(text_failed, m%polish)
       if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(text_partial, m%polish)
       call write_folded(o, indent, text//'   '//phrase(text_real, m%polish)//' '//whole(one%real))
-      if (one%is_wide) call write_folded(o, ' *** ', links//': '//phrase(text_wide_block, m%polish))
+      if (one%is_large) call write_folded(o, ' *** ', links//': '//phrase(text_wide_block, m%polish))
       if (one%is_open) call write_folded(o, ' *** ', links//': '//phrase(text_contradiction, m%polish))
       if (one%moves) call write_folded(o, ' *** ', links//': '//phrase(text_curve_of_assemblies, m%polish))
       if (one%failed > 0) call write_folded(o, ' *** ', &

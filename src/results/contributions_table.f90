@@ -9,7 +9,7 @@ module contributions_table
    use table, only: format_t, unit_of, number_text
    use names, only: subject_name
    use sensitivities, only: has_tolerances
-   use tolerance_contributions, only: shares_t, share_t, equal_share_part
+   use tolerance_contributions, only: contributions_t, contribution_t, equal_share_part
    use listing_layout, only: layout_t, column_name, column_unit
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -34,7 +34,7 @@ contains
    subroutine write_shares(o, l, shares, set)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(shares_t), intent(in) :: shares
+      type(contributions_t), intent(in) :: shares
       class(set_t), intent(in) :: set
       type(request_t), allocatable :: requests(:)
       integer :: i, c, d, j, form
@@ -75,7 +75,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
       type(row_column_t), intent(in) :: column
-      type(share_t), intent(in) :: share
+      type(contribution_t), intent(in) :: share
       character(:), allocatable :: unit, word
       type(format_t) :: f
       integer :: i

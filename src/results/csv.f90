@@ -201,7 +201,10 @@ contains
       integer :: i, j, k, n
 
       t%drives = drive_columns(set)
-      t%laws = [(drive_of(set, i), i=1, size(set%drives))]
+      allocate (t%laws(size(set%drives)))
+      do i = 1, size(t%laws)
+         t%laws(i) = drive_of(set, i)
+      end do
 
       ! The rows, and which names links have among them.
       requests = requests_of(set)

@@ -54,14 +54,14 @@ module listing
 contains
 
    !> Writes title, data and structure of a set.
-   subroutine listing_head(o, m, findings)
+   subroutine listing_head(o, m, structure_report)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t), intent(in) :: findings
+      type(structure_report_t), intent(in) :: structure_report
       character(18) :: head
       integer :: i, k
 
-      associate (pl => m%polish, f => findings)
+      associate (pl => m%polish, f => structure_report)
          call put(o, ' KINMAT   '//phrase(text_program, pl))
          call put(o, '')
          call put(o, trim(' '//phrase(text_set, pl)//' '//whole(m%set_number) &

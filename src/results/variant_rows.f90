@@ -2,7 +2,7 @@
 module variant_rows
    use kinds, only: wp, label_length
    use plane_vectors, only: in_degrees
-   use mechanism, only: mechanism_t, request_t
+   use mechanism, only: mechanism_t, request_t, drive_t
    use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
    use table, only: format_t, cell_t, choose_digits
@@ -127,11 +127,13 @@ contains
          character(*), intent(in) :: start   !< the beginning of the name of the column
          character(*), intent(in) :: above, below   !< the lines over it; blank if it is only in the file
          type(summary_column_t) :: c
+         type(drive_t) :: drive
 
          c%name = start//'.drive'
          if (number > 0) then
             c%name = start//'.'//drives(number)
-            c%format%is_angle = .not. is_length(drive_of(set, number))
+            drive = drive_of(set, number)
+            c%format%is_angle = .not. is_length(drive)
             c%printed = above /= ''
             c%above = above
             c%below = below
@@ -305,10 +307,12 @@ contains
       class(set_t), intent(in) :: set
       integer, intent(in) :: number          !< of the drive in the set; 0: none
       real(wp), intent(in) :: t              !< time
+      type(drive_t) :: drive
       real(wp) :: f(3)
 
       if (number == 0) return
-      f = drive_motion(drive_of(set, number), t)
+      drive = drive_of(set, number)
+      f = drive_motion(drive, t)
       cell = cell_t(cell_number, f(1))
    end function drive_cell
 end module variant_rows

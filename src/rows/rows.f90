@@ -28,7 +28,7 @@ module rows
       integer :: shown = 0                   !< its form in the listing
       logical :: listed = .false.            !< it is in the listing,
       logical :: due = .false.               !< and in the CSV and the table
-      logical :: in_doubt = .false.          !< some digit may be in doubt: `doubt` is estimated
+      logical :: may_lose_digits = .false.          !< some digit may be in doubt: `doubt` is estimated
       real(wp) :: doubt(3, 0:2) = 0.0_wp     !< the rounding error of the value; 0 without an estimate
       real(wp) :: error(3, 0:2) = 0.0_wp     !< the estimated error of the value, if errors are asked for
       logical :: has_digit(3, 0:2) = .true.  !< at least one digit of the number is known
@@ -59,12 +59,12 @@ contains
                row%shown = merge(row_turning, row%form, request%angle_alone)
 
                ! The initial values hold until the first estimate.
-               if (row%in_doubt) then
+               if (row%may_lose_digits) then
                   row%doubt = 0.0_wp
                   row%has_digit = .true.
                end if
-               row%in_doubt = errors%taken .and. errors%in_doubt
-               if (row%in_doubt) then
+               row%may_lose_digits = errors%taken .and. errors%may_lose_digits
+               if (row%may_lose_digits) then
                   row%doubt = estimate_of(row%row_t, m, errors, n)
                   call find_digits(row, errors%sizes%length, errors%sizes%rate, m%degrees)
                end if

@@ -20,7 +20,8 @@ module set_analysis
    use separations, only: motions_apart
    use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
+   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, evaluate_at, restore_instant, &
+      redundancy_error
    use convergence, only: inconsistent_level
    implicit none
    private
@@ -47,7 +48,7 @@ module set_analysis
       type(certificate_counts_t) :: worst                   !< of all instants, if the set has several parts
       logical, allocatable :: reported_drives(:)            !< (parts) surplus drives have been searched for
       logical :: is_in_lane = .false.                       !< a lane has found `now`; the analyses have not
-      real(wp) :: growth = 0.0_wp                           !< then: factor of roundings; all digits are safe
+      real(wp) :: amplification = 0.0_wp                           !< then: factor of roundings; all digits are safe
       type(path_t), allocatable :: paths(:)                 !< (parts)
       logical :: has_turns = .false.                        !< some measure goes on from instant to instant
       integer :: taken = 0                                  !< instants so far, if some measure does
@@ -58,19 +59,19 @@ contains
 
    !> Makes the analysis of a set, ready for its first instant. If all assemblies are asked for, it begins in the
    !> nearest.
-   subroutine make_set_analysis(m, set, findings)
+   subroutine make_set_analysis(m, set, structure_report)
       type(mechanism_t), intent(in) :: m     !< the set; its equations are as many as its unknowns
       type(set_analysis_t), intent(out) :: set
-      type(structure_report_t), intent(inout), optional :: findings   !< its structure, which is given up
+      type(structure_report_t), intent(inout), optional :: structure_report   !< its structure, which is given up
 
-      call new_set_motion(m, set%now, findings)
-      call begin_analysis(set, findings)
+      call new_set_motion(m, set%now, structure_report)
+      call begin_analysis(set, structure_report)
    end subroutine make_set_analysis
 
    !> Begins the analysis of a set that is divided into its mechanisms. Without findings, its structure is found.
-   subroutine begin_analysis(set, findings)
+   subroutine begin_analysis(set, structure_report)
       type(set_analysis_t), intent(inout) :: set   !< set%now is divided
-      type(structure_report_t), intent(inout), optional :: findings   !< its structure, which is given up
+      type(structure_report_t), intent(inout), optional :: structure_report   !< its structure, which is given up
       integer :: c
 
       associate (n => set%now%count)
@@ -83,8 +84,8 @@ contains
       if (set%now%assemblies) allocate (set%assemblies(set%now%count))
       do c = 1, set%now%count
          if (set%now%assemblies) call find_nearest(set%now%parts(c), instant(set%now, 0), set%assemblies(c))
-         if (present(findings)) then
-            call make_analysis(set%list(c), set%now%parts(c), findings%structures(c))
+         if (present(structure_report)) then
+            call make_analysis(set%list(c), set%now%parts(c), structure_report%structures(c))
          else
             call make_analysis(set%list(c), set%now%parts(c))
          end if
@@ -189,16 +190,16 @@ contains
       type(set_analysis_t), intent(inout) :: set
       real(wp), intent(in) :: t              !< time
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
-      logical :: is_finite, in_doubt
+      logical :: is_finite, may_lose_digits
 
       associate (a => set%list(1), q => set%now%motions(1))
          q%t = t
          if (allocated(q%diagnostics)) deallocate (q%diagnostics)
          call move_links(a%geometry%chain, a%geometry%chain%wanted, a%state, q, is_finite)
          call find_amplification(set%estimators(1)%sizes, set%now%parts(1), a%blocks, a%geometry, a%state, q, &
-            set%growth, in_doubt)
+            set%amplification, may_lose_digits)
       end associate
-      is_taken = is_finite .and. .not. in_doubt
+      is_taken = is_finite .and. .not. may_lose_digits
       set%is_in_lane = .true.
       if (is_taken) call keep_instant(set)
    end subroutine accept_state
@@ -280,7 +281,7 @@ contains
    end subroutine report_surplus_drives
 
    !> Finds the rows of requests of a set at its last instant, or at a time between the instants. Nothing else changes.
-   subroutine rows_at(set, list, t, rows, always, error, growth)
+   subroutine rows_at(set, list, t, rows, always, error, amplification)
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
@@ -288,16 +289,16 @@ contains
       logical, intent(in), optional :: always   !< errors are estimated even if no digit of a table is in doubt
       !> Without `always` nothing is estimated, and both are 0.
       real(wp), intent(out), optional :: error(3, 0:2, size(list))   !< in the deck's units and rad
-      real(wp), intent(out), optional :: growth   !< the factor by which roundings grow
+      real(wp), intent(out), optional :: amplification   !< the factor by which roundings grow
       integer :: i
 
       if (present(error)) error = 0.0_wp
-      if (present(growth)) growth = 0.0_wp
+      if (present(amplification)) amplification = 0.0_wp
       if (set%is_in_lane .and. .not. abs(t - set%now%motions(1)%t) > 0.0_wp) then
          do i = 1, size(list)
             call find_row_in_set(set%now, list(i), rows(i))
          end do
-         if (present(growth)) growth = set%growth
+         if (present(amplification)) amplification = set%amplification
       else
          call find_by_analysis()
       end if
@@ -313,13 +314,13 @@ contains
             if (abs(t - set%now%motions(c)%t) > 0.0_wp) then
                q = new_motion(size(set%now%parts(c)%links))
                if (allocated(set%now%motions(c)%turned)) q%turned = turned_near(c)
-               call look_at(set%list(c), t, q, is_found)
+               call evaluate_at(set%list(c), t, q, is_found)
                rows%known = -1
                if (.not. is_found) return
                if (allocated(q%turned)) call keep_turns(set%now%parts(c), q)
                call take(c, q)
             else
-               call come_back(set%list(c))
+               call restore_instant(set%list(c))
                call take(c, set%now%motions(c))
             end if
          end associate
@@ -352,7 +353,8 @@ contains
             end do
             if (.not. present(always)) return
             call estimate_errors(set%estimators(part), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
-            if (present(growth)) growth = merge(max_amplification, estimate%growth, estimate%in_doubt)
+            if (present(amplification)) amplification = merge(max_amplification, estimate%amplification, &
+               estimate%may_lose_digits)
             if (.not. estimate%taken) return
             do i = 1, size(list)
                error(:, :, i) = estimate_of(rows(i), own, estimate, set%now%rows(list(i))%number)

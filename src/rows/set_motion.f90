@@ -32,19 +32,19 @@ module set_motion
 contains
 
    !> Divides a set into its parts, at rest.
-   subroutine new_set_motion(m, motions, findings)
+   subroutine new_set_motion(m, motions, structure_report)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: motions
-      type(structure_report_t), intent(inout), optional :: findings   !< they give up their set if it is divided
+      type(structure_report_t), intent(inout), optional :: structure_report   !< they give up their set if it is divided
       type(structure_t) :: structure
       integer :: c
       logical :: is_divided
 
       is_divided = .false.
-      if (present(findings)) is_divided = allocated(findings%set)
+      if (present(structure_report)) is_divided = allocated(structure_report%set)
       if (is_divided) then
-         motions%set_t = findings%set
-         deallocate (findings%set)
+         motions%set_t = structure_report%set
+         deallocate (structure_report%set)
       else
          call divide(m, motions%set_t)
       end if
@@ -56,8 +56,9 @@ contains
       do c = 1, motions%count
          motions%motions(c) = new_motion(size(motions%parts(c)%links))
          if (all(motions%parts(c)%requests%drive == 0)) cycle
-         if (present(findings)) then
-            call leave_out_unmoved(motions%parts(c), findings%structures(c)%blocks, findings%structures(c)%geometry)
+         if (present(structure_report)) then
+            call leave_out_unmoved(motions%parts(c), structure_report%structures(c)%blocks, &
+               structure_report%structures(c)%geometry)
          else
             call make_structure(motions%parts(c), structure)
             call leave_out_unmoved(motions%parts(c), structure%blocks, structure%geometry)
@@ -111,7 +112,7 @@ contains
             associate (own => b%unknown(b%list(i)%first:b%list(i)%last))
                if (any(b%rows(b%list(i)%first_row:b%list(i)%last_row)%drive == d) .or. largest_known(b, i, moves) > 0) &
                   moves(own) = 1
-               if (b%list(i)%direct) then
+               if (b%list(i)%explicit) then
                   call solve_explicit(b, x, i, state)
                else
                   state%u(own)%rate = moves(own)*arbitrary(own + b%unknowns)

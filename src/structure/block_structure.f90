@@ -99,9 +99,9 @@ contains
                row%drive = equation%drive
                row%pair = equation%pair
                row%angular = equation%kind == equation_angle
-               b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
+               b%list(i)%explicit = any(equation%kind == [equation_angle, equation_slide]) &
                   .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
-               if (.not. (b%list(i)%direct .and. row%angular)) cycle
+               if (.not. (b%list(i)%explicit .and. row%angular)) cycle
                ! phi_orientation - phi_less = constant + value, solved for the one that is unknown.
                row%other = equation%less
                if (b%unknown(b%list(i)%first) /= equation%less) cycle
@@ -140,7 +140,7 @@ contains
       do i = 1, size(b%list)
          associate (block => b%list(i))
             block%first_loop = loops + 1
-            if (.not. block%direct) then
+            if (.not. block%explicit) then
                do k = block%first, block%last
                   column(b%unknown(k)) = k - block%first + 1
                end do
@@ -237,7 +237,7 @@ contains
       allocate (b%patterns(count(may_be_sparse(b%list%shape))))
       patterns = 0
       do i = 1, size(b%list)
-         if (b%list(i)%direct) cycle
+         if (b%list(i)%explicit) cycle
          associate (shape => b%list(i)%shape)
             if (may_be_sparse(shape)) then
                ! The entries of the columns are counted first, then filled in.

@@ -34,7 +34,7 @@ module blocks
       integer :: first_row = 1, last_row = 0      !< its rows
       integer :: first_loop = 1, last_loop = 0    !< its vector loops
       type(shape_t) :: shape                      !< of its Jacobian
-      logical :: direct = .false.                 !< one equation that is linear with coefficient 1
+      logical :: explicit = .false.                 !< one equation that is linear with coefficient 1
    end type block_t
 
    !> Row of an equation: = a constant + value of the drive; direct: unknown = other + sign_of (constant + value).
@@ -203,7 +203,7 @@ contains
       integer :: u
 
       iterated = .false.
-      iterated(list) = .not. b%list(list)%direct
+      iterated(list) = .not. b%list(list)%explicit
       unknowns = pack([(u, u=1, b%unknowns)], iterated(b%block_of))
    end function iterated_unknowns
 

@@ -118,19 +118,19 @@ contains
    end subroutine find_groups
 
    !> Checks that every link of every set can be found. Errors: status_rejected.
-   subroutine check_structure(sets, findings, failure)
+   subroutine check_structure(sets, structure_report, failure)
       type(mechanism_t), intent(in) :: sets(:)
-      type(structure_report_t), allocatable, intent(out) :: findings(:)   !< (sets)
+      type(structure_report_t), allocatable, intent(out) :: structure_report(:)   !< (sets)
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: text, all_of_them
       integer :: i, reported
 
-      allocate (findings(size(sets)))
+      allocate (structure_report(size(sets)))
       all_of_them = ''
       reported = 0
       do i = 1, size(sets)
-         findings(i) = find_structure(sets(i))
-         text = faults_text(sets(i), findings(i), sets(i)%set_number)
+         structure_report(i) = find_structure(sets(i))
+         text = faults_text(sets(i), structure_report(i), sets(i)%set_number)
          if (len(text) == 0) cycle
          if (reported > 0) all_of_them = all_of_them//new_line('a')//' *** '
          all_of_them = all_of_them//text

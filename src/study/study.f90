@@ -88,7 +88,7 @@ contains
       integer, intent(out) :: status         !< exit status, of `failures`
       character(:), allocatable, intent(out) :: message   !< lines for standard error; '' for none
       type(mechanism_t), allocatable :: sets(:)
-      type(structure_report_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: structure_report(:)
       type(failure_t), allocatable :: failure
       type(output_t) :: o
       integer :: i
@@ -96,7 +96,7 @@ contains
       status = status_solved
       message = ''
       call read_deck(path, sets, message, failure)
-      if (.not. allocated(failure)) call check_structure(sets, findings, failure)
+      if (.not. allocated(failure)) call check_structure(sets, structure_report, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
       if (.not. allocated(failure)) call check_apart([o], path, failure)
 
@@ -108,7 +108,7 @@ contains
             if (only_times) then
                call write_times(sets(i))
             else
-               call study_set(sets(i), findings(i)%redundant > 0)
+               call study_set(sets(i), structure_report(i)%redundant > 0)
             end if
             call flush_output(o)
             if (o%error /= 0) exit

@@ -66,7 +66,7 @@ contains
       type(scene_t), intent(in) :: s
       logical, intent(in) :: extremes
       type(mechanism_t) :: m(1)
-      type(structure_report_t), allocatable :: findings(:)
+      type(structure_report_t), allocatable :: structure_report(:)
       type(failure_t), allocatable :: failure
       type(lane_run_t), allocatable :: runs(:)
       type(lanes_t) :: lanes
@@ -79,9 +79,9 @@ contains
       m(1)%at = [real(wp) ::]
       m(1)%requests%extremes = extremes
       do i = 1, lane_count
-         call check_structure(m, findings, failure)
+         call check_structure(m, structure_report, failure)
          runs(i)%m = m(1)
-         call make_set_analysis(runs(i)%m, runs(i)%s, findings(1))
+         call make_set_analysis(runs(i)%m, runs(i)%s, structure_report(1))
          call begin_run(runs(i))
       end do
       time = seconds()

@@ -112,29 +112,29 @@ contains
       type(gap_t) :: g
 
       g = error_of(s, method_newton, steps, 1)
-      g%condition = growth(s, kind)
+      g%condition = amplification(s, kind)
       call judge(s%name, 'BLOCKS, EXACT', g, tally)
       if (kind == 'lattice') return
       g = error_of(s, by_closed_form, steps, 1)
-      g%condition = growth(s, kind)
+      g%condition = amplification(s, kind)
       call judge(s%name, 'FAST, EXACT', g, tally)
    end subroutine judge_exactly
 
    !> By how much a chain can magnify a rounding: windows pass an angle on as it is; a scissor and an arm add up angles
    !> and, once more, lengths; the lattice by the condition at small sizes, 160 to 500 times n**2.
-   pure real(wp) function growth(s, kind)
+   pure real(wp) function amplification(s, kind)
       type(scene_t), intent(in) :: s
       character(*), intent(in) :: kind
 
       select case (kind)
       case ('windows')
-         growth = 4.0_wp*s%chain%n
+         amplification = 4.0_wp*s%chain%n
       case ('lattice')
-         growth = 500.0_wp*real(s%chain%n, wp)**2
+         amplification = 500.0_wp*real(s%chain%n, wp)**2
       case default
-         growth = 4.0_wp*real(s%chain%n, wp)**2
+         amplification = 4.0_wp*real(s%chain%n, wp)**2
       end select
-   end function growth
+   end function amplification
 
    !> Where all closure equations have no inverse the net can leave its motion; the lattice 7 comes there after 56
    !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only

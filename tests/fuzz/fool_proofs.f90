@@ -40,7 +40,7 @@ program fool_proofs
    false_ones = 0
    do i = 1, attempts
       dice = new_dice(seed*1000003 + i)
-      call attempt(i)
+      call try_substep(i)
    end do
    print '(a,i0,a,i0,a)', ' PROVED: ', positions, ' POSITIONS, ', steps, ' STEPS'
    if (20*steps < attempts .or. 2*positions < attempts) false_ones = false_ones + 1
@@ -49,7 +49,7 @@ program fool_proofs
 
 contains
 
-   subroutine attempt(i)
+   subroutine try_substep(i)
       integer, intent(in) :: i
       type(fool_t) :: f
       type(mechanism_t) :: m
@@ -103,7 +103,7 @@ contains
          end if
       end if
       if (wrong) false_ones = false_ones + 1
-   end subroutine attempt
+   end subroutine try_substep
 
    !> Often such that its two assemblies nearly meet, or that it is in line somewhere.
    function some_mechanism() result(f)
@@ -161,7 +161,7 @@ contains
 
       call set_drive_values(e%path, t, e%state)
       do k = 1, size(e%blocks%list)
-         if (e%blocks%list(k)%direct) call solve_block(e%blocks, e%geometry, k, .true., e%work, e%state, c)
+         if (e%blocks%list(k)%explicit) call solve_block(e%blocks, e%geometry, k, .true., e%work, e%state, c)
       end do
       h = small/max(1.0_wp, f%frequency)
       do k = -1, 1

@@ -25,7 +25,7 @@ program cylinders_by_chance
    type :: cylinder_t
       character(16) :: foot(2) = '', eye(2) = '', stroke(2) = ''   !< as they stand on cards
       real(qp) :: a = 1.0_qp, b = 1.0_qp, psi = 1.0_qp, least = 0.0_qp, greatest = huge(1.0_qp)
-      logical :: is_even = .false.                                 !< a = b: the length comes to 0
+      logical :: has_equal_steps = .false.                                 !< a = b: the length comes to 0
    end type cylinder_t
 
    !> A boom and what drives it: the angle, or the length of its first cylinder.
@@ -144,20 +144,20 @@ contains
       read (boom%rate, *) boom%law(1)
    end subroutine throw_boom
 
-   !> The ends of a cylinder about a pivot; `is_even`: both at one distance, by numbers of Pythagoras.
-   subroutine throw_ends(d, pivot, is_even, c)
+   !> The ends of a cylinder about a pivot; `has_equal_steps`: both at one distance, by numbers of Pythagoras.
+   subroutine throw_ends(d, pivot, has_equal_steps, c)
       type(dice_t), intent(inout) :: d
       real(qp), intent(in) :: pivot(2)
-      logical, intent(in) :: is_even
+      logical, intent(in) :: has_equal_steps
       type(cylinder_t), intent(inout) :: c
       integer, parameter :: triples(2, 12) = reshape([5, 0, 4, 3, 3, 4, 0, 5, -3, 4, -4, 3, -5, 0, -4, -3, -3, -4, 0, -5, &
          3, -4, 4, -3], [2, 12])
       real(wp) :: foot(2), eye(2), r
       real(qp) :: f(2), e(2)
 
-      c%is_even = is_even
+      c%has_equal_steps = has_equal_steps
       do
-         if (is_even) then
+         if (has_equal_steps) then
             r = 0.1_wp*(3 + throw(d, 2))
             foot = r*triples(:, throw(d, 12))
             eye = r*triples(:, throw(d, 12))
@@ -174,7 +174,7 @@ contains
          c%a = norm2(f)
          c%b = norm2(e)
          c%psi = atan2(f(1)*e(2) - f(2)*e(1), dot_product(f, e))
-         if (abs(sin(c%psi)) > 0.2_qp .and. (is_even .or. abs(c%a - c%b) > 0.1_qp)) exit
+         if (abs(sin(c%psi)) > 0.2_qp .and. (has_equal_steps .or. abs(c%a - c%b) > 0.1_qp)) exit
       end do
    end subroutine throw_ends
 
@@ -248,9 +248,9 @@ contains
                x = angle_of(c, bounds(k))
                if (x >= 0.0_qp) list = [list, event_t(x - c%psi, at_stroke, j), event_t(-x - c%psi, at_stroke, j)]
             end do
-            if (c%is_even) list = [list, event_t(-c%psi, at_zero, j)]
+            if (c%has_equal_steps) list = [list, event_t(-c%psi, at_zero, j)]
             if (j == 1 .and. boom%by_slide) then
-               if (.not. c%is_even) list = [list, event_t(-c%psi, at_dead, j)]
+               if (.not. c%has_equal_steps) list = [list, event_t(-c%psi, at_dead, j)]
                list = [list, event_t(pi - c%psi, at_dead, j)]
             end if
          end associate

@@ -112,7 +112,7 @@ contains
       if (.not. is_one) return
       associate (list => f%structures(1)%blocks%list)
          is_one = size(list) == 1
-         if (is_one) is_one = .not. list(1)%direct .and. list(1)%shape%n > 2
+         if (is_one) is_one = .not. list(1)%explicit .and. list(1)%shape%n > 2
       end associate
    end function is_one_block
 

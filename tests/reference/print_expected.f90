@@ -66,11 +66,11 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
-      type(structure_report_t) :: findings
+      type(structure_report_t) :: structure_report
 
-      findings = hand_count(name)
-      findings%groups = groups_by_hand(name, m)
-      call listing_head(o, m, findings)
+      structure_report = hand_count(name)
+      structure_report%groups = groups_by_hand(name, m)
+      call listing_head(o, m, structure_report)
    end subroutine print_head
 
    !> The variants `v` of the set `m`: of each its tables and its row. No question but PRINT is asked.

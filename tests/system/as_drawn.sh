@@ -149,8 +149,6 @@ ram=$(card CYLINDER P Q RAM)
 boom 1.5 1.0 "$ram" "$push" "$hours" | refused 'a cylinder without a length' 'E069 BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'
 boom 2.0 -1.0 "$ram" "$(card TOLER '' '' '' 0.1)" "$push" "$hours" | refused 'a tolerance of a cylinder' \
    'E046 "0.1" IS A TOLERANCE FOR A FIELD THAT CANNOT HAVE ONE'
-boom 2.0 -1.0 "$ram" "$(card VARY R1 2 '' 0.1 0.2)" "$push" "$hours" | refused 'a cylinder that varies' \
-   'E045 MUST FOLLOW THE CARD TO WHICH IT APPLIES'
 boom 2.0 -1.0 "$(card CYLINDER P Q RAM '' '' 1.0)" "$push" "$hours" | refused 'a third number on a cylinder' 'E019 "1.0" IS IN A FIELD THAT THIS CARD DOES NOT USE'
 {
    card GROUND BASE; card LINK BARREL; card LINK ROD; card POINT P0 BASE; card POINT P BARREL; card POINT Q ROD '' 1.0
