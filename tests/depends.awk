@@ -1,6 +1,5 @@
-# Which object needs which, from the use and include statements of sources and tests, as rules of make for the directories `builds` under
-# `build`; the names of the programs of tests/ with the modules of tests/ that each needs; and those that the unit tests
-# (*.pf) need, as `unit_helpers`.
+# Rules of make for each of the directories `builds` below `build`: which object needs which, from the use and include
+# statements of sources and tests, and how the programs of tests/ are linked. `unit_helpers`: what the unit tests need.
 function reach(name,  list, n, i) {
    if (seen[name]++) return
    n = split(uses[name], list, " ")
@@ -34,11 +33,13 @@ END {
    }
    print "unit_helpers :=" found
    for (i = 1; i <= count; i++) if (names[i] in program) {
-      all = all " " names[i]
-      split("", seen); found = ""; reach(names[i]); sub(" " names[i] "$", "", found)
+      split("", seen); found = ""; reach(names[i])
       m = split(found, list, " ")
-      for (j = 1; j <= m; j++) for (d = 1; d <= directories; d++)
-         print build "/" directory[d] "/" names[i] ": " build "/" directory[d] "/" list[j] ".o"
+      for (d = 1; d <= directories; d++) {
+         place = build "/" directory[d] "/"
+         printf "%s:", place names[i]
+         for (j = 1; j <= m; j++) printf " %s.o", place list[j]
+         print " " place "libkinmat.a\n\t$(call link," (directory[d] == "timed" ? "" : "$(no_lto)") ")"
+      }
    }
-   print "programs :=" all
 }

@@ -1,6 +1,20 @@
 # Tests and measurements; `make help` lists them. The Makefile includes this file.
 .PHONY: assembly-peers test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits cylinders lengths dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants coverage drawings sizes expected
 
+decks   := $(sort $(wildcard input/*.deck))
+helpers := $(filter-out $(sources),$(sort $(shell find tests -name '*.f90')))
+suites  := $(sort $(shell find tests -name 'test_*.pf'))
+# Builds for tests: with sanitizers for `make fuzz`; for programs that measure time, optimized at the link as kinmat is.
+SANITIZE ?= -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
+fuzz     := $(DEBUG) $(SANITIZE)
+timed    := $(RELEASE)
+builds   += fuzz timed
+# The rules of the programs of tests/, and which object needs which, from the use statements.
+$(BUILD)/depends.mk: Makefile tests/tests.mk $(sources) $(helpers) $(suites) tests/depends.awk
+	@mkdir -p $(BUILD)
+	@awk -v build='$(BUILD)' -v builds='$(builds)' -v included='$(included)' -f tests/depends.awk $(sources) $(helpers) $(suites) > $@.new && mv $@.new $@
+include $(if $(filter-out clean,$(or $(MAKECMDGOALS),all)),$(BUILD)/depends.mk)
+$(patsubst %,$(BUILD)/release/%.o,$(notdir $(basename $(helpers)))): private extra := $(no_lto) -O$(or $(level_$(KIND)),0)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-vectorize,$(RELEASE))
 

@@ -1,6 +1,6 @@
 # Rules of the documents: their texts inside the program, the man page, pictures, the example of the library.
 
-# What the documents say of messages, cards and options, for --explain, --ruler and --help. The file is left alone if nothing has changed in it.
+# Texts of messages, cards and options for --explain, --ruler and --help. An unchanged file keeps its time.
 $(BUILD)/document_texts.f90: docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md
 	@mkdir -p $(BUILD)
 	@awk -f docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
@@ -11,12 +11,10 @@ $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/tools/man.awk
 
 .PHONY: pictures example
 #: pictures         draw docs/pictures again
-# The pictures of the documents, drawn anew.
 pictures: $(BUILD)/kinmat
 	docs/tools/pictures.sh $< docs/pictures
 
 #: example          build and run docs/example.f90
-# A program of one's own with the modules.
 example: $(BUILD)/example
 	$(BUILD)/example
 
