@@ -6,7 +6,7 @@ module sample_mechanisms
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, request_link
    implicit none
    private
-   public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, twice, angle_drive
+   public :: four_bar, yoke, crank_slider, in_line_slider, piston_outwards, all_kinds, magnified, twice, angle_drive
 
 contains
 
@@ -72,6 +72,17 @@ contains
       m%drives(1)%subject = 7
       m%drives(1)%polynomial = [x, -0.25_wp, 0.0_wp]
    end function in_line_slider
+
+   !> The same slider, crank up: its piston is at x = 3.5 + t/4 and comes to its dead point at t = 2.
+   function piston_outwards() result(m)
+      type(mechanism_t) :: m
+
+      m = in_line_slider(3.5_wp)
+      m%drives(1)%polynomial(2) = 0.25_wp
+      m%links(2)%position(3) = 0.9_wp
+      m%links(3)%position = [0.6_wp, 0.8_wp, -0.3_wp]
+      m%links(4)%position(1) = 3.5_wp
+   end function piston_outwards
 
    !> No machine, but every kind of pair and drive, ground on either side of a pair, no angle or arm a special one.
    function all_kinds() result(m)
