@@ -8,7 +8,6 @@ module command_line
    implicit none
    private
    public :: options_t, read_command, explained
-   public :: file_options
    public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_dxf, out_table, &
       out_shared, out_last
 

@@ -17,7 +17,7 @@ module block_diagnostics
    implicit none
    private
    public :: start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics, diagnostic_at_change, &
-      links_of, judge_blocks
+      links_of
 
    !> An estimated angle that is off by more, in rad, is worth a diagnostic: the assembly may not be the one that was
    !> meant.

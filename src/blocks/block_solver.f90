@@ -24,7 +24,7 @@ module block_solver
    use block_equations, only: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_blocks, solve_block, solve_explicit, second_order_bounds
+   public :: workspace_t, new_workspace, solve_blocks, solve_block, solve_explicit
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals below this part of the largest value have nothing to correct.

@@ -18,7 +18,7 @@ module initial_estimate
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
-   public :: guess_t, choice_t, assign_guess, estimated_values, estimated_directions
+   public :: guess_t, choice_t, assign_guess
 
    !> Angles from the places are taken if their largest closure error is below this part of the characteristic length,
    real(wp), parameter :: closed_part = 0.1_wp

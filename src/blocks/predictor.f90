@@ -25,7 +25,7 @@ module predictor
    use block_rank, only: jacobian_of, relative_sign
    implicit none
    private
-   public :: history_t, new_history, begin_at, accept, remember, predict, compare, recall, has_equal_steps, &
+   public :: history_t, new_history, begin_at, accept, predict, compare, recall, has_equal_steps, &
       largest_predicted_change, order_weights
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have. A larger predicted

@@ -21,7 +21,7 @@ module singular_position
       difference_step, gauss_newton_step, try_to_move
    implicit none
    private
-   public :: settle, driving_speed, block_singularity
+   public :: settle, block_singularity
 
    !> Larger blocks are not examined: twenty decompositions take a second for these.
    integer, parameter :: max_examined_rows = 300

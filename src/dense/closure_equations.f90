@@ -31,7 +31,7 @@ module closure_equations
    use configuration, only: system_t, configuration_t, normal_angle, secants
    implicit none
    private
-   public :: residual, jacobian, remainder, find_drive_values, closure_error, normal, projection_row
+   public :: residual, jacobian, remainder, find_drive_values
 
 contains
 

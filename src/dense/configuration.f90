@@ -17,7 +17,7 @@ module configuration
    private
    public :: system_t, configuration_t, new_system, new_configuration, set_configuration, &
       choose_references, normal_angle, add_to_links
-   public :: nearest_zeros, secants
+   public :: secants
 
    !> The equations of one mechanism; lengths in units of `length`.
    type :: system_t

@@ -9,11 +9,11 @@ module columns
    use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
    implicit none
    private
-   public :: row_column_t, row_form_t, row_kind_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, &
-      row_turning, row_ratio, last_form, table_turning, last_table, of_length, of_angle, last_dimension
+   public :: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, row_turning, last_form, &
+      table_turning, last_table, of_length, of_angle, last_dimension
    public :: table_of, is_ratio, usual_size, quantities, drives
    public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, &
-      cell_spare, cell_at_rest, cell_infinite, cell_coincide, last_cell
+      cell_spare, last_cell
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2

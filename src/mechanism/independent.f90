@@ -11,8 +11,7 @@ module independent
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
-   public :: set_t, member_t, divide, part_of_links, &
-      request_of, first_drive
+   public :: set_t, divide, part_of_links, request_of, first_drive
 
    !> A row or drive of a set: the number of its part, and its number there.
    type :: member_t

@@ -13,7 +13,7 @@ module significance_check
    use block_state, only: state_t
    implicit none
    private
-   public :: sizes_t, sizes_of, find_amplification, amplification_in_centres, max_amplification
+   public :: sizes_t, sizes_of, find_amplification, max_amplification
 
    !> The tables have the same digits in every kind of real: a kind that is coarser than real64 allows this part of the
    !> roundings.

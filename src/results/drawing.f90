@@ -16,7 +16,7 @@ module drawing
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, point_velocity, outline_t, outlines_of, hull, moved
+   public :: point_place, point_velocity, moved
 
    !> Between the instants of a deck others are computed, so that the motion has about this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation would leap.

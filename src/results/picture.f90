@@ -18,7 +18,7 @@ module picture
    use phrases
    implicit none
    private
-   public :: draw_picture, clearest, faint_frames
+   public :: draw_picture
 
    !> The arrow of a drive is a line of so many pieces; the last ones are its tip.
    integer, parameter :: arrow_pieces = 10, tip_pieces = 2

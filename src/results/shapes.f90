@@ -9,7 +9,7 @@ module shapes
    use svg, only: attribute
    implicit none
    private
-   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block, joint_radius
+   public :: element_t, shapes_of, color_of, link_color, pole_name, half_block
 
    !> One shape. Each place is the sum of `places` in the unit of length and `pixels`, both in the axes of `link`.
    type :: element_t

@@ -12,7 +12,7 @@ module rows
    use number_format, only: whole
    implicit none
    private
-   public :: finished_row_t, other_row_t, find_rows, word_worst, word_rss
+   public :: finished_row_t, find_rows, word_worst, word_rss
 
    !> A further row of a request: the effect of tolerances, or the row in another assembly.
    type :: other_row_t
