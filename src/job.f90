@@ -311,7 +311,7 @@ contains
          end if
          if (writers%asked(out_log) .and. m%variants == 0) call log_head(writers%files(out_log), m)
          if (writers%asked(out_table)) then
-            writers%table = new_table(a%now)
+            writers%table = new_table(a%now, .false.)
             call table_head(writers%files(out_table), writers%table)
          end if
          ! An output that takes nothing is known before anything is computed.

@@ -96,7 +96,7 @@ contains
       ! A name without an extension ends with the number.
       if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
       if (first < last) path = path(:dot - 1)//'-'//whole(i)//path(dot:)
-      there = identity_of(path=path)
+      there = identity_of(path)
       if (.not. (tries .and. there%device_or_pipe)) call open_output(outputs%files(out_table), path, failure)
       if (.not. allocated(failure)) call check_apart(outputs%files, options%deck, failure)
    end subroutine open_table

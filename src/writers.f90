@@ -94,8 +94,8 @@ contains
          writers%options%errors)
       lists = printing%lists .and. (due .or. has_words(set%now))
       if (lists .or. has_csv .or. writers%asked(out_table)) &
-         call find_rows(set%now, k, writers%asked(out_table) .or. allocated(printing%columns%columns), printing%rows, &
-            set%assemblies)
+         call find_rows(set%now, set%assemblies, k, writers%asked(out_table) .or. &
+            allocated(printing%columns%columns), printing%rows)
 
       if (lists) then
          if (printing%columns%is_only) then

@@ -68,37 +68,31 @@ module circuits
 contains
 
    !> Finds the circuits of a mechanism with one free drive; the others keep their values.
-   subroutine find_circuits(m, start, drive, found, first)
+   subroutine find_circuits(m, start, drive, first, found)
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
       type(motion_t), intent(in) :: start    !< at its first instant, known or not
       integer, intent(in) :: drive           !< number of the free drive
+      type(assemblies_t), intent(in) :: first   !< all of that instant
       type(circuits_t), intent(out) :: found
-      type(assemblies_t), intent(in), optional :: first   !< those of the first instant, if they are known
-      type(assemblies_t) :: all_of_them
       type(mechanism_t) :: held
       integer :: i
 
-      if (present(first)) then
-         all_of_them = first
-      else
-         call find_assemblies(m, start%t, all_of_them)
-      end if
       found%drive = drive
-      found%is_complete = all_of_them%is_known
+      found%is_complete = first%is_known
       allocate (found%list(0), found%branches(0), found%dead(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
       found%is_redundant = is_redundant(found%curve)
       if (found%is_redundant) return
-      do i = 1, size(all_of_them%list)
-         associate (size_of => maxval(abs(all_of_them%list(i)%position(:2, :)))/found%curve%closure%length)
+      do i = 1, size(first%list)
+         associate (size_of => maxval(abs(first%list(i)%position(:2, :)))/found%curve%closure%length)
             found%curve%far = max(found%curve%far, farther_than_seen*size_of)
          end associate
       end do
 
       held = held_at(m, start%t)
       if (start%known >= 0) call add_circuit(found, start%position, .false.)
-      do i = 1, size(all_of_them%list)
-         call add_circuit(found, all_of_them%list(i)%position, .false.)
+      do i = 1, size(first%list)
+         call add_circuit(found, first%list(i)%position, .false.)
       end do
       call search_whole_range(held, found)
       ! The run's own assembly has a row, even if its circuit cannot be followed.
@@ -108,7 +102,7 @@ contains
          call add_branches(found, held, i)
          call add_intersections(found, i)
       end do
-      call add_assemblies(found, all_of_them%list)
+      call add_assemblies(found, first%list)
    end subroutine find_circuits
 
    !> Adds the circuits through all assemblies at angles of each link that turns on a known circuit. The link is driven

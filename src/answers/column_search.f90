@@ -12,7 +12,7 @@ module column_search
    use masked_numbers, only: nothing_known
    use points, only: row_t, known_at
    use instant_centres, only: points_coincide
-   use set_analysis, only: set_analysis_t, rows_at
+   use set_analysis, only: set_analysis_t, rows_at, errors_unasked, errors_in_doubt
    use nodes, only: node_t, sample_t, joint_margin
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
    use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, record_velocity, add_interval, &
@@ -48,12 +48,12 @@ module column_search
 contains
 
    !> Finds the node of a mechanism at the last instant or at a time between the instants.
-   subroutine find_node(set, track, t, node, always)
+   subroutine find_node(set, track, t, effort, node)
       type(set_analysis_t), intent(inout) :: set
       type(track_t), intent(inout) :: track
       real(wp), intent(in) :: t              !< time
+      integer, intent(in) :: effort          !< errors_in_doubt, ...
       type(node_t), intent(inout) :: node
-      logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
       real(wp) :: amplification
       integer :: i
 
@@ -61,7 +61,7 @@ contains
       node%t = t
       node%is_known = .true.
       associate (rows => track%rows, error => track%error)
-         call rows_at(set, track%requests, t, rows, always, error, amplification)
+         call rows_at(set, track%requests, t, effort, rows, error, amplification)
          node%is_lost = any(rows%known < 0)
          do i = 1, size(track%coordinates)
             associate (sample => node%samples(i), k => track%coordinates(i)%column, row => track%coordinates(i)%row)
@@ -81,15 +81,15 @@ contains
    end subroutine find_node
 
    !> Finds the next node of a mechanism, and whether a number turns between the last three nodes.
-   subroutine find_next(extremes, set, part, t, always)
+   subroutine find_next(extremes, set, part, t, effort)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: part            !< number of the mechanism
       real(wp), intent(in) :: t              !< time of the node
-      logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
+      integer, intent(in) :: effort          !< errors_in_doubt, ...
 
       associate (track => extremes%tracks(part))
-         call find_node(set, track, t, track%nodes(track%filled + 1), always)
+         call find_node(set, track, t, effort, track%nodes(track%filled + 1))
          if (track%filled == 2) call look_for_extreme(track)
       end associate
    end subroutine find_next
@@ -181,11 +181,11 @@ contains
          if (track%turns) then
             call record_node(extremes, part, nodes(1), .true.)
             if (is_pair(track, nodes(1), nodes(2), nodes(3))) then
-               call search_part(extremes, set, part, nodes(1), nodes(3), nodes(2))
+               call search_part(extremes, set, part, nodes(1), nodes(2), nodes(3))
             else
-               call search_part(extremes, set, part, nodes(1), nodes(2))
+               call search_part(extremes, set, part, nodes(1), node_t(), nodes(2))
                call record_node(extremes, part, nodes(2), .true.)
-               call search_part(extremes, set, part, nodes(2), nodes(3))
+               call search_part(extremes, set, part, nodes(2), node_t(), nodes(3))
             end if
             call record_node(extremes, part, nodes(3), .true.)
          end if
@@ -208,7 +208,7 @@ contains
          if (track%filled == 0) return
          call record_node(extremes, part, nodes(1), .true.)
          if (track%filled == 1) return
-         call search_part(extremes, set, part, nodes(1), nodes(2))
+         call search_part(extremes, set, part, nodes(1), node_t(), nodes(2))
          call record_node(extremes, part, nodes(2), .true.)
          nodes(1) = nodes(2)
          track%filled = 1
@@ -328,12 +328,12 @@ contains
 
    !> Searches between two nodes of a mechanism, in halves if accelerations are not simple. If halving ends sooner, the
    !> interval is open.
-   recursive subroutine search_part(extremes, set, part, before, after, between)
+   recursive subroutine search_part(extremes, set, part, before, between, after)
       type(extremes_t), intent(inout) :: extremes
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: part            !< number of the mechanism
       type(node_t), intent(in) :: before, after   !< the two nodes
-      type(node_t), intent(in), optional :: between   !< a node in the middle, if there is one
+      type(node_t), intent(in) :: between    !< a node in the middle; without samples: there is none yet
       type(node_t) :: middle
       real(wp) :: shortest, jerk(2), noise(3, size(extremes%tracks(part)%coordinates))
       logical, dimension(size(extremes%tracks(part)%coordinates)) :: simple, has_kink
@@ -348,14 +348,14 @@ contains
             ! Near a joint there is nothing to be missed but the joint itself.
             if (length > 0.5_wp*extremes%step) &
                call add_interval(extremes%open, extremes%way, before%t, after%t, shortest)
-            if (present(between)) call record_node(extremes, part, between, .true.)
+            if (allocated(between%samples)) call record_node(extremes, part, between, .true.)
             return
          end if
 
-         if (present(between)) then
+         if (allocated(between%samples)) then
             middle = between
          else
-            call find_node(set, track, before%t + 0.5_wp*(after%t - before%t), middle, .false.)
+            call find_node(set, track, before%t + 0.5_wp*(after%t - before%t), errors_in_doubt, middle)
          end if
          if (.not. middle%is_known) then
             call add_interval(extremes%open, extremes%way, before%t, after%t, shortest)
@@ -381,9 +381,9 @@ contains
             call search_columns(extremes, set, part, before, middle, after, noise(3, :), has_kink)
          else
             track%halvings = track%halvings + 1
-            call search_part(extremes, set, part, before, middle)
+            call search_part(extremes, set, part, before, node_t(), middle)
             call record_node(extremes, part, middle, .false.)
-            call search_part(extremes, set, part, middle, after)
+            call search_part(extremes, set, part, middle, node_t(), after)
          end if
       end associate
    end subroutine search_part
@@ -395,7 +395,7 @@ contains
       type(coordinate_t), intent(in) :: one
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       type(row_t) :: row(1)
-      real(wp) :: t, ends(2)
+      real(wp) :: t, ends(2), error(3, 0:2, 1), amplification
       integer :: k
 
       jumps = before%meets .or. middle%meets .or. after%meets
@@ -404,7 +404,7 @@ contains
       ends = [before%t, after%t]
       do
          t = ends(1) + 0.5_wp*(ends(2) - ends(1))
-         call rows_at(set, [one%request], t, row)
+         call rows_at(set, [one%request], t, errors_unasked, row, error, amplification)
          if (row(1)%known < 2) return
          jumps = row(1)%weight <= equal_part
          if (jumps .or. abs(ends(2) - ends(1)) <= 4.0_wp*spacing(maxval(abs(ends)))) return

@@ -14,7 +14,7 @@
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
-   use set_analysis, only: set_analysis_t, apart_from_first
+   use set_analysis, only: set_analysis_t, apart_from_first, errors_in_doubt, errors_always
    use nodes, only: node_t, extreme_t, times_between, joint_margin
    use extremes, only: extremes_t, end_t, offer, badly_known, add_interval, settle_ratios
    use column_search, only: find_node, find_next, add_node, search_waiting
@@ -57,7 +57,7 @@ contains
       if (k > set%now%steps) return
       do c = 1, size(extremes%tracks)
          if (size(extremes%tracks(c)%coordinates) == 0) cycle
-         call find_next(extremes, set, c, set%now%motions(c)%t, .false.)
+         call find_next(extremes, set, c, set%now%motions(c)%t, errors_in_doubt)
          call search_instant(extremes, set, c, k, is_searched(extremes, set, c))
       end do
    end subroutine record_instant
@@ -226,7 +226,7 @@ contains
             nearest = min(nearest, abs(other - at%t)/(2*places**2))
             times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places
-               call find_node(set, extremes%tracks(part), times(i), nodes(i), .true.)
+               call find_node(set, extremes%tracks(part), times(i), errors_always, nodes(i))
                if (.not. nodes(i)%is_known) exit
             end do
             if (i <= places) cycle
@@ -274,7 +274,7 @@ contains
          logical, intent(in) :: always       !< errors are estimated even if no digit of a table is in doubt
 
          associate (track => extremes%tracks(part))
-            call find_next(extremes, set, part, t, always)
+            call find_next(extremes, set, part, t, merge(errors_always, errors_in_doubt, always))
             if (track%nodes(track%filled + 1)%is_known) then
                call add_node(extremes, set, part)
             else

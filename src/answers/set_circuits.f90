@@ -3,7 +3,7 @@ module set_circuits
    use kinds, only: wp
    use motion, only: diagnostic_t, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use assemblies, only: assemblies_t
+   use assemblies, only: assemblies_t, find_assemblies
    use circuit_trace, only: end_closed
    use circuits, only: circuits_t, turns_of, find_circuits
    use ranges, only: range_t, find_range, lower_end, upper_end
@@ -25,6 +25,7 @@ contains
       type(range_t), allocatable, intent(out) :: list(:)   !< (any number) by drives
       type(range_t) :: r
       type(circuits_t) :: found
+      type(assemblies_t) :: first
       integer :: c, i
 
       allocate (list(0))
@@ -35,7 +36,8 @@ contains
                r%part = c
                list = [list, r]
             else if (set%now%variants == 0) then
-               call find_circuits(set%now%parts(c), set%now%motions(c), i, found)
+               call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
+               call find_circuits(set%now%parts(c), set%now%motions(c), i, first, found)
                found%part = c
                if (found%is_complete .and. .not. found%are_more) call add_branch_ranges(found, list)
             end if
@@ -74,7 +76,7 @@ contains
    subroutine find_all_circuits(set, list)
       type(set_analysis_t), intent(in) :: set
       type(circuits_t), allocatable, intent(out) :: list(:)   !< (drives)
-      type(assemblies_t), allocatable :: first
+      type(assemblies_t) :: first
       integer :: c, i, n
 
       allocate (list(sum([(size(set%now%parts(c)%drives), c=1, set%now%count)])))
@@ -82,9 +84,12 @@ contains
       do c = 1, set%now%count
          do i = 1, size(set%now%parts(c)%drives)
             n = n + 1
-            ! Not allocated: they are not known.
-            if (allocated(set%assemblies)) first = set%assemblies(c)
-            call find_circuits(set%now%parts(c), set%now%motions(c), i, list(n), first)
+            if (allocated(set%assemblies)) then
+               first = set%assemblies(c)
+            else if (i == 1) then
+               call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
+            end if
+            call find_circuits(set%now%parts(c), set%now%motions(c), i, first, list(n))
             list(n)%part = c
          end do
       end do

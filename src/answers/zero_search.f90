@@ -5,7 +5,7 @@ module zero_search
    use kinds, only: wp
    use points, only: row_t, known_at
    use instant_centres, only: points_coincide
-   use set_analysis, only: set_analysis_t, rows_at
+   use set_analysis, only: set_analysis_t, rows_at, errors_unasked, errors_in_doubt, errors_always
    use nodes, only: sample_t
    implicit none
    private
@@ -99,16 +99,16 @@ contains
    end function guess
 
    !> Finds a column at a time.
-   subroutine evaluate_column(set, column, t, sample, with_errors)
+   subroutine evaluate_column(set, column, t, effort, sample)
       type(set_analysis_t), intent(inout) :: set
       type(column_t), intent(in) :: column
       real(wp), intent(in) :: t              !< time
+      integer, intent(in) :: effort          !< errors_unasked, ...
       type(sample_t), intent(out) :: sample
-      logical, intent(in), optional :: with_errors   !< errors are estimated even if no digit is in doubt
       type(row_t) :: row(1)
       real(wp) :: error(3, 0:2, 1), amplification
 
-      call rows_at(set, [column%request], t, row, with_errors, error, amplification)
+      call rows_at(set, [column%request], t, effort, row, error, amplification)
       sample = sample_t(t, row(1)%value(column%column, :), error(column%column, :, 1), known_at(row(1)), &
          row(1)%state == points_coincide, amplification)
    end subroutine evaluate_column
@@ -147,7 +147,7 @@ contains
             jumps = order == 0 .and. abs(g_end(2) - g_end(1)) > jump_part*column%noise(0)/noise_part
             exit
          end if
-         call evaluate_column(set, column, t, at)
+         call evaluate_column(set, column, t, errors_unasked, at)
 
          if (at%meets .and. order <= max(0, at%known + 1)) then
             ! A length whose points coincide turns there, and a direction jumps.
@@ -195,7 +195,7 @@ contains
 
       if (jumps) then
          ! A direction jumps if two points pass one another.
-         call evaluate_column(set, column, t, zero)
+         call evaluate_column(set, column, t, errors_unasked, zero)
          zero%t_error = abs(ends(2) - ends(1)) + epsilon(1.0_wp)*maxval(abs(ends))
          zero%error = 0.0_wp
          return
@@ -225,7 +225,7 @@ contains
          t = first
          ! An extreme so near an end is at the end.
          if (min(abs(t - before%t), abs(after%t - t)) <= end_part*abs(length)) return
-         call evaluate_column(set, column, t, at)
+         call evaluate_column(set, column, t, errors_unasked, at)
          if (at%known < 2) return
          value = at%f(2)
          slope = abs(on_curve(column, 4, t))
@@ -252,7 +252,7 @@ contains
                (column%range(2) - column%range(1))/step - 2.0_wp) - (t - column%range(1))/step
             t = t + u*step
             do k = -2, 2
-               call evaluate_column(set, column, t + k*step, at)
+               call evaluate_column(set, column, t + k*step, errors_unasked, at)
                if (at%known < 2) exit
                f(k) = at%f(2)
             end do
@@ -318,7 +318,7 @@ contains
 
       do i = 1, 2
          ! An estimate of errors takes nine solutions.
-         call evaluate_column(set, column, t, zero, i == 2)
+         call evaluate_column(set, column, t, merge(errors_always, errors_in_doubt, i == 2), zero)
          open = zero%error(order)
          if (.not. open > 0.0_wp) open = zero%amplification*(epsilon(1.0_wp)/noise_part)*column%noise(order)
          zero%t_error = abs(ends(2) - ends(1))

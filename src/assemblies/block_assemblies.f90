@@ -9,7 +9,7 @@ module block_assemblies
    use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
-   use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, rounding
+   use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, coarser_rounding
    use homotopy, only: follow_paths
    use block_bilinear, only: block_form_t, make_form, real_values
    implicit none
@@ -19,19 +19,19 @@ module block_assemblies
    !> Unknowns of a group at most: C(12, 6) = 924 paths.
    integer, parameter :: max_group = 6
    !> The two groups of a real solution are conjugate within this part.
-   real(dp), parameter :: conjugate_tolerance = 8.0_dp*sqrt(rounding)
+   real(dp), parameter :: conjugate_tolerance = 8.0_dp*sqrt(coarser_rounding)
    !> Newton's method moves a real solution by no more (rad, unit of the loop).
    real(dp), parameter :: max_newton_move = sqrt(conjugate_tolerance)
    !> Both for singular solutions, of which rounding leaves fewer digits.
    real(dp), parameter :: singular_conjugate_tolerance = sqrt(conjugate_tolerance)
    real(dp), parameter :: max_singular_move = 10.0_dp*singular_conjugate_tolerance
    !> Positions that differ by less are one (rad, unit of the loop), regular and singular ones.
-   real(dp), parameter :: same_position_tolerance = conjugate_tolerance
+   real(dp), parameter :: same_solution_tolerance = conjugate_tolerance
    real(dp), parameter :: same_singular_tolerance = max_singular_move
    !> Steps of Gauss and Newton towards a singular solution.
    integer, parameter :: singular_steps = 6
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
-   real(dp), parameter :: surplus_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(rounding))
+   real(dp), parameter :: surplus_tolerance = max(1.0e-6_dp, 16.0_dp*sqrt(coarser_rounding))
    !> Within a closing tolerance the paths end at solutions of some of the equations. Newton's method moves them by so
    !> many times that tolerance.
    real(dp), parameter :: moves_per_closing = 100.0_dp
@@ -158,7 +158,7 @@ contains
 
          place = values_of(b, i, s)
          do k = 1, size(found%x, 2)
-            if (apart(place, found%x(:, k)) <= merge(same_singular_tolerance, same_position_tolerance, &
+            if (apart(place, found%x(:, k)) <= merge(same_singular_tolerance, same_solution_tolerance, &
                ending%is_singular .or. c%singular)) return
          end do
          found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])

@@ -32,7 +32,7 @@ module homotopy
    real(dp), parameter :: max_prediction_error = 1.0e-3_dp
    !> Corrections below this part of z are rounding. On the way to an end, a correction below its root is the last,
    !> since Newton's method leaves the square: near a singular end rounding keeps corrections above a smaller part.
-   real(dp), parameter :: rounding_correction = 1.0e-11_dp
+   real(dp), parameter :: path_rounding = 1.0e-11_dp
    integer, parameter :: max_corrections = 4
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
    !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
@@ -378,7 +378,7 @@ contains
          is_done = now <= 0.5_dp*before
          if (.not. is_done) return
          point = point - r(:, 1)
-         is_done = now <= merge(sqrt(rounding_correction), rounding_correction, t > 0.0_dp)
+         is_done = now <= merge(sqrt(path_rounding), path_rounding, t > 0.0_dp)
          if (is_done) return
          before = now
       end do

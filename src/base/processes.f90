@@ -1,14 +1,12 @@
 !> Child processes, each a copy of this one, and the system's calls for them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_int64_t, c_long, c_size_t
-   use system_calls, only: notes_all, last_error
+   use system_calls, only: notes_all, signal_terminate, last_error
    implicit none
    private
    public :: processor_count, fork_process, interrupt_child, end_process
    public :: waitpid, no_hang, usleep, memfd_create, lseek, from_here, change_lock, locked, unlocked
 
-   !> SIGTERM.
-   integer(c_int), parameter :: signal_terminate = 15
    !> PR_SET_PDEATHSIG of prctl.
    integer(c_int), parameter :: when_parent_ends = 1
    !> Words of 64 bits in a set of processors, as sched_getaffinity takes it: the 1024 processors of the GNU library.

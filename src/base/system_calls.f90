@@ -8,7 +8,7 @@ module system_calls
       c_null_char, c_f_pointer, c_intptr_t, c_funptr, c_funloc, c_null_funptr
    implicit none
    private
-   public :: identity_t, identity_of, same_file
+   public :: signal_terminate, standard_input, identity_t, identity_of, identity_of_open, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, ftruncate, remove_file
    public :: isatty
    public :: watch_signals, notes_all, signal_received, end_by_signal, signal_pipe
@@ -26,6 +26,8 @@ module system_calls
    integer(c_int), parameter :: read_only = 0, write_only = 1
    !> ENOENT and EBADF.
    integer, parameter :: no_such_file = 2, closed_descriptor = 9
+   !> The descriptor of standard input.
+   integer(c_int), parameter :: standard_input = 0
    !> AT_FDCWD of statx: paths begin at the working directory. STATX_BASIC_STATS: the facts that stat has.
    integer(c_int), parameter :: from_working_directory = -100, basic_facts = int(z'7FF', c_int)
    !> AT_EMPTY_PATH: the descriptor itself. AT_SYMLINK_NOFOLLOW: a symbolic link itself.
@@ -142,20 +144,30 @@ module system_calls
 contains
 
    !> Gives the identity of a file. If there is no such file, the result is the default of its type.
-   type(identity_t) function identity_of(path, descriptor) result(id)
-      character(*), intent(in), optional :: path   !< of the file; symbolic links are followed
-      integer(c_int), intent(in), optional :: descriptor   !< instead: of a file that is open
+   type(identity_t) function identity_of(path) result(id)
+      character(*), intent(in) :: path       !< of the file; symbolic links are followed
       type(facts_t) :: facts
-      integer(c_int) :: status
 
-      if (present(path)) status = statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts)
-      if (present(descriptor)) status = statx(descriptor, c_null_char, empty_path, basic_facts, facts)
-      if (status /= 0) return
+      if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_from(facts)
+   end function identity_of
+
+   !> Gives the identity of a file that is open; the default of its type, if it is not.
+   type(identity_t) function identity_of_open(descriptor) result(id)
+      integer(c_int), intent(in) :: descriptor   !< of the file
+      type(facts_t) :: facts
+
+      if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_from(facts)
+   end function identity_of_open
+
+   !> Takes the identity of a file from what the system knows of it.
+   pure type(identity_t) function identity_from(facts) result(id)
+      type(facts_t), intent(in) :: facts
+
       id%device = facts%device
       id%inode = facts%inode
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular
       id%device_or_pipe = .not. (id%regular .or. iand(int(facts%mode), kind_bits) == kind_directory)
-   end function identity_of
+   end function identity_from
 
    !> Tells whether two are one regular file. A device, pipe or terminal may be used twice without harm.
    elemental logical function same_file(first, second)

@@ -4,7 +4,7 @@
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
-   use system_calls, only: identity_t, identity_of, same_file, open_to_write, &
+   use system_calls, only: standard_input, identity_t, identity_of, identity_of_open, same_file, open_to_write, &
       write_bytes, close_descriptor, ftruncate, remove_file, last_error, reason_of, closed_descriptor
    implicit none
    private
@@ -16,8 +16,8 @@ module text_output
    integer, parameter :: buffer_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
    integer, parameter :: turn_lost = -1
-   !> Descriptors that every process has.
-   integer(c_int), parameter :: standard_input = 0, standard_output = 1
+   !> The descriptor of standard output.
+   integer(c_int), parameter :: standard_output = 1
 
    !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
    type :: output_t
@@ -84,15 +84,15 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      read_from = identity_of(descriptor=standard_input)
+      read_from = identity_of_open(standard_input)
       name = 'THE DECK ON STANDARD INPUT'
       if (len(deck) > 0) then
-         read_from = identity_of(path=deck)
+         read_from = identity_of(deck)
          name = 'THE DECK '//deck
       end if
       do i = 1, size(list)
          if (.not. allocated(list(i)%buffer)) cycle
-         id(i) = identity_of(descriptor=list(i)%descriptor)
+         id(i) = identity_of_open(list(i)%descriptor)
          if (any(same_file(id(i), id(:i - 1)))) &
             call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
       end do
@@ -222,7 +222,7 @@ contains
       ! The old contents of the file go; devices and pipes have none.
       if (.not. (o%emptied .or. o%error /= 0)) then
          o%emptied = .true.
-         id = identity_of(descriptor=o%descriptor)
+         id = identity_of_open(o%descriptor)
          if (id%regular) then
             if (ftruncate(o%descriptor, 0_c_long) /= 0) o%error = last_error()
          end if

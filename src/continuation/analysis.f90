@@ -30,7 +30,7 @@
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
-   use structure, only: structure_t
+   use structure, only: structure_t, make_structure
    use drive_path, only: moving_drives, time_beside
    use motion, only: motion_t, add_diagnostics, forget_links, known_of, flag_none, flag_not_converged, flag_singular, &
       flag_overflow, flag_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
@@ -46,12 +46,13 @@ module analysis
    use change_point_passage, only: go_by_value, leave
    use strokes, only: find_length_limit, flag_strokes
    use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, &
-      step_stands, step_rests, begin_following, move_memory, begin_motion, measure_closure_error, continue_to, &
+      step_stands, step_rests, follow_structure, move_memory, begin_motion, measure_closure_error, continue_to, &
       accept_substep, revert, place_t, record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, &
       certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
-   public :: analysis_t, make_analysis, renew_analysis, advance, evaluate_at, restore_instant, redundancy_error
+   public :: analysis_t, make_analysis, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant, &
+      redundancy_error
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: creeping_part = 1.0e-3_wp
@@ -84,19 +85,29 @@ module analysis
 contains
 
    !> Makes the analysis of a mechanism ready for its first instant.
-   subroutine make_analysis(analysis, m, structure)
+   subroutine make_analysis(analysis, m)
       type(analysis_t), intent(out) :: analysis
       type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
-      type(structure_t), intent(inout), optional :: structure   !< of the mechanism: its blocks are taken over
+      type(structure_t) :: structure
+
+      call make_structure(m, structure)
+      call analyze_structure(analysis, m, structure)
+   end subroutine make_analysis
+
+   !> Makes the analysis of a mechanism whose structure is known ready for its first instant.
+   subroutine analyze_structure(analysis, m, structure)
+      type(analysis_t), intent(out) :: analysis
+      type(mechanism_t), intent(in) :: m                   !< with as many equations as unknowns
+      type(structure_t), intent(inout) :: structure        !< of the mechanism: blocks and geometry are taken over
 
       if (m%method == method_newton) then
-         call begin_following(analysis%following_t, m, structure)
+         call follow_structure(analysis%following_t, m, structure)
       else
-         call begin_following(analysis%following_t, for_blocks(m), structure)
+         call follow_structure(analysis%following_t, for_blocks(m), structure)
          allocate (analysis%dense)
          call make_dense(analysis%dense, m)
       end if
-   end subroutine make_analysis
+   end subroutine analyze_structure
 
    !> Makes an analysis by METHOD NEWTON ready for a variant with the same structure; of no use if that does not fit.
    subroutine renew_analysis(analysis, m, is_done)

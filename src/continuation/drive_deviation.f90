@@ -54,7 +54,7 @@ contains
       ! First and second derivatives, in radians or characteristic lengths; huge: no bound.
       largest = 0.0_wp
       do i = 1, size(p%unit)
-         b = bounds_of(m%drives(i), p%first, p%last)
+         b = bounds_of(m%drives(i), p%first, p%last, .false.)
          where (b%high(1:) >= huge(1.0_wp) .or. b%low(1:) <= -huge(1.0_wp))
             largest = huge(1.0_wp)
          elsewhere

@@ -27,8 +27,9 @@ module following
    use branch_switching, only: pass, is_short_and_right, branch_requests_t, new_branch_requests
    implicit none
    private
-   public :: following_t, step_record_t, begin_following, move_memory, begin_motion, solve_at, measure_closure_error, &
-      continue_to, accept_substep, revert, follow_from, place_t, record_checkpoint, restore, passed_of
+   public :: following_t, step_record_t, begin_following, follow_structure, move_memory, begin_motion, solve_at, &
+      measure_closure_error, continue_to, accept_substep, revert, follow_from, place_t, record_checkpoint, restore, &
+      passed_of
    public :: step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -126,21 +127,24 @@ module following
 
 contains
 
-   !> Makes a mechanism ready for its first instant. It takes over blocks and geometry of a structure, or makes them.
-   subroutine begin_following(following, m, structure)
+   !> Makes a mechanism ready for its first instant.
+   subroutine begin_following(following, m)
       type(following_t), intent(out) :: following
       type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(inout), optional :: structure   !< of the mechanism
-      type(structure_t) :: own
+      type(structure_t) :: structure
 
-      if (present(structure)) then
-         call move_alloc(structure%blocks, following%blocks)
-         call move_alloc(structure%geometry, following%geometry)
-      else
-         call make_structure(m, own)
-         call move_alloc(own%blocks, following%blocks)
-         call move_alloc(own%geometry, following%geometry)
-      end if
+      call make_structure(m, structure)
+      call follow_structure(following, m, structure)
+   end subroutine begin_following
+
+   !> Makes a mechanism whose structure is known ready for its first instant.
+   subroutine follow_structure(following, m, structure)
+      type(following_t), intent(out) :: following
+      type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(inout) :: structure   !< of the mechanism: its blocks and its geometry are taken over
+
+      call move_alloc(structure%blocks, following%blocks)
+      call move_alloc(structure%geometry, following%geometry)
       call select_solved_blocks(m, following%blocks, following%geometry)
       if (following%blocks%solvable) then
          following%work = new_workspace(following%blocks)
@@ -148,7 +152,7 @@ contains
          call assign_path(m, following%blocks, following%geometry, following%path)
       end if
       call begin_motion(following, m)
-   end subroutine begin_following
+   end subroutine follow_structure
 
    !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
    subroutine move_memory(old, new)

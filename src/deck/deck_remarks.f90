@@ -194,7 +194,7 @@ contains
       type(bounds_t) :: b
       real(wp) :: f(3), most
 
-      b = bounds_of(law, from, to)
+      b = bounds_of(law, from, to, .false.)
       most = max(-b%low(1), b%high(1))
       if (most < least .or. (rate >= least .and. most < 1.001_wp*rate)) return
       f = drive_motion(law, middle_of(from, to))

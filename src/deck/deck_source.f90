@@ -6,13 +6,11 @@ module deck_source
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use cards, only: card_t, card_columns
    use number_format, only: whole
-   use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of
+   use system_calls, only: standard_input, open_to_read, read_bytes, close_descriptor, last_error, reason_of
    implicit none
    private
    public :: source_t, open_source, source_of, next_card
 
-   !> The descriptor of standard input.
-   integer(c_int), parameter :: standard_input = 0
    !> Bytes that are read at once.
    integer, parameter :: read_length = 2**20
    !> The largest number of columns of a line. A longer line is no card: a source without an end, such as /dev/zero, is

@@ -9,7 +9,7 @@ module lane_runs
    use predictor, only: has_equal_steps
    use drive_deviation, only: judge_step
    use analysis, only: restore_instant
-   use set_analysis, only: set_analysis_t, advance_set, accept_state
+   use set_analysis, only: set_analysis_t, advance_set, accept_state, errors_in_doubt
    use column_search, only: find_next
    use extreme_search, only: is_searched, search_instant
    use answers, only: answers_t, new_answers, update_answers
@@ -259,7 +259,7 @@ contains
          end do
       end associate
       call accept_state(run%s, t, is_done)
-      if (is_done) call find_next(run%asked%extremes, run%s, 1, t, .false.)
+      if (is_done) call find_next(run%asked%extremes, run%s, 1, t, errors_in_doubt)
    end subroutine watch_lane
 
    !> Gives the analysis of a run the motions of its lane, for the next instants or for times between instants.

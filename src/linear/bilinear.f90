@@ -7,7 +7,7 @@ module bilinear
    implicit none
    private
    public :: bilinear_t, path_start_t, kept_start_t, path_end_t, ends_t, solve_quadratic, find_null_space, finiteness, &
-      infinity_level, rounding
+      infinity_level, coarser_rounding
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
    type :: bilinear_t
@@ -44,11 +44,11 @@ module bilinear
    end type ends_t
 
    !> Rounding of coefficients, which may be of another kind.
-   real(dp), parameter :: rounding = max(epsilon(1.0_dp), real(epsilon(1.0_wp), dp))
+   real(dp), parameter :: coarser_rounding = max(epsilon(1.0_dp), real(epsilon(1.0_wp), dp))
    !> A determinant, a discriminant or a row below this part of its terms is zero.
-   real(dp), parameter :: zero_part = 256.0_dp*rounding
+   real(dp), parameter :: zero_part = 256.0_dp*coarser_rounding
    !> Solutions nearer to infinity than this are there: no slide is a million times as long as its loop.
-   real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*rounding)
+   real(dp), parameter :: infinity_level = max(1.0e-6_dp, 64.0_dp*coarser_rounding)
 
 contains
 

@@ -64,9 +64,9 @@ contains
       real(wp), intent(in) :: p1, p2         !< parameters of the path in either order, in the deck's unit of time
 
       if (allocated(path%leg)) then
-         b = bounds_of(drive_t(polynomial=[path%leg(:, i), 0.0_wp]), p1, p2)
+         b = bounds_of(drive_t(polynomial=[path%leg(:, i), 0.0_wp]), p1, p2, .false.)
       else
-         b = bounds_of(path%laws(i), p1, p2)
+         b = bounds_of(path%laws(i), p1, p2, .false.)
       end if
    end function drive_bounds
 
@@ -110,7 +110,7 @@ contains
       if (allocated(path%leg) .or. count(moves) /= 1) return
       drive = findloc(moves, .true., dim=1)
       f = drive_motion(path%laws(drive), near)
-      b = bounds_of(path%laws(drive), min(span(1), near), max(span(2), near))
+      b = bounds_of(path%laws(drive), min(span(1), near), max(span(2), near), .false.)
       if (abs(f(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) drive = 0
    end function slow_drive
 

@@ -87,10 +87,10 @@ contains
 
    !> Finds the bounds of a law between two times. A table continues beyond its ends with its last pieces. If a power
    !> does not exist somewhere in the interval, there are no bounds.
-   pure function bounds_of(law, t1, t2, one_instant) result(b)
+   pure function bounds_of(law, t1, t2, is_instant) result(b)
       type(drive_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2         !< times in either order
-      logical, intent(in), optional :: one_instant   !< one instant and its roundings: jumps as in `drive_motion`
+      logical, intent(in) :: is_instant      !< one instant and its roundings: jumps as in `drive_motion`
       type(bounds_t) :: b, of_term
       real(wp) :: from, to, times(3)
       integer :: i, k
@@ -120,7 +120,7 @@ contains
             case (term_table)
                of_term = table_bounds(term%table, from, to)
             case default
-               of_term = rise_bounds(term, from, to, one_instant)
+               of_term = rise_bounds(term, from, to, is_instant)
             end select
          end associate
 
@@ -473,11 +473,11 @@ contains
    end function rise_sizes
 
    !> Finds the bounds of a rise: its values at both ends, and at the places in between at which any law has an extreme
-   !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
-   pure function rise_bounds(term, from, to, one_instant) result(b)
+   !> of a derivative. At a joint an acceleration may have two values, but not at one instant.
+   pure function rise_bounds(term, from, to, is_instant) result(b)
       type(term_t), intent(in) :: term
       real(wp), intent(in) :: from, to       !< times in their order
-      logical, intent(in), optional :: one_instant !< the interval is one instant
+      logical, intent(in) :: is_instant      !< the interval is one instant
       type(bounds_t) :: b
       !> The extremes of the acceleration of the 3-4-5 polynomial are as far from the middle: at (3 -+ sqrt(3))/6.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
@@ -492,7 +492,7 @@ contains
       u2 = (to - term%r(1))/term%r(2)
       call widen_by_rise(b, term, u1, u1 + width)
       call widen_by_rise(b, term, u2, u2 + width)
-      if (present(one_instant)) return
+      if (is_instant) return
       do i = 1, size(extreme_places)
          if (extreme_places(i) < u1 - width .or. extreme_places(i) > u2 + width) cycle
          call widen_by_rise(b, term, extreme_places(i), extreme_places(i) - 0.1_wp)
@@ -572,7 +572,7 @@ contains
       width = rest_part*maxval(abs([t1, t2, joints_of(law)]))
       if (.not. width > 0.0_wp) width = 1.0_wp
       from = min(t1, t2) + width
-      b = bounds_of(law, from, max(max(t1, t2) - width, from + width))
+      b = bounds_of(law, from, max(max(t1, t2) - width, from + width), .false.)
       is_at_rest = b%low(1) >= 0.0_wp .and. b%high(1) <= 0.0_wp
    end function is_at_rest
 

@@ -86,7 +86,7 @@ contains
       call find_place(b, x, state, q, estimator%place)
       call make_ready(estimator%perturbed, 0, m, x, i)
       estimator%place%room = huge(1.0_wp)
-      call find_rows(middle)
+      call find_rows(middle, m)
       ! A change that enlarges the closure error of redundant equations jams, even within a closing tolerance.
       estimator%place%room = inconsistent_level + more_open*estimator%place%opened
 
@@ -104,8 +104,8 @@ contains
             down = middle
             do k = 1, halvings
                h = step*0.5_wp**(k - 1)
-               if (k > 1) call find_rows(up, one, h)
-               if (side == 0) call find_rows(down, one, -h)
+               if (k > 1) call find_changed_rows(up, one, h)
+               if (side == 0) call find_changed_rows(down, one, -h)
                call record_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, &
                   merge(of_both_sides(k), of_one_side(k), side == 0))
             end do
@@ -140,20 +140,30 @@ contains
          end do
       end subroutine record_slopes
 
-      !> Finds the rows with one number changed, or with none.
-      subroutine find_rows(rows, one, by)
+      !> Finds the rows of a mechanism of the same structure.
+      subroutine find_rows(rows, changed)
          type(row_t), intent(inout) :: rows(:)   !< (requests)
-         type(tolerance_t), intent(in), optional :: one   !< of the number that is changed
-         real(wp), intent(in), optional :: by   !< its change, in the unit of the number; there if `one` is
+         type(mechanism_t), intent(in) :: changed
 
          associate (p => estimator%perturbed(0))
-            p%m = m
-            if (present(one)) call change_parameter(p%m, one%parameter_t, parameter_value(m, one%parameter_t) + by)
+            p%m = changed
             call assign_changes(b, p, by_roundings=.false.)
             call rows_with(b, p, q%t, estimator%place, rows)
          end associate
-         if (present(one)) found%jams(d) = found%jams(d) .or. estimator%place%jams
       end subroutine find_rows
+
+      !> Finds the rows with number `d` changed.
+      subroutine find_changed_rows(rows, one, by)
+         type(row_t), intent(inout) :: rows(:)   !< (requests)
+         type(tolerance_t), intent(in) :: one   !< of the number
+         real(wp), intent(in) :: by          !< its change, in its unit
+         type(mechanism_t) :: changed
+
+         changed = m
+         call change_parameter(changed, one%parameter_t, parameter_value(m, one%parameter_t) + by)
+         call find_rows(rows, changed)
+         found%jams(d) = found%jams(d) .or. estimator%place%jams
+      end subroutine find_changed_rows
 
       !> Finds the step by which a number is changed, with the rows `up` there.
       subroutine find_step(one, side, step)
@@ -166,7 +176,7 @@ contains
          usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, estimator%sizes)
          step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
-            call find_rows(up, one, step)
+            call find_changed_rows(up, one, step)
             ! On a dead point only links that drives move are known, and there is no distance to it.
             if (estimator%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
             too_far = max(estimator%place%change/max_unknown_change, estimator%place%ratio/max_ratio, too_near/2.0_wp)

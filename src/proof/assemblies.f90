@@ -27,8 +27,6 @@ module assemblies
 
    !> A search ends after so many.
    integer, parameter :: max_assemblies = 1000
-   !> Distances that differ by less than this part are equal: rounding shall not choose.
-   real(wp), parameter :: equal_distance_part = sqrt(epsilon(1.0_wp))
    !> A cylinder shorter than this part of the characteristic length may have the length 0, whatever is proved.
    real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
 
@@ -242,7 +240,7 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%distance = sqrt(sum(squared_distances(one%position, following%guess%links, following%geometry%span)))
-      k = count(assemblies%list%distance <= one%distance*(1.0_wp + equal_distance_part))
+      k = count(.not. is_nearer(one%distance, assemblies%list%distance))
       assemblies%list = [assemblies%list(:k), one, assemblies%list(k + 1:)]
    end subroutine record_assembly
 end module assemblies

@@ -93,7 +93,7 @@ contains
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       placed%u(:) = unknown_t()
       do i = 1, size(path%laws)
-         law = bounds_of(path%laws(i), s%t - time_error*abs(s%t), s%t + time_error*abs(s%t), one_instant=.true.)
+         law = bounds_of(path%laws(i), s%t - time_error*abs(s%t), s%t + time_error*abs(s%t), .true.)
          associate (value => s%drive_value(:, i), unit => path%unit(i))
             placed%drive(:, i)%mid = value
             placed%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &
@@ -150,7 +150,7 @@ contains
          placed%open(0, block%first_row:block%last_row) = w%open
          placed%open(1, block%first_row:block%last_row) = top(w%v)
 
-         call find_ball(b, numbers, i, placed%ball_state_t, w, radius)
+         call find_ball(b, numbers, i, placed%ball_state_t, w, -1.0_wp, radius)
          is_proved = radius >= 0.0_wp
          if (.not. is_proved) return
          if (size(w%r) > size(own)) placed%closure_error = max(placed%closure_error, maxval(top(w%r)))
@@ -229,15 +229,15 @@ contains
 
    !> Finds a ball in which a block has exactly one solution, about its unknowns. The unknowns of the state and the
    !> equations in `work` become those in this ball or a larger one.
-   subroutine find_ball(b, numbers, i, balls, work, radius, others)
+   subroutine find_ball(b, numbers, i, balls, work, others, radius)
       type(blocks_t), intent(in) :: b
       type(ball_numbers_t), intent(in) :: numbers
       integer, intent(in) :: i               !< number of the block
       type(ball_state_t), intent(inout) :: balls   !< the state at which the block was contracted
       type(block_work_t), intent(inout) :: work   !< its equations are no larger than work%open
+      !> If it is 0 or more, work%v becomes the effect of these errors on the equations.
+      real(wp), intent(in) :: others         !< bound of the errors of earlier blocks, rad or unit of the block
       real(wp), intent(out) :: radius        !< rad or unit of the block; -1: no ball is proved
-      !> If present, work%v becomes the effect of these errors on the equations.
-      real(wp), intent(in), optional :: others   !< bound of the errors of earlier blocks, rad or unit of the block
       real(wp) :: eta, z1, z2, rate, centre(size(work%x))
       integer :: tries, k
 
@@ -246,7 +246,7 @@ contains
       ! A NaN lies in no ball.
       if (.not. (all(work%x <= 1.0_wp) .and. all(work%at_centre <= max_rate))) return
       eta = max(0.0_wp, maxval(work%x))
-      if (present(others)) eta = eta + others
+      eta = eta + max(0.0_wp, others)
       z1 = max(0.0_wp, maxval(work%at_centre))
       z2 = 0.0_wp
       do k = 1, size(work%x)
@@ -263,7 +263,7 @@ contains
          if (.not. all(work%off <= max_rate)) exit
 
          rate = max(0.0_wp, maxval(work%off))
-         if (present(others)) then
+         if (others >= 0.0_wp) then
             call apply(size(work%r), size(work%x), work%inverse, (work%open + top(work%v))*room, work%x)
             if (.not. all(work%x <= 1.0_wp)) exit
             eta = max(0.0_wp, maxval(work%x))

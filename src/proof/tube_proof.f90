@@ -123,7 +123,7 @@ contains
          earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)
          unbounded(0) = .false.
          do i = 1, size(path%laws)
-            law = bounds_of(path%laws(i), earliest, max(from%t, to%t) + late)
+            law = bounds_of(path%laws(i), earliest, max(from%t, to%t) + late, .false.)
             unbounded(i) = max(abs(law%low(2)), abs(law%high(2))) >= huge(1.0_wp)
             if (unbounded(i)) cycle
             c = cubic(h, from%drive(:1, i)%mid, to%drive(:1, i)%mid)
@@ -161,7 +161,7 @@ contains
          do k = 1, size(w%open)
             w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
          end do
-         call find_ball(b, numbers, i, tube%balls, w, radius, maxval(tube%radius))
+         call find_ball(b, numbers, i, tube%balls, w, maxval(tube%radius), radius)
       end subroutine prove_block
    end subroutine prove_tube
 

@@ -25,6 +25,7 @@ module csv
    use name_table, only: name_table_t, store_name, find_name
    use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
+   use extremes, only: requested_rows
    use rows, only: finished_row_t
    use table, only: add_name, add_number
    use text_output, only: output_t, put, add, replaced
@@ -190,10 +191,10 @@ contains
    end subroutine csv_instant
 
    !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
-   !> the rows of PRINT.
-   function new_table(set, chosen) result(t)
+   !> the rows of PRINT. Or those of its extremes: of rows with EXTREMES cards, the numbers that are sought.
+   function new_table(set, of_extremes) result(t)
       class(set_t), intent(in) :: set
-      integer, intent(in), optional :: chosen(:)   !< instead, these rows, with the numbers whose extremes are asked for
+      logical, intent(in) :: of_extremes     !< the table has extremes
       type(table_t) :: t
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
@@ -210,8 +211,8 @@ contains
       requests = requests_of(set)
       rows = [(i, i=1, size(set%rows))]
       form = [(row_form(set, i), i=1, size(set%rows))]
-      if (present(chosen)) then
-         rows = chosen
+      if (of_extremes) then
+         rows = requested_rows(set)
       else if (allocated(set%columns)) then
          rows = set%columns%request
       else
@@ -229,7 +230,7 @@ contains
       allocate (t%columns(n))
 
       n = 0
-      if (allocated(set%columns) .and. .not. present(chosen)) then
+      if (allocated(set%columns) .and. .not. of_extremes) then
          do i = 1, size(set%columns)
             associate (one => set%columns(i))
                call add_column(one%request, column_at(form(one%request), one%at(1), one%at(2)))
@@ -242,7 +243,7 @@ contains
                do j = forms(form(rows(i)))%first, forms(form(rows(i)))%last
                   associate (column => columns_of_rows(j))
                      if (column%word == '' .or. column%order /= k) cycle
-                     if (present(chosen) .and. .not. requests(rows(i))%sought(column%at(1), column%at(2))) cycle
+                     if (of_extremes .and. .not. requests(rows(i))%sought(column%at(1), column%at(2))) cycle
                   end associate
                   call add_column(rows(i), j)
                end do

@@ -13,7 +13,7 @@ module variant_rows
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use listing_layout, only: layout_t, angle_unit, column_name, column_unit, row_title
    use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
-   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, requested_rows, strokes_of
+   use extremes, only: coordinate_t, strokes_t, least, greatest, outward, strokes_of
    use extremes_table, only: extreme_words, ratio_format
    use ranges, only: lower_end, upper_end
    use answers, only: answers_t
@@ -152,7 +152,7 @@ contains
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
          character(:), allocatable :: word
 
-         s%extremes = new_table(set, requested_rows(set))
+         s%extremes = new_table(set, .true.)
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
                request = request_of(set, column%request)

@@ -39,12 +39,12 @@ contains
 
    !> Finds the rows of an instant, and which of them are printed. Rows that are not printed keep their old values,
    !> unless all are wanted. Errors and sensitivities are as `sample_set` has left them.
-   subroutine find_rows(motions, step, all_of_them, rows, assemblies)
+   subroutine find_rows(motions, assemblies, step, all_of_them, rows)
       type(set_motion_t), intent(in) :: motions   !< at the instant
+      type(assemblies_t), allocatable, intent(in) :: assemblies(:)   !< (parts) at the first instant, if asked for
       integer, intent(in) :: step            !< the number of the instant, from 0
       logical, intent(in) :: all_of_them     !< also those that are not printed at this instant
       type(finished_row_t), allocatable, intent(inout) :: rows(:)   !< (requests of the set)
-      type(assemblies_t), intent(in), optional :: assemblies(:)     !< (parts) at the first instant, if asked for
       integer :: i
 
       if (.not. allocated(rows)) allocate (rows(size(motions%rows)))
@@ -71,7 +71,7 @@ contains
                if (errors%asked) row%error = row_error(m, errors, motions%motions(c), n)
 
                if (allocated(row%others)) deallocate (row%others)
-               if (.not. (allocated(m%tolerances) .or. (present(assemblies) .and. step == 0))) cycle
+               if (.not. (allocated(m%tolerances) .or. (allocated(assemblies) .and. step == 0))) cycle
                ! Rows with three lines in the CSV have no others, and ratios have none.
                if (kinds_of_rows(row%kind)%rows == 1 .and. .not. is_ratio(row%form)) &
                   call find_others(row, motions, i, step, assemblies)
@@ -102,7 +102,7 @@ contains
       type(set_motion_t), intent(in) :: motions   !< at the instant
       integer, intent(in) :: i               !< its number among the requests of the set
       integer, intent(in) :: step            !< the number of the instant, from 0
-      type(assemblies_t), intent(in), optional :: assemblies(:)   !< (parts)
+      type(assemblies_t), allocatable, intent(in) :: assemblies(:)   !< (parts) as `find_rows`
       type(motion_t) :: q
       integer :: k
 
@@ -122,7 +122,7 @@ contains
             end associate
          end if
 
-         if (.not. present(assemblies) .or. step > 0) return
+         if (.not. allocated(assemblies) .or. step > 0) return
          q = new_motion(size(motions%parts(c)%links))
          q%known = 0
          q%origin = motions%motions(c)%origin

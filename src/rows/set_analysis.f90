@@ -6,7 +6,7 @@ module set_analysis
       measure_line
    use scales, only: characteristic_length
    use plane_vectors, only: pi
-   use structure, only: structure_report_t
+   use structure, only: structure_report_t, find_structure
    use following, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use significance_check, only: max_amplification, find_amplification
@@ -20,7 +20,7 @@ module set_analysis
    use separations, only: motions_apart
    use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, make_analysis, renew_analysis, advance, evaluate_at, restore_instant, &
+   use analysis, only: analysis_t, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant, &
       redundancy_error
    use convergence, only: inconsistent_level
    implicit none
@@ -28,6 +28,7 @@ module set_analysis
    public :: set_analysis_t, make_set_analysis, begin_analysis, foresee_closure, renew_set_analysis, advance_set, &
       accept_state, rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
       set_closing_diagnostics
+   public :: errors_unasked, errors_in_doubt, errors_always
 
    !> The angles from which measures go on between the instants of TIME, if extremes are searched for.
    type :: path_t
@@ -37,6 +38,11 @@ module set_analysis
    !> A LINE that turns by more than this (rad) from one instant to the next may have turned the other way: 120
    !> degrees, but for rounding.
    real(wp), parameter :: largest_turn = 2.0_wp*pi/3.0_wp + 1.0e-9_wp
+
+   !> Whether errors of rows are estimated: not, if a digit of a table is in doubt, always.
+   enum, bind(c)
+      enumerator :: errors_unasked, errors_in_doubt, errors_always
+   end enum
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -59,19 +65,20 @@ contains
 
    !> Makes the analysis of a set, ready for its first instant. If all assemblies are asked for, it begins in the
    !> nearest.
-   subroutine make_set_analysis(m, set, structure_report)
+   subroutine make_set_analysis(m, set)
       type(mechanism_t), intent(in) :: m     !< the set; its equations are as many as its unknowns
       type(set_analysis_t), intent(out) :: set
-      type(structure_report_t), intent(inout), optional :: structure_report   !< its structure, which is given up
+      type(structure_report_t) :: structure_report
 
+      structure_report = find_structure(m)
       call new_set_motion(m, set%now, structure_report)
       call begin_analysis(set, structure_report)
    end subroutine make_set_analysis
 
-   !> Begins the analysis of a set that is divided into its mechanisms. Without findings, its structure is found.
+   !> Begins the analysis of a set that is divided into its mechanisms.
    subroutine begin_analysis(set, structure_report)
       type(set_analysis_t), intent(inout) :: set   !< set%now is divided
-      type(structure_report_t), intent(inout), optional :: structure_report   !< its structure, which is given up
+      type(structure_report_t), intent(inout) :: structure_report   !< its structure, which is given up
       integer :: c
 
       associate (n => set%now%count)
@@ -84,11 +91,7 @@ contains
       if (set%now%assemblies) allocate (set%assemblies(set%now%count))
       do c = 1, set%now%count
          if (set%now%assemblies) call find_nearest(set%now%parts(c), instant(set%now, 0), set%assemblies(c))
-         if (present(structure_report)) then
-            call make_analysis(set%list(c), set%now%parts(c), structure_report%structures(c))
-         else
-            call make_analysis(set%list(c), set%now%parts(c))
-         end if
+         call analyze_structure(set%list(c), set%now%parts(c), structure_report%structures(c))
          call make_estimator(set%estimators(c), set%now%parts(c))
       end do
       call begin_paths(set)
@@ -281,24 +284,23 @@ contains
    end subroutine report_surplus_drives
 
    !> Finds the rows of requests of a set at its last instant, or at a time between the instants. Nothing else changes.
-   subroutine rows_at(set, list, t, rows, always, error, amplification)
+   subroutine rows_at(set, list, t, effort, rows, error, amplification)
       type(set_analysis_t), intent(inout) :: set
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
+      integer, intent(in) :: effort          !< errors_unasked, ...
       type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
-      logical, intent(in), optional :: always   !< errors are estimated even if no digit of a table is in doubt
-      !> Without `always` nothing is estimated, and both are 0.
-      real(wp), intent(out), optional :: error(3, 0:2, size(list))   !< in the deck's units and rad
-      real(wp), intent(out), optional :: amplification   !< the factor by which roundings grow
+      real(wp), intent(out) :: error(3, 0:2, size(list))   !< in the deck's units and rad; 0 if nothing is estimated
+      real(wp), intent(out) :: amplification   !< the factor by which roundings grow; 0 if nothing is estimated
       integer :: i
 
-      if (present(error)) error = 0.0_wp
-      if (present(amplification)) amplification = 0.0_wp
+      error = 0.0_wp
+      amplification = 0.0_wp
       if (set%is_in_lane .and. .not. abs(t - set%now%motions(1)%t) > 0.0_wp) then
          do i = 1, size(list)
             call find_row_in_set(set%now, list(i), rows(i))
          end do
-         if (present(amplification)) amplification = set%amplification
+         amplification = set%amplification
       else
          call find_by_analysis()
       end if
@@ -351,10 +353,10 @@ contains
             do i = 1, size(list)
                call find_row(own, q, own%requests(set%now%rows(list(i))%number), rows(i))
             end do
-            if (.not. present(always)) return
-            call estimate_errors(set%estimators(part), own, a%blocks, a%geometry, a%state, q, always, .false., estimate)
-            if (present(amplification)) amplification = merge(max_amplification, estimate%amplification, &
-               estimate%may_lose_digits)
+            if (effort == errors_unasked) return
+            call estimate_errors(set%estimators(part), own, a%blocks, a%geometry, a%state, q, &
+               effort == errors_always, .false., estimate)
+            amplification = merge(max_amplification, estimate%amplification, estimate%may_lose_digits)
             if (.not. estimate%taken) return
             do i = 1, size(list)
                error(:, :, i) = estimate_of(rows(i), own, estimate, set%now%rows(list(i))%number)

@@ -6,7 +6,7 @@ module set_motion
    use motion, only: motion_t, new_motion, flag_none
    use independent, only: set_t, divide, request_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
-   use structure, only: structure_report_t, structure_t, make_structure
+   use structure, only: structure_report_t
    use blocks, only: blocks_t, geometry_t, chain_t, largest_known
    use block_state, only: state_t, new_state, set_direction
    use block_solver, only: solve_explicit
@@ -35,14 +35,10 @@ contains
    subroutine new_set_motion(m, motions, structure_report)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: motions
-      type(structure_report_t), intent(inout), optional :: structure_report   !< they give up their set if it is divided
-      type(structure_t) :: structure
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which it gives up if that is divided
       integer :: c
-      logical :: is_divided
 
-      is_divided = .false.
-      if (present(structure_report)) is_divided = allocated(structure_report%set)
-      if (is_divided) then
+      if (allocated(structure_report%set)) then
          motions%set_t = structure_report%set
          deallocate (structure_report%set)
       else
@@ -56,13 +52,8 @@ contains
       do c = 1, motions%count
          motions%motions(c) = new_motion(size(motions%parts(c)%links))
          if (all(motions%parts(c)%requests%drive == 0)) cycle
-         if (present(structure_report)) then
-            call leave_out_unmoved(motions%parts(c), structure_report%structures(c)%blocks, &
-               structure_report%structures(c)%geometry)
-         else
-            call make_structure(motions%parts(c), structure)
-            call leave_out_unmoved(motions%parts(c), structure%blocks, structure%geometry)
-         end if
+         call leave_out_unmoved(motions%parts(c), structure_report%structures(c)%blocks, &
+            structure_report%structures(c)%geometry)
       end do
 
       if (allocated(motions%columns)) motions%columns = pack(motions%columns, &

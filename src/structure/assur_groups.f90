@@ -158,7 +158,7 @@ contains
       call match(closure%incidence, unknown_of, equation_of)
       over = overdetermined(closure%incidence, unknown_of, equation_of)
       waits = waiting(m, closure, equation_of, over)
-      call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
+      call find_blocks(waits, [(i, i=1, size(m%links))], [(.false., i=1, size(m%links))], first, member)
       of_link = member
       do i = 1, size(first) - 1
          of_link(member(first(i):first(i + 1) - 1)) = i

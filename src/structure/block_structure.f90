@@ -69,7 +69,7 @@ contains
       if (.not. b%solvable) return
 
       over = overdetermined(g, unknown_of, equation_of)
-      call find_blocks(g, equation_of, first, member, over)
+      call find_blocks(g, equation_of, over, first, member)
       ! The block of the equations that are too many comes first: it needs nothing of the others.
       if (b%redundant > 0) then
          rows = pack([(i, i=1, size(over))], over)

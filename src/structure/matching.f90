@@ -102,19 +102,18 @@ contains
    !> Finds the blocks of a perfect matching. Equations member(first(k)), ..., member(first(k + 1) - 1) are block k,
    !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. Without equations there
    !> is no block.
-   subroutine find_blocks(incidence, equation_of, first, member, skip)
+   subroutine find_blocks(incidence, equation_of, skip, first, member)
       type(incidence_t), intent(in) :: incidence
       integer, intent(in) :: equation_of(:)  !< (unknowns) the equation matched with each
+      logical, intent(in) :: skip(:)         !< (equations) the equation belongs to no block
       integer, allocatable, intent(out) :: first(:)    !< (blocks + 1) where each block begins in `member`
       integer, allocatable, intent(out) :: member(:)   !< (equations) their numbers, by block in solving order
-      logical, intent(in), optional :: skip(:)   !< (equations) the equation belongs to no block
       integer, parameter :: done = huge(1)
       integer :: number(incidence%equations), low(incidence%equations), path(incidence%equations), &
          next(incidence%equations)
       integer :: stack(incidence%equations), counter, depth, top, blocks, members, root, e, other
 
-      number = 0
-      if (present(skip)) number = merge(done, 0, skip)
+      number = merge(done, 0, skip)
       counter = 0
       top = 0
       blocks = 0

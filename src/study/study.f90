@@ -8,7 +8,7 @@ module study
    use mechanism, only: mechanism_t, request_t, request_pair, method_newton, method_dense, method_matrix, &
       method_words, own_predictor, instant_count, instant
    use independent, only: request_of
-   use structure, only: structure_report_t, check_structure
+   use structure, only: structure_report_t, find_structure, check_structure
    use deck, only: read_deck
    use points, only: is_due
    use columns, only: cell_of, cell_number, of_angle
@@ -287,7 +287,7 @@ contains
 
          if (.not. truth%due(1 + k)) return
          if (.not. truth%is_reference) call sample_set(a, .true.)
-         call find_rows(a%now, k, .true., rows)
+         call find_rows(a%now, a%assemblies, k, .true., rows)
          do i = 1, size(truth%table%columns)
             associate (c => truth%table%columns(i), row => rows(truth%table%columns(i)%request))
                if (cell_of(c%row_column_t, row%known, row%state) /= cell_number) cycle
@@ -315,15 +315,17 @@ contains
       integer, intent(in) :: sets            !< how many sets the deck has
       character(*), intent(in) :: path       !< the file of the deck
       type(truth_t), intent(out) :: truth
+      type(structure_report_t) :: structure_report
       type(set_motion_t) :: s
       type(request_t), allocatable :: requests(:)
       real(qp) :: before(1 + size(m%drives))     ! the time, and values of drives
       integer :: i, k, unit, status
 
-      call new_set_motion(m, s)
+      structure_report = find_structure(m)
+      call new_set_motion(m, s, structure_report)
       requests = [(request_of(s, i), i=1, size(s%rows))]
       truth%due = [(any([(is_due(s, requests(i), k), i=1, size(requests))]), k=0, last)]
-      truth%table = new_table(s)
+      truth%table = new_table(s, .false.)
       truth%compared = min(last + 1, max(1, max_compared/max(1, size(truth%table%columns))))
       call open_reference(path, whole(m%set_number)//'/'//whole(sets), unit)
       if (unit == 0) return

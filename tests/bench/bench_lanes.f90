@@ -3,8 +3,6 @@
 module bench_lanes
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use structure, only: structure_report_t, check_structure
-   use failures, only: failure_t
    use set_analysis, only: make_set_analysis
    use lane_runs, only: lane_run_t, begin_run, run_lanes, lane_count
    use lane_state, only: lanes_t
@@ -66,8 +64,6 @@ contains
       type(scene_t), intent(in) :: s
       logical, intent(in) :: extremes
       type(mechanism_t) :: m(1)
-      type(structure_report_t), allocatable :: structure_report(:)
-      type(failure_t), allocatable :: failure
       type(lane_run_t), allocatable :: runs(:)
       type(lanes_t) :: lanes
       integer :: i
@@ -79,9 +75,8 @@ contains
       m(1)%at = [real(wp) ::]
       m(1)%requests%extremes = extremes
       do i = 1, lane_count
-         call check_structure(m, structure_report, failure)
          runs(i)%m = m(1)
-         call make_set_analysis(runs(i)%m, runs(i)%s, structure_report(1))
+         call make_set_analysis(runs(i)%m, runs(i)%s)
          call begin_run(runs(i))
       end do
       time = seconds()

@@ -7,6 +7,7 @@ program circuits_by_chance
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuit_trace, only: end_closed
+   use assemblies, only: assemblies_t, find_assemblies
    use circuits, only: circuits_t, turns_of, find_circuits
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
@@ -150,6 +151,7 @@ contains
       type(six_bar_t) :: b
       type(mechanism_t) :: m
       type(branches_t) :: expected
+      type(assemblies_t) :: first
       type(circuits_t) :: found
       type(set_analysis_t) :: s
       real(wp) :: phi
@@ -168,7 +170,8 @@ contains
       m = mechanism_of(b, phi, choice)
       call make_set_analysis(m, s)
       call advance_set(s, 0.0_wp)
-      call find_circuits(m, s%now%motions(1), 1, found)
+      call find_assemblies(m, s%now%motions(1)%t, first)
+      call find_circuits(m, s%now%motions(1), 1, first, found)
       ok = .true.
       ! Between two of the oracle's angles.
       if (any([(found%branches(i)%range(2) - found%branches(i)%range(1) < too_narrow, i=1, size(found%branches))])) return
@@ -191,11 +194,13 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(mechanism_t) :: other
+      type(assemblies_t) :: first
       type(circuits_t) :: found
 
       other = m
       other%drives = [angle_drive(6, s%now%motions(1)%position(3, 6), 1.0_wp, 0.0_wp)]
-      call find_circuits(other, s%now%motions(1), 1, found)
+      call find_assemblies(other, s%now%motions(1)%t, first)
+      call find_circuits(other, s%now%motions(1), 1, first, found)
       n = size(found%list)
    end function circuits_from_output
 
@@ -266,13 +271,15 @@ contains
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: ranges(:, :)
       type(set_analysis_t) :: s
+      type(assemblies_t) :: first
       type(circuits_t) :: found
       logical :: taken(size(ranges, 2))
       integer :: i, k
 
       call make_set_analysis(m, s)
       call advance_set(s, 0.0_wp)
-      call find_circuits(m, s%now%motions(1), 1, found)
+      call find_assemblies(m, s%now%motions(1)%t, first)
+      call find_circuits(m, s%now%motions(1), 1, first, found)
       taken = .false.
       compared = found%is_complete .and. sum([(size(found%branches(i)%assemblies), i=1, size(found%branches))]) == 2
       do i = 1, size(found%list)

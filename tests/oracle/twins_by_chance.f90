@@ -4,6 +4,7 @@ program twins_by_chance
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
+   use assemblies, only: assemblies_t, find_assemblies
    use circuits, only: circuits_t, find_circuits
    use twin_circuits, only: twin_t, throw_twin
    use dice, only: dice_t, new_dice
@@ -34,6 +35,7 @@ contains
       type(dice_t) :: d
       type(twin_t) :: twin
       type(set_analysis_t) :: s
+      type(assemblies_t) :: first
       type(circuits_t) :: found
       logical, allocatable :: taken(:)
       integer :: moving, branches, assemblies, i, k
@@ -42,7 +44,8 @@ contains
       call throw_twin(d, twin)
       call make_set_analysis(twin%m, s)
       call advance_set(s, 0.0_wp)
-      call find_circuits(twin%m, s%now%motions(1), 1, found)
+      call find_assemblies(twin%m, s%now%motions(1)%t, first)
+      call find_circuits(twin%m, s%now%motions(1), 1, first, found)
 
       allocate (taken(size(twin%turns)), source=.false.)
       branches = 0
