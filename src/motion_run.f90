@@ -3,6 +3,7 @@ module motion_run
    use mechanism, only: instant
    use structure, only: structure_report_t
    use command_line, only: out_listing
+   use system_calls, only: signal_received
    use outputs, only: is_over
    use shares, only: write_in_turn
    use writers, only: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off
@@ -29,7 +30,7 @@ contains
       class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those
       type(answers_t), intent(out) :: asked  !< the answers to its cards
       type(printing_t) :: p
-      logical :: due
+      logical :: due, prints
       integer :: k
 
       call begin_analysis(set, structure_report)
@@ -46,9 +47,14 @@ contains
          end if
          call record_flag(counts, set)
 
-         if (due .or. p%each .or. has_words(set%now)) call print_instant(p, writers, set, k, due)
-         call write_in_turn(writers)
-         call update_answers(asked, set, p%rows, k, due)
+         prints = due .or. p%each .or. has_words(set%now)
+         if (prints) then
+            call print_instant(p, writers, set, k, due)
+            call write_in_turn(writers)
+         end if
+         if (asked%takes_instants) call update_answers(asked, set, p%rows, k, due)
+         ! An output fails only where something is written.
+         if (.not. prints .and. signal_received() == 0) cycle
          if (.not. is_over(writers)) cycle
          call end_tables(p, writers, set)
          if (set%now%variants == 0) call break_off(writers, set%now, text_broken_off, k)

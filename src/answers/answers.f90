@@ -19,6 +19,7 @@ module answers
    public :: answers_t, new_answers, update_answers, finish_answers
 
    type :: answers_t
+      logical :: takes_instants = .false.           !< some answer is made of the instants
       logical :: wants_extremes = .false.
       logical :: wants_contributions = .false.
       type(extremes_t) :: extremes
@@ -43,6 +44,8 @@ contains
       requests = requests_of(set%now)
       answers%wants_extremes = any(requests%extremes)
       answers%wants_contributions = lists .and. set%now%largest_tolerance > 0.0_wp
+      answers%takes_instants = answers%wants_extremes .or. answers%wants_contributions .or. set%now%proves .or. &
+         set%now%ranges .or. set%now%circuits
       if (set%now%assemblies) then
          if (all(set%assemblies%is_known)) answers%assemblies = sum([(size(set%assemblies(c)%list), c=1, &
             size(set%assemblies))])

@@ -226,7 +226,7 @@ contains
       do k = run%at + 1, min(last, run%last)
          call advance_set(run%s, instant(run%m, k))
          call record_flag(run%counts, run%s)
-         call update_answers(run%asked, run%s, no_rows, k, .true.)
+         if (run%asked%takes_instants) call update_answers(run%asked, run%s, no_rows, k, .true.)
          run%at = k
          if (signal_received() > 0) return
       end do
