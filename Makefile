@@ -94,9 +94,9 @@ $(call in_both,$(filter-out $(hot) $(warm),$(modules) $(command))): private extr
 $(call in_both,$(warm)): private extra := $(no_lto)
 # Loops over lanes have few turns: these flags save a tenth of a step.
 $(call for_speed,$(call modules_in,lanes)): private extra += -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -fno-tree-loop-distribute-patterns
-# Procedures of a step and of a row have few callers: they are inlined at any length.
+# Procedures of a step and of a row have few callers: they are inlined at any length. Loops over a few numbers call nothing.
 $(call for_speed,$(call modules_in,blocks continuation) number_format masked_numbers listing_tables listing): \
-   private extra += --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
+   private extra += -fno-tree-loop-distribute-patterns --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
 
 #: shared           build the library for C and Python: build/libkinmat.so.2
 shared: $(BUILD)/libkinmat.so.2

@@ -149,9 +149,9 @@ contains
       type(set_motion_t), intent(in) :: motions
       integer :: c
 
-      has_words = is_flagged(motions)
+      has_words = .false.
       do c = 1, motions%count
-         has_words = has_words .or. allocated(motions%motions(c)%diagnostics)
+         has_words = has_words .or. motions%motions(c)%mark /= flag_none .or. allocated(motions%motions(c)%diagnostics)
       end do
    end function has_words
 
