@@ -24,9 +24,8 @@
 !> | the others   | has a position       | arrive    | on_motion | change points: passed, here, or returned from     |
 !> | on_motion    | is not reached       | stop_at   | lost      | closure error, or the end of the motion           |
 !> | lost, beyond | is not reached       | stop_at   | lost      | closure error                                     |
-!> | on_motion    | is beyond a limit    | skip_instant | beyond    | the end of the motion
-!> | | lost, beyond | is beyond a limit    | skip_instant | beyond    | that it is beyond
-!> |
+!> | on_motion    | is beyond a limit    | skip_instant | beyond | the end of the motion                          |
+!> | lost, beyond | is beyond a limit    | skip_instant | beyond | that it is beyond                              |
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
@@ -43,7 +42,7 @@ module analysis
    use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
-   use change_point_passage, only: go_by_value, leave
+   use change_point_passage, only: leave, follow, go_by_value
    use strokes, only: find_length_limit, flag_strokes
    use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, &
       step_stands, step_rests, follow_structure, move_memory, begin_motion, measure_closure_error, continue_to, &
@@ -174,7 +173,7 @@ contains
       else if (allocated(analysis%singular)) then
          call leave_position(analysis, t, step, list)
       else
-         call follow(analysis, t, step, list)
+         call follow(analysis%following_t, t, step, list)
       end if
    end subroutine reach
 
@@ -194,19 +193,8 @@ contains
             .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
             call accept_substep(analysis%following_t, near)
       end if
-      call follow(analysis, t, step, list)
+      call follow(analysis%following_t, t, step, list)
    end subroutine begin
-
-   !> Follows the motion, by time or by the value of a drive.
-   subroutine follow(analysis, t, step, list)
-      type(analysis_t), intent(inout) :: analysis
-      real(wp), intent(in) :: t                            !< time to which it goes
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
-
-      call continue_to(analysis%following_t, t, step)
-      if (step%ending < step_there) call go_by_value(analysis%following_t, t, step, list)
-   end subroutine follow
 
    !> Follows the motion from a singular position. Back in time it is as it was, unless a BRANCH card asks for another.
    subroutine leave_position(analysis, t, step, list)
@@ -225,7 +213,7 @@ contains
             return
          end if
       end if
-      call follow(analysis, t, step, list)
+      call follow(analysis%following_t, t, step, list)
       if (allocated(returns) .and. step%ending >= step_there .and. .not. (allocated(list) .or. passed_of(step) > 0 &
          .or. analysis%convergence%singular)) call move_alloc(returns, list)
    end subroutine leave_position

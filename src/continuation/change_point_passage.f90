@@ -8,11 +8,11 @@ module change_point_passage
    use predictor, only: begin_at
    use branch_switching, only: switch_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
-   use following, only: following_t, step_record_t, step_there, step_stands, place_t, solve_at, continue_to, &
-      accept_substep, revert, follow_from, record_checkpoint, restore, passed_of
+   use following, only: following_t, step_record_t, step_failed, step_there, step_stands, place_t, solve_at, &
+      continue_to, accept_substep, revert, follow_from, record_checkpoint, restore, passed_of
    implicit none
    private
-   public :: leave, go_by_value
+   public :: leave, follow, go_by_value
 
    !> So far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
    !> length: far enough for rates, near enough for the same branch.
@@ -38,18 +38,14 @@ contains
       logical :: found
       integer :: k
 
-      allocate (list(size(blocks)))
-      do k = 1, size(blocks)
-         list(k) = diagnostic_at_change(following%blocks, following%geometry, blocks(k), last)
-         list(k)%returns = .true.
-      end do
+      list = [(diagnostic_at_change(following%blocks, following%geometry, blocks(k), last), k=1, size(blocks))]
+      list%returns = .true.
       if (size(following%branch_requests%cards) == 0) return
 
       beside = time_beside(following%path, last, t, drive_change_after_rest)
       following%branch_requests%stood_until = beside
       call record_checkpoint(following, before)
-      call continue_to(following, beside, step)
-      if (step%ending < step_there) call go_by_value(following, beside, step, at_end)
+      call follow(following, beside, step, at_end)
       if (step%ending < step_there .or. passed_of(step) > 0 .or. following%convergence%singular) then
          call restore(following, before)
          return
@@ -61,15 +57,25 @@ contains
          if (.not. list(k)%other) cycle
          call switch_branch(following%blocks, following%geometry, following%history, following%work, following%state, &
             blocks(k), following%convergence, found)
-         if (found) then
-            call accept_substep(following, beside)
-         else
+         if (.not. found) then
             list(k)%kind = diagnostic_dead_end
             following%place = before
             return
          end if
+         call accept_substep(following, beside)
       end do
    end subroutine leave
+
+   !> Follows the motion, by time or by the value of a drive.
+   subroutine follow(following, t, step, list)
+      type(following_t), intent(inout) :: following
+      real(wp), intent(in) :: t                  !< time to which it goes
+      type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< allocated if it ends at a singular position
+
+      call continue_to(following, t, step)
+      if (step%ending < step_there) call go_by_value(following, t, step, list)
+   end subroutine follow
 
    !> Follows the motion by the value of the one drive that moves, from turn to turn, if the step by time has failed or
    !> has ended at a position without velocities. Reason: the drive stops or turns about there. By time the motion comes
@@ -80,9 +86,8 @@ contains
       type(step_record_t), intent(inout) :: step !< of the continuation to `t`; it arrives, or stands on a change point
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< allocated if `t` is at a singular position
       type(place_t) :: before, reached
-      type(diagnostic_t), allocatable :: passed(:)
+      type(step_record_t) :: by_value
       integer :: drive
-      logical :: arrived, stands
 
       if (.not. following%follows) return
       drive = slow_drive(following%path, merge(following%place%t, following%t, step%tries > 1), t, &
@@ -92,19 +97,16 @@ contains
       call record_checkpoint(following, reached)
       call revert(following, step)
       call record_checkpoint(following, before)
-      call go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
+      call go_from_turn_to_turn(following, drive, t, by_value)
       deallocate (following%path%leg)
-      if (arrived .and. .not. stands) call resume_motion(following, t, arrived)
+      if (by_value%ending == step_there) call resume_motion(following, t, by_value)
+      ! As the step has ended: that tells where the limit is, and which.
+      if (by_value%ending < step_there) call restore(following, reached)
       following%place = before
-      if (.not. arrived) then
-         ! As the step has ended: that tells where the limit is, and which.
-         call restore(following, reached)
-         following%place = before
-         return
-      end if
+      if (by_value%ending < step_there) return
       step%ending = step_there
-      step%passed = passed
-      if (.not. stands) return
+      step%passed = by_value%passed
+      if (by_value%ending == step_there) return
       list = change_diagnostics(following%blocks, following%geometry, following%state, t)
       if (size(list) > 0) step%ending = step_stands
       call follow_from(following, before)
@@ -112,13 +114,11 @@ contains
 
    !> Follows the motion to the value of a drive at `t`, the other drives held, from one place at which the drive turns
    !> to the next. It begins a little way back, since rates are uncertain near a change point.
-   subroutine go_from_turn_to_turn(following, drive, t, passed, arrived, stands)
+   subroutine go_from_turn_to_turn(following, drive, t, step)
       type(following_t), intent(inout) :: following
       integer, intent(in) :: drive               !< its number
       real(wp), intent(in) :: t                  !< time to which the motion goes
-      type(diagnostic_t), allocatable, intent(out) :: passed(:)   !< change points on the way
-      logical, intent(out) :: arrived            !< it has come to `t`,
-      logical, intent(out) :: stands             !< and `t` is at a singular position
+      type(step_record_t), intent(out) :: step   !< step_stands: `t` is at a singular position
       type(step_record_t) :: one
       type(place_t) :: first
       real(wp) :: turn, next
@@ -130,20 +130,21 @@ contains
          call go_to(next, value - sign(short_step/following%drives%unit(drive), value_at(following%path, drive, &
             next) - value))
       end associate
-      if (.not. arrived .or. stands .or. passed_of(one) > 0) call restore(following, first)
-      allocate (passed(0))
+      if (one%ending /= step_there .or. passed_of(one) > 0) call restore(following, first)
+      allocate (step%passed(0))
       do while (abs(t - turn) > 0.0_wp)
          next = next_turn(following%path, drive, turn, t)
          call go_to(next, value_at(following%path, drive, next))
-         if (.not. arrived) return
-         if (allocated(one%passed)) passed = [passed, one%passed]
+         step%ending = one%ending
+         if (one%ending < step_there) return
+         if (allocated(one%passed)) step%passed = [step%passed, one%passed]
          turn = next
-         if (stands .and. abs(t - turn) > 0.0_wp) call revert(following, one)
+         if (one%ending == step_stands .and. abs(t - turn) > 0.0_wp) call revert(following, one)
       end do
 
    contains
 
-      !> Follows the motion to a value of the drive, at a constant rate.
+      !> Follows the motion to a value of the drive, at a constant rate: the step `one`.
       subroutine go_to(to, value)
          real(wp), intent(in) :: to              !< time at which it has this value; it begins at the time `turn`
          real(wp), intent(in) :: value           !< rad or unit of length
@@ -151,27 +152,24 @@ contains
 
          now = drive_at(following%path, drive, following%t)
          call lead(following%path, drive, following%t, (value - now(1))/(to - turn), [turn, to])
-         call resume_motion(following, turn, arrived)
-         stands = .false.
-         if (.not. arrived) return
-         call continue_to(following, to, one)
-         arrived = one%ending >= step_there
-         stands = arrived .and. following%convergence%singular
-         if (arrived .and. .not. stands) call accept_substep(following, to)
+         call resume_motion(following, turn, one)
+         if (one%ending == step_there) call continue_to(following, to, one)
+         if (one%ending == step_there .and. following%convergence%singular) one%ending = step_stands
+         if (one%ending == step_there) call accept_substep(following, to)
       end subroutine go_to
    end subroutine go_from_turn_to_turn
 
    !> Makes the motion that is followed go on at another parameter of the path. The drives have the same values there.
-   subroutine resume_motion(following, parameter, passed)
+   subroutine resume_motion(following, parameter, step)
       type(following_t), intent(inout) :: following
       real(wp), intent(in) :: parameter          !< of the path: time or a drive's value
-      logical, intent(out) :: passed             !< it does
+      type(step_record_t), intent(inout) :: step !< step_there: the motion goes on; step_failed: not
 
       call begin_at(following%history, parameter)
       following%t = parameter
       call solve_at(following, parameter)
-      passed = following%convergence%keeps_signs .and. is_solved(following%convergence) &
-         .and. .not. following%convergence%singular
-      if (passed) call accept_substep(following, parameter)
+      step%ending = merge(step_there, step_failed, following%convergence%keeps_signs &
+         .and. is_solved(following%convergence) .and. .not. following%convergence%singular)
+      if (step%ending == step_there) call accept_substep(following, parameter)
    end subroutine resume_motion
 end module change_point_passage

@@ -30,7 +30,7 @@ module following
    public :: following_t, step_record_t, begin_following, follow_structure, move_memory, begin_motion, solve_at, &
       measure_closure_error, continue_to, accept_substep, revert, follow_from, place_t, record_checkpoint, restore, &
       passed_of
-   public :: step_blocked, step_creeps, step_there, step_stands, step_rests
+   public :: step_failed, step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
 

@@ -193,12 +193,10 @@ contains
       if (allocated(path%leg)) span = path%span
 
       at = time_of(part)
-      low = time_of(part - not_told)
-      high = time_of(part + not_told)
       first = drive_at(path, i, p1)
       last = drive_at(path, i, p2)
-      if (first(2)*last(2) < 0.0_wp) low = p1
-      if (first(2)*last(2) < 0.0_wp) high = p2
+      low = merge(p1, time_of(part - not_told), first(2)*last(2) < 0.0_wp)
+      high = merge(p2, time_of(part + not_told), first(2)*last(2) < 0.0_wp)
       if (.not. slows_down(low) .or. slows_down(high)) return
       do k = 1, digits(1.0_wp)
          call halve(slows_down(middle_of(low, high)), low, high)
