@@ -20,8 +20,7 @@ module compare_engines
 
 contains
 
-   !> `m` at the instants `t`, all at once by `method` (METHOD DENSE); at none but the first where that has no motion,
-   !> at none
+   !> `m` at the instants `t`, all at once by `method` (METHOD DENSE); at none but the first where that has no motion, at none
    !> where the structure has no solution.
    function compare(m, t, method) result(c)
       type(mechanism_t), intent(in) :: m
@@ -66,11 +65,9 @@ contains
       end do
    end function compare
 
-   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, ten times the ratio of its pivots, positions are
-   !> known to
-   !> k eps, velocities v to k times (eps + what that does to the Jacobian) times v, accelerations once more; lengths
-   !> in the
-   !> system's unit.
+   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, ten times the ratio of its
+   !> pivots, positions are known to k eps, velocities v to k times (eps + what that does to the Jacobian) times v, accelerations
+   !> once more; lengths in the system's unit.
    function apart(q, r, wanted, length, reciprocal_condition) result(share)
       type(motion_t), intent(in) :: q, r
       logical, intent(in) :: wanted(:)
