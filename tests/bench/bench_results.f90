@@ -3,8 +3,7 @@
 module bench_results
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
-   use failures, only: failure_t
-   use deck, only: read_deck
+   use deck_tally, only: deck_name, sets_of
    use structure, only: structure_report_t, find_structure
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
    implicit none
@@ -77,15 +76,14 @@ contains
       integer, intent(in) :: steps
       type(certificate_counts_t), intent(inout) :: tally
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
-      character(:), allocatable :: report, name
+      character(:), allocatable :: name
       type(scene_t) :: s
       type(gap_t) :: g, e
       type(structure_report_t) :: f
       integer :: i
 
-      name = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))
-      call read_deck(path, sets, report, failure)
+      name = deck_name(path)
+      sets = sets_of(path)
       do i = 1, size(sets)
          ! All equations at once must be as many as the unknowns.
          f = find_structure(sets(i))

@@ -2,10 +2,9 @@
 !> and with each other.
 module bench_scenes
    use kinds, only: wp
-   use failures, only: failure_t
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, method_dense
    use motion, only: motion_t, new_motion, flag_none
-   use deck, only: read_deck
+   use deck_tally, only: sets_of
    use scales, only: characteristic_length, characteristic_rate
    use lapack, only: gesv
    use closure_equations, only: jacobian
@@ -57,12 +56,9 @@ contains
       integer, intent(in) :: set
       type(scene_t) :: s
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
-      character(:), allocatable :: report
       integer :: i
 
-      call read_deck(path, sets, report, failure)
-      if (allocated(failure)) error stop 'A DECK OF THE BENCH IS REFUSED'
+      sets = sets_of(path)
       s%name = name
       s%set = set
       s%m = sets(set)

@@ -17,10 +17,14 @@ contains
       call get_command_argument(i, text)
    end function argument
 
-   !> A word that is a whole number.
-   integer function number(text)
-      character(*), intent(in) :: text
+   !> Word `i` of the command, a whole number; `otherwise` if there is none.
+   integer function number(i, otherwise)
+      integer, intent(in) :: i
+      integer, intent(in), optional :: otherwise
+      character(:), allocatable :: text
 
-      read (text, *) number
+      text = argument(i)
+      if (text /= '') read (text, *) number
+      if (text == '') number = otherwise
    end function number
 end module arguments

@@ -24,18 +24,12 @@ contains
       type(dice_t), intent(inout) :: r
 
       select case (throw(r, 8))
-      case (1:3)
-         near = x*between(r, 0.6_wp, 1.6_wp)
-      case (4)
-         near = x*(1.0_wp + between(r, -1.0_wp, 1.0_wp)*10.0_wp**(-throw(r, 14)))
-      case (5)
-         near = x + between(r, -1.0_wp, 1.0_wp)*max(abs(x), 1.0_wp)
-      case (6)
-         near = anint(x)
-      case (7)
-         near = -x
-      case default
-         near = x*magnitude(r, 2)
+      case (1:3); near = x*between(r, 0.6_wp, 1.6_wp)
+      case (4); near = x*(1.0_wp + between(r, -1.0_wp, 1.0_wp)*10.0_wp**(-throw(r, 14)))
+      case (5); near = x + between(r, -1.0_wp, 1.0_wp)*max(abs(x), 1.0_wp)
+      case (6); near = anint(x)
+      case (7); near = -x
+      case default; near = x*magnitude(r, 2)
       end select
    end function near
 

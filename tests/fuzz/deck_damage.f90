@@ -224,18 +224,12 @@ contains
       k = throw(r, len(bytes))
       line = d%line(i)
       select case (throw(r, 12))
-      case (1)
-         d%line(i)(c:c) = bytes(k:k)
-      case (2)
-         d%line(i) = line(:c - 1)//line(c + 1:)
-      case (3)
-         d%line(i) = line(:c - 1)//bytes(k:k)//line(c:)
-      case (4)
-         d%line(i) = line(:c)
-      case (5)
-         d%line(i)(c + 60:) = 'PAST THE END'
-      case (6)
-         d%line([i, j]) = d%line([j, i])
+      case (1); d%line(i)(c:c) = bytes(k:k)
+      case (2); d%line(i) = line(:c - 1)//line(c + 1:)
+      case (3); d%line(i) = line(:c - 1)//bytes(k:k)//line(c:)
+      case (4); d%line(i) = line(:c)
+      case (5); d%line(i)(c + 60:) = 'PAST THE END'
+      case (6); d%line([i, j]) = d%line([j, i])
       case (7)
          c = throw(r, 9)
          c = merge(8*c - 7, 16*c - 47, c < 5)
@@ -244,14 +238,10 @@ contains
          ! The name of the card, or the labels too.
          c = merge(8, 32, c < 40)
          d%line(i)(:c) = lower(line(:c))
-      case (9)
-         d%line(i) = trim(line)//achar(13)
-      case (10)
-         d%line = d%line(:i)
-      case (11)
-         call insert_line(d, i, d%line(j))
-      case default
-         call drop_line(d, i)
+      case (9); d%line(i) = trim(line)//achar(13)
+      case (10); d%line = d%line(:i)
+      case (11); call insert_line(d, i, d%line(j))
+      case default; call drop_line(d, i)
       end select
       call add_note(d, 'TEXT DAMAGED')
    end subroutine damage

@@ -61,8 +61,8 @@ program extremes_by_chance
 
    judges = argument(1) == 'judge'
    kind = merge(1, 2, argument(2) == 'rises')
-   first = number(argument(3))
-   count_of = number(argument(4))
+   first = number(3)
+   count_of = number(4)
    if (judges) then
       call judge_listing(argument(5))
    else

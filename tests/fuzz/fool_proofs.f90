@@ -6,7 +6,7 @@
 program fool_proofs
    use kinds, only: wp
    use quad_jet, only: qp
-   use arguments, only: argument, number
+   use arguments, only: number
    use dice, only: dice_t, new_dice, throw, chance, between
    use following, only: following_t, begin_following
    use block_state, only: set_drive_values
@@ -31,10 +31,8 @@ program fool_proofs
    integer :: attempts, seed, i, positions, steps, false_ones
    type(dice_t) :: dice
 
-   attempts = 2000
-   seed = 1
-   if (command_argument_count() > 0) attempts = number(argument(1))
-   if (command_argument_count() > 1) seed = number(argument(2))
+   attempts = number(1, 2000)
+   seed = number(2, 1)
    positions = 0
    steps = 0
    false_ones = 0

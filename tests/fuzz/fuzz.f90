@@ -67,12 +67,12 @@ program fuzz
       call read_sets(argument(i), sets)
    end do
    if (argument(1) == '--deck') then
-      call write_draft(deck_of_seed(sets, number(argument(2))), argument(3))
+      call write_draft(deck_of_seed(sets, number(2)), argument(3))
    else if (argument(1) == '--drawn') then
-      r = new_dice(number(argument(2)))
+      r = new_dice(number(2))
       call write_draft(drawn_deck(r), argument(3))
    else
-      call run_seeds(number(argument(1)), number(argument(2)), argument(3))
+      call run_seeds(number(1), number(2), argument(3))
    end if
    ! The sanitizer takes what the main program holds at its end for lost.
    deallocate (sets)

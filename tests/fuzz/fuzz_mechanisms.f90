@@ -25,12 +25,12 @@ program fuzz_mechanisms
    end type sums_t
 
    if (argument(1) == '--deck') then
-      call write_deck(schemes_of(number(argument(2))), argument(3))
+      call write_deck(schemes_of(number(2)), argument(3))
    else if (argument(1) == '--surplus') then
-      call write_deck(surplus_of(number(argument(2)), .false.), argument(3))
-      call write_deck(surplus_of(number(argument(2)), .true.), argument(4))
+      call write_deck(surplus_of(number(2), .false.), argument(3))
+      call write_deck(surplus_of(number(2), .true.), argument(4))
    else
-      call run_seeds(number(argument(1)), number(argument(2)), argument(3))
+      call run_seeds(number(1), number(2), argument(3))
    end if
 
 contains

@@ -12,28 +12,23 @@ program circuits_by_chance
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
    use dice, only: dice_t, new_dice, between, chance, throw
-   use arguments, only: argument, number
+   use arguments, only: number
+   use csv_cells, only: whole_text
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    implicit none
 
    !> A limit is known to so much in rad; circuits as wide as the distance of two values of the drive are found.
    real(wp), parameter :: known = 1.0e-8_wp, found_always = 5.0_wp*pi/180.0_wp, &
       too_narrow = 0.25_wp*pi/180.0_wp
    real(wp), parameter :: turn = 2.0_wp*pi
-   integer :: first, count_of, i, failed
+   type(certificate_counts_t) :: tally
+   integer :: first, i
 
-   count_of = 300
-   first = 1
-   if (command_argument_count() > 0) count_of = number(argument(1))
-   if (command_argument_count() > 1) first = number(argument(2))
-   failed = 0
-   do i = first, first + count_of - 1
-      if (.not. agrees(i)) then
-         failed = failed + 1
-         print '(a, i0)', 'FAILED: seed ', i
-      end if
+   first = number(2, 1)
+   do i = first, first + number(1, 300) - 1
+      call count_one(tally, agrees(i), 'seed '//whole_text(i))
    end do
-   print '(i0, a, i0, a)', count_of - failed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1
+   call conclude(tally)
 
 contains
 

@@ -8,6 +8,8 @@ program cylinders_by_chance
    use kinds, only: wp
    use dice, only: dice_t, new_dice, between, chance, throw
    use arguments, only: argument, number
+   use csv_cells, only: cells, cell_length, split, whole_text
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    use printed_cards, only: card, polar
    implicit none
 
@@ -58,19 +60,19 @@ program cylinders_by_chance
       character(120) :: words(2, 2) = ''
    end type told_t
 
-   integer :: first, count_of, i, failed
+   type(certificate_counts_t) :: tally
+   integer :: first, count_of, i
    type(told_t), allocatable :: told(:)
    character(:), allocatable :: why
 
-   count_of = number(argument(2))
-   first = 1
+   count_of = number(2)
    if (argument(1) == 'deck') then
-      if (command_argument_count() > 2) first = number(argument(3))
+      first = number(3, 1)
       do i = 1, count_of
          call print_deck(new_scene(first + i - 1))
       end do
    else
-      if (command_argument_count() > 4) first = number(argument(5))
+      first = number(5, 1)
       call read_listing(argument(3))
       call check(argument(4))
    end if
@@ -396,7 +398,7 @@ contains
             if (boom%amplitude /= '') call card('ADD', 'HARMONIC', '', '', [boom%amplitude, boom%frequency])
          end associate
       end do
-      call card('TIME', trim(whole(s%steps)), '', '', [character(16) :: '0.0', '10.0'])
+      call card('TIME', whole_text(s%steps), '', '', [character(16) :: '0.0', '10.0'])
       do k = 1, size(s%booms)
          do j = 1, size(s%booms(k)%cylinders)
             call card('PRINT', 'PAIRS', 'CYL'//name_of(k, j))
@@ -407,13 +409,6 @@ contains
       call card('CIRCUITS', '')
       print '(a)', 'END'
    end subroutine print_deck
-
-   function whole(n) result(text)
-      integer, intent(in) :: n
-      character(8) :: text
-
-      write (text, '(i0)') n
-   end function whole
 
    !> Reads what the listing in `file` says of assemblies, ranges and circuits.
    subroutine read_listing(file)
@@ -476,26 +471,26 @@ contains
       character(1000) :: line
       real(qp) :: at_instants(0:20, 3), at_assemblies(most, 3), value
       character(16) :: marks(0:20)
+      character(cell_length) :: cell(cells)
       integer :: unit, status, set, found, step, cylinder, n
 
       open (newunit=unit, file=file, status='old', action='read')
-      failed = 0
       set = 0
       do
          read (unit, '(a)', iostat=status) line
-         if (status /= 0 .or. cell(line, 1) /= 'set') then
-            found = 0
-            if (status == 0) read (line, *) found
-            if (found /= set) then
-               if (set > 0) call conclude(set, at_instants, marks, at_assemblies)
-               set = found
-               at_instants = -1.0_qp
-               at_assemblies = -1.0_qp
-               marks = ''
-               if (set == 0) exit
-            end if
-         else
-            cycle
+         found = 0
+         if (status == 0) then
+            call split(line, cell, n)
+            if (cell(1) == 'set') cycle
+            read (cell(1), *) found
+         end if
+         if (found /= set) then
+            if (set > 0) call check_set(set, at_instants, marks, at_assemblies)
+            set = found
+            at_instants = -1.0_qp
+            at_assemblies = -1.0_qp
+            marks = ''
+            if (set == 0) exit
          end if
          read (line, *) found, step
          if (index(line, ',PAIR') == 0) cycle
@@ -504,20 +499,19 @@ contains
          if (index(line, ',CYL'//line(index(line, ',CYL') + 4:index(line, ',CYL') + 4)//',,') == 0) then
             read (line(index(line, ',CYL') + 6:), *) value
          end if
-         if (cell(line, 4) == 'PAIR') then
+         if (cell(4) == 'PAIR') then
             at_instants(step, cylinder) = value
-            marks(step) = cell(line, 15)
+            marks(step) = cell(15)(:16)
          else
             read (line(index(line, 'ASSEMBLY') + 8:index(line, ',CYL') - 1), *) n
             at_assemblies(n, cylinder) = value
          end if
       end do
-      print '(i0, a, i0, a)', count_of - failed, ' passed, ', failed, ' failed'
-      if (failed > 0) stop 1
+      call conclude(tally)
    end subroutine check
 
    !> Compares set number `set` with what the CSV has of its instants and assemblies.
-   subroutine conclude(set, at_instants, marks, at_assemblies)
+   subroutine check_set(set, at_instants, marks, at_assemblies)
       integer, intent(in) :: set
       real(qp), intent(in) :: at_instants(0:, :), at_assemblies(:, :)
       character(*), intent(in) :: marks(0:)
@@ -529,25 +523,8 @@ contains
       call check_assemblies(s, told(set), at_assemblies)
       call check_ranges(s, told(set))
       call check_circuits(s, told(set))
-      if (why == '') return
-      failed = failed + 1
-      print '(a, i0, a)', 'FAILED: seed ', first + set - 1, ':'//why
-   end subroutine conclude
-
-   !> Cell number `n` of a row.
-   function cell(line, n) result(text)
-      character(*), intent(in) :: line
-      integer, intent(in) :: n
-      character(16) :: text
-      integer :: k, from, next
-
-      from = 1
-      do k = 1, n - 1
-         from = from + index(line(from:), ',')
-      end do
-      next = index(line(from:)//',', ',')
-      text = line(from:from + next - 2)
-   end function cell
+      call count_one(tally, why == '', 'seed '//whole_text(first + set - 1)//':'//why)
+   end subroutine check_set
 
    subroutine expect(is_so, what)
       logical, intent(in) :: is_so

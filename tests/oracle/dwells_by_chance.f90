@@ -11,7 +11,9 @@ program dwells_by_chance
    use analysis, only: analysis_t, make_analysis, advance
    use sample_mechanisms, only: four_bar, crank_slider
    use dice, only: dice_t, new_dice, between, chance, throw
-   use arguments, only: argument, number
+   use arguments, only: number
+   use csv_cells, only: whole_text
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    implicit none
 
    !> Roundings of angles and lengths up to 10, over the sine of the angle between the two links of the dyad; on the
@@ -35,18 +37,14 @@ program dwells_by_chance
       type(mechanism_t) :: m
    end type scene_t
 
-   integer :: first, count_of, i, failed
+   type(certificate_counts_t) :: tally
+   integer :: first, i
 
-   count_of = 500
-   first = 1
-   if (command_argument_count() > 0) count_of = number(argument(1))
-   if (command_argument_count() > 1) first = number(argument(2))
-   failed = 0
-   do i = first, first + count_of - 1
-      if (.not. agrees(i)) failed = failed + 1
+   first = number(2, 1)
+   do i = first, first + number(1, 500) - 1
+      call count_one(tally, agrees(i), 'seed '//whole_text(i))
    end do
-   print '(i0, a, i0, a)', count_of - failed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1
+   call conclude(tally)
 
 contains
 
@@ -209,8 +207,8 @@ contains
             if (t >= rises(1)%r(1) + rises(1)%r(2) .and. t < rises(2)%r(1)) is_followed = is_followed .and. &
                q%known == 2 .and. all(abs(q%velocity) <= 0.0_wp) .and. all(abs(q%acceleration) <= 0.0_wp)
             if (is_followed) cycle
-            print '(4(a, i0), a, es9.2, a, es9.2)', 'FAILED: seed ', seed, ', kind ', s%kind, ', instant ', k, ' of ', &
-               s%m%steps, ': off by ', off, ', may be ', allowed
+            print '(4(a, i0), a, es9.2, a, es9.2)', ' SEED ', seed, ', KIND ', s%kind, ', INSTANT ', k, ' OF ', &
+               s%m%steps, ': OFF BY ', off, ', MAY BE ', allowed
             return
          end do
       end associate

@@ -7,6 +7,8 @@ program lengths_by_chance
    use kinds, only: wp
    use dice, only: dice_t, new_dice, between, chance, throw, disorder
    use arguments, only: argument, number
+   use csv_cells, only: cells, cell_length, split, whole_text
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    use printed_cards, only: card, polar
    implicit none
 
@@ -41,23 +43,20 @@ program lengths_by_chance
    end type scene_t
 
    type(scene_t) :: scene
-   integer :: first, count_of, i, passed, failed
+   type(certificate_counts_t) :: tally
+   integer :: first, count_of, i
    real(qp) :: worst(3) = 0.0_qp, condition
-   !> The row in hand: the number of its set, and its first cells.
+   !> The row in hand: the number of its set, and its cells.
    integer :: set, step
-   character(64) :: cell(9)
+   character(cell_length) :: cell(cells)
 
-   count_of = number(argument(2))
-   first = 1
-   if (command_argument_count() > 2) first = number(argument(3))
-   passed = 0
-   failed = 0
+   count_of = number(2)
+   first = number(3, 1)
    if (argument(1) == 'check') then
       call check()
       print '(3(a, es8.1))', 'LARGEST ERROR OF A VALUE ', worst(1), ', OF A SENSITIVITY ', worst(2), &
          ', OVER ITS CONDITION ', worst(3)
-      print '(i0, a, i0, a)', passed, ' passed, ', failed, ' failed'
-      if (failed > 0) stop 1
+      call conclude(tally)
    else
       do i = 1, count_of
          scene = new_scene(first + i - 1)
@@ -300,7 +299,7 @@ contains
    subroutine check()
       character(1000) :: line
       real(qp) :: v(values), slope(values, lengths), of_point(3, lengths), h, size_of
-      integer :: status, k, j, last_set, last_step, rows, from, next
+      integer :: status, k, j, last_set, last_step, rows
 
       last_set = 0
       last_step = -1
@@ -309,12 +308,7 @@ contains
          read (*, '(a)', iostat=status) line
          if (status /= 0) exit
          if (line(:4) == 'set,') cycle
-         from = 1
-         do k = 1, size(cell)
-            next = from + index(line(from:), ',') - 1
-            cell(k) = line(from:next - 1)
-            from = next + 1
-         end do
+         call split(line, cell, k)
          read (cell(1), *) set
          read (cell(2), *) step
          if (set /= last_set) scene = new_scene(first + set - 1)
@@ -349,8 +343,8 @@ contains
          end if
          rows = rows + 1
       end do
-      if (last_set /= count_of) call miss('sets in the CSV')
-      if (rows < 100*count_of) call miss('rows in the CSV')
+      call check_that(last_set == count_of, 'sets in the CSV')
+      call check_that(rows >= 100*count_of, 'rows in the CSV')
    end subroutine check
 
    !> Compares the row in hand: values, or sensitivities to the length that it names.
@@ -378,12 +372,10 @@ contains
       end if
       worst(merge(2, 1, is_slope)) = max(worst(merge(2, 1, is_slope)), maxval(error))
       if (is_slope) worst(3) = max(worst(3), maxval(error)/condition)
-      if (maxval(error) <= merge(known_slope*condition, known, is_slope)) then
-         passed = passed + 1
-      else
-         call miss(trim(cell(4))//' '//trim(cell(5)))
-         print '(3es24.16)', found, merge(slopes(:, min(j, lengths)), value, is_slope), error
-      end if
+      associate (is_right => maxval(error) <= merge(known_slope*condition, known, is_slope))
+         call check_that(is_right, trim(cell(4))//' '//trim(cell(5)))
+         if (.not. is_right) print '(3es24.16)', found, merge(slopes(:, min(j, lengths)), value, is_slope), error
+      end associate
    end subroutine compare
 
    !> Whether the row in hand is about length `j`.
@@ -406,11 +398,11 @@ contains
       list(j) = list(j) + h
    end function changed
 
-   !> Counts and prints a failure.
-   subroutine miss(words)
+   !> Counts a check, which a failure names with its seed and step.
+   subroutine check_that(is_right, words)
+      logical, intent(in) :: is_right
       character(*), intent(in) :: words
 
-      failed = failed + 1
-      if (failed < 20) print '(a, i0, a, i0, 2a)', 'FAILED: seed ', first + set - 1, ' step ', step, ': ', words
-   end subroutine miss
+      call count_one(tally, is_right, 'seed '//whole_text(first + set - 1)//' step '//whole_text(step)//': '//words)
+   end subroutine check_that
 end program lengths_by_chance

@@ -21,7 +21,7 @@ program random_blocks
    type(mechanism_t) :: m
    type(dice_t) :: d
 
-   d = new_dice(number(argument(1)))
+   d = new_dice(number(1))
    do
       call throw_mechanism(d, m)
       if (is_one_block(m)) exit

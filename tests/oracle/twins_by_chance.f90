@@ -8,23 +8,21 @@ program twins_by_chance
    use circuits, only: circuits_t, find_circuits
    use twin_circuits, only: twin_t, throw_twin
    use dice, only: dice_t, new_dice
-   use arguments, only: argument, number
+   use arguments, only: number
+   use csv_cells, only: whole_text
+   use deck_tally, only: certificate_counts_t, count_one, conclude
    implicit none
 
    !> A limit is known to so much in rad and lengths.
    real(wp), parameter :: known = 1.0e-8_wp
-   integer :: first, count_of, i, failed
+   type(certificate_counts_t) :: tally
+   integer :: first, i
 
-   count_of = 500
-   first = 1
-   if (command_argument_count() > 0) count_of = number(argument(1))
-   if (command_argument_count() > 1) first = number(argument(2))
-   failed = 0
-   do i = first, first + count_of - 1
-      if (.not. agrees(i)) failed = failed + 1
+   first = number(2, 1)
+   do i = first, first + number(1, 500) - 1
+      call count_one(tally, agrees(i), 'seed '//whole_text(i))
    end do
-   print '(i0, a, i0, a)', count_of - failed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1
+   call conclude(tally)
 
 contains
 

@@ -1,8 +1,11 @@
-!> Tests. What the programs that run over decks have in common: the name of a deck, and a count of what was right.
+!> Tests. What the programs that run over decks have in common: the name of a deck and its sets, and a count of what was right.
 module deck_tally
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t
+   use deck, only: read_deck
    implicit none
    private
-   public :: certificate_counts_t, count_one, conclude, deck_name
+   public :: certificate_counts_t, count_one, conclude, deck_name, sets_of
 
    type :: certificate_counts_t
       integer :: passed = 0, failed = 0
@@ -39,4 +42,15 @@ contains
       name = path(scan(path, '/', back=.true.) + 1:)
       name = name(:scan(name//'.', '.') - 1)
    end function deck_name
+
+   !> The sets of a deck without a fault.
+   function sets_of(path) result(sets)
+      character(*), intent(in) :: path
+      type(mechanism_t), allocatable :: sets(:)
+      character(:), allocatable :: report
+      type(failure_t), allocatable :: failure
+
+      call read_deck(path, sets, report, failure)
+      if (allocated(failure)) error stop 'A DECK IS NOT READ'
+   end function sets_of
 end module deck_tally

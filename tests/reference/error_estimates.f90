@@ -1,21 +1,17 @@
-!> Tests. `error_estimates DECK...`: the errors that the program tells of its own results (--errors) beside their true
-!> errors against closed forms in real128. An estimate must not be below the error, for no number of any link at any
-!> instant, and of the largest of each instant no more than one in five may be more than 30 times too large. (A true
-!> error
-!> may by chance be small: one below a rounding of the number's size counts as that.) The last line is
-!> `N passed, N failed`.
+!> Tests. `error_estimates DECK...`: the errors that the program tells of its own results (--errors) beside their true errors
+!> against closed forms in real128. An estimate must not be below the error, for no number of any link at any instant, and of the
+!> largest of each instant no more than one in five may be more than 30 times too large. (A true error may by chance be small: one
+!> below a rounding of the number's size counts as that.) The last line is `N passed, N failed`.
 program error_estimates
    use kinds, only: wp
-   use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, request_link
    use motion, only: motion_t, new_motion
-   use deck, only: read_deck
    use analysis, only: analysis_t, make_analysis, advance
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_error
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
-   use deck_tally, only: deck_name
+   use deck_tally, only: deck_name, sets_of
    use closed_forms, only: closed_form
    implicit none
    real(wp), parameter :: max_above = 30.0_wp
@@ -54,13 +50,10 @@ contains
    subroutine weigh_deck(path, tally)
       character(*), intent(in) :: path
       type(certificate_counts_t), intent(inout) :: tally
-      character(:), allocatable :: report
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
       integer :: i
 
-      call read_deck(path, sets, report, failure)
-      if (allocated(failure)) error stop 'A DECK IS NOT READ'
+      sets = sets_of(path)
       do i = 1, size(sets)
          call weigh_set(deck_name(path), sets(i), tally)
       end do

@@ -16,6 +16,7 @@ program kind_errors
    use closed_forms_dyads, only: body_t
    use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
+   use csv_cells, only: cells, cell_length, split
    use csv_closure, only: verdict_t, check_csv
    use fifty_digits, only: known
    implicit none
@@ -47,7 +48,6 @@ program kind_errors
    real(qp), parameter :: roundings_there = merge(roundings*inverse_close, sqrt(roundings/epsilon(1.0_wp)), &
       digits(1.0_wp) >= bits_enough)
    character(*), parameter :: change_decks(3) = [character(7) :: '_across', '_at', '_branch']
-   integer, parameter :: cells = 15, cell_length = 60
 
    !> (x or y, angle; derivative): largest error and largest value.
    type :: errors_t
@@ -164,7 +164,7 @@ contains
       real(qp) :: value(3, 0:2), t
       integer :: i, k, link, at
 
-      call split(line, cell)
+      call split(line, cell, i)
       if (cell(4) /= 'LINK') return
       read (cell(1:2), *) i, k
       ! An instant out of a stroke is complete.
@@ -241,20 +241,4 @@ contains
       e%value(1, :) = max(e%value(1, :), abs(right(1, :)), abs(right(2, :)))
       e%value(2, :) = max(e%value(2, :), abs(right(3, :)))
    end subroutine compare
-
-   !> The cells of `line`; no name of a link in input/ holds a comma.
-   subroutine split(line, cell)
-      character(*), intent(in) :: line
-      character(cell_length), intent(out) :: cell(cells)
-      integer :: k, first, length
-
-      cell = ''
-      first = 1
-      do k = 1, cells
-         length = index(line(first:)//',', ',') - 1
-         cell(k) = line(first:first + length - 1)
-         first = first + length + 1
-         if (first > len_trim(line) + 1) exit
-      end do
-   end subroutine split
 end program kind_errors

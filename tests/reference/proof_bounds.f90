@@ -3,11 +3,9 @@
 !> position, and the step to it; these with their reason. The last line is `N passed, N failed`.
 program proof_bounds
    use kinds, only: wp
-   use failures, only: failure_t
    use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
    use motion, only: motion_t, flag_none, flag_singular, singular_change
    use following, only: branch_crossed
-   use deck, only: read_deck
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
    use balls, only: ball_t, distance
@@ -15,7 +13,7 @@ program proof_bounds
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use motion_errors, only: away
-   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
+   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name, sets_of
    use closed_forms, only: closed_form
    implicit none
 
@@ -62,13 +60,10 @@ contains
 
    subroutine check_deck(path)
       character(*), intent(in) :: path
-      character(:), allocatable :: report
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
       integer :: i
 
-      call read_deck(path, sets, report, failure)
-      if (allocated(failure)) error stop 'A DECK IS NOT READ'
+      sets = sets_of(path)
       do i = 1, size(sets)
          if (sets(i)%method == method_newton) call check_set(deck_name(path), with_all_links(sets(i)))
       end do

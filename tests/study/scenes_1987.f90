@@ -2,9 +2,8 @@
 !> closed form in real128 at every degree of the crank.
 module scenes_1987
    use kinds, only: wp
-   use failures, only: failure_t
    use mechanism, only: mechanism_t
-   use deck, only: read_deck
+   use deck_tally, only: sets_of
    use scales, only: characteristic_length, power_of_two
    use sample_mechanisms, only: magnified
    use configuration, only: system_t, configuration_t, new_system, new_configuration, set_configuration, choose_references
@@ -39,14 +38,11 @@ contains
          'andrews', &
          'crank_slider']
       type(mechanism_t), allocatable :: sets(:)
-      type(failure_t), allocatable :: failure
-      character(:), allocatable :: report
       real(wp) :: unit
       integer :: k
 
       s%name = scene_names(i)
-      call read_deck('input/'//trim(decks(i))//'.deck', sets, report, failure)
-      if (allocated(failure)) error stop 'A DECK OF THE STUDY IS REFUSED'
+      sets = sets_of('input/'//trim(decks(i))//'.deck')
       unit = power_of_two(characteristic_length(sets(1)))
       s%m = magnified(sets(1), 1.0_wp/unit)
       s%system = new_system(s%m)

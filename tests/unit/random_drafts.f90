@@ -1,6 +1,5 @@
-!> Tests. A mechanism in the making, by the dice: links where they fall, pairs whose points are put where they coincide
-!> in
-!> this position, drives that begin from it.
+!> Tests. A mechanism in the making, by the dice: links where they fall, pairs whose points are put where they coincide in this
+!> position, drives that begin from it.
 module random_drafts
    use kinds, only: wp
    use plane_vectors, only: pi

@@ -1,7 +1,6 @@
-!> Tests. Mechanisms by the dice: from ground links outwards cranks, slides, dyads, triads, closed nets of four,
-!> cylinders and
-!> floating links, each with as many drives as it has freedoms. The position comes first, so that every mechanism is
-!> assembled at t = 0 as far as rounding lets it be.
+!> Tests. Mechanisms by the dice: from ground links outwards cranks, slides, dyads, triads, closed nets of four, cylinders and
+!> floating links, each with as many drives as it has freedoms. The position comes first, so that every mechanism is assembled at
+!> t = 0 as far as rounding lets it be.
 module random_mechanisms
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, &
@@ -44,24 +43,15 @@ contains
       type(draft_t), intent(inout) :: d
 
       select case (throw(d%dice, 16))
-      case (1:3)
-         call add_driven_link(d, throw(d%dice, 7))
-      case (4:9)
-         call add_dyad(d)
-      case (10)
-         call add_end_driven_chain(d)
-      case (11)
-         call add_triad(d)
-      case (12)
-         call add_net(d)
-      case (13)
-         call add_cylinder(d)
-      case (14)
-         call add_floating(d)
-      case (15)
-         call add_table(d)
-      case default
-         call add_open_loop(d)
+      case (1:3); call add_driven_link(d, throw(d%dice, 7))
+      case (4:9); call add_dyad(d)
+      case (10); call add_end_driven_chain(d)
+      case (11); call add_triad(d)
+      case (12); call add_net(d)
+      case (13); call add_cylinder(d)
+      case (14); call add_floating(d)
+      case (15); call add_table(d)
+      case default; call add_open_loop(d)
       end select
    end subroutine add_group
 
