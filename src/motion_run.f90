@@ -30,7 +30,7 @@ contains
       class(counts_t), intent(inout) :: counts   !< instants solved and flagged, and the first of those
       type(answers_t), intent(out) :: asked  !< the answers to its cards
       type(printing_t) :: p
-      logical :: due, prints
+      logical :: due, flags, prints
       integer :: k
 
       call begin_analysis(set, structure_report)
@@ -45,9 +45,11 @@ contains
             call prove_set(set, due)
             if (.not. all(holds(set%now%proofs))) counts%unproved = counts%unproved + 1
          end if
-         call record_flag(counts, set)
+         flags = has_words(set%now)
+         if (flags) call record_flag(counts, set)
+         if (.not. flags) counts%solved = counts%solved + 1
 
-         prints = due .or. p%each .or. has_words(set%now)
+         prints = due .or. p%each .or. flags
          if (prints) then
             call print_instant(p, writers, set, k, due)
             call write_in_turn(writers)

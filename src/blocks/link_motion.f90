@@ -90,23 +90,20 @@ contains
       type(state_t), intent(in) :: s
       type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; x and y from the chain's origin
       logical, intent(out) :: finite         !< no number is out of range, and no sum of them
-      integer :: i, k
 
       q%origin = chain%origin
-      ! One by one, since a column at once would be a call of its own.
-      do i = 1, size(chain%ground)
-         k = chain%ground(i)
-         q%position(1, k) = chain%ground_position(1, i)
-         q%position(2, k) = chain%ground_position(2, i)
-         q%position(3, k) = chain%ground_position(3, i)
-      end do
-      call move_chain(n, chain%links, s%u, chain%length, q%position, q%velocity, q%acceleration, finite)
+      call move_chain(n, chain%links, size(chain%ground), chain%ground, chain%ground_position, s%u, chain%length, &
+         q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> Finds the motion of moving links on plain arrays, which cost no descriptors.
-   pure subroutine move_chain(n, links, unknowns, length, positions, velocities, accelerations, finite)
+   !> Finds the motion of ground links and moving links on plain arrays, which cost no descriptors.
+   pure subroutine move_chain(n, links, grounds, ground, ground_positions, unknowns, length, positions, velocities, &
+      accelerations, finite)
       integer, intent(in) :: n                              !< how many links are moved
       type(chain_link_t), intent(in) :: links(n)            !< parents before their children
+      integer, intent(in) :: grounds                        !< how many ground links there are
+      integer, intent(in) :: ground(*)                      !< (ground links) their numbers
+      real(wp), intent(in) :: ground_positions(3, *)        !< (3, ground links) x, y, phi, in the deck's unit and rad
       type(unknown_t), intent(in) :: unknowns(0:*)          !< (0:unknowns)
       real(wp), intent(in) :: length                        !< the unit of slides in the deck's
       real(wp), intent(inout) :: positions(3, *)            !< (3, links) x, y, phi, in the deck's unit and rad
@@ -117,6 +114,9 @@ contains
       real(wp) :: check
       integer :: i, k
 
+      do i = 1, grounds
+         positions(:, ground(i)) = ground_positions(:, i)
+      end do
       check = 0.0_wp
       do i = 1, n
          associate (h => links(i), f => unknowns(links(i)%orientation))
