@@ -24,7 +24,7 @@ release_single := -O1
 release_quad   := -O0
 level_double   := 1
 RELEASE ?= $(release_$(KIND))
-DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
+DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived -DASSERTIONS
 # Links in two seconds instead of ten.
 no_lto  := -fno-lto -fno-use-linker-plugin
 

@@ -10,6 +10,7 @@
 !> small an error could change, and any other kind of real, is left to a format, which prints the same digits.
 module number_format
    use, intrinsic :: iso_fortran_env, only: int64
+   use assertions, only: asserts, assert
    use kinds, only: wp
    implicit none
    private
@@ -91,6 +92,7 @@ contains
       integer :: d, room, first
       logical :: negative
 
+      if (asserts) call assert(decimals >= 0, 'write_fixed: decimals')
       negative = sign(1.0_wp, value) < 0.0_wp
       ! Room for digits: without a blank, the point and the sign.
       room = numeral_length - 2 - merge(1, 0, negative)

@@ -10,6 +10,7 @@
 !> that could be spared changes along the motion. The residual that is left, by which they contradict one another, is
 !> the closure error.
 module block_solver
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
       entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
@@ -92,6 +93,10 @@ contains
       real(wp) :: ratio
       integer :: k
 
+      if (asserts) then
+         call assert(all(list >= 1 .and. list <= size(b%list)), 'solve_blocks: numbers of blocks')
+         call assert(ubound(s%u, 1) == b%unknowns, 'solve_blocks: a state of these blocks')
+      end if
       convergence = nothing_gathered
       k = 0
       do while (k < size(list) .and. is_solved(convergence))

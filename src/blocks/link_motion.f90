@@ -4,6 +4,7 @@
 !>
 !> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
 module link_motion
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use plane_vectors, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
@@ -91,6 +92,7 @@ contains
       type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; x and y from the chain's origin
       logical, intent(out) :: finite         !< no number is out of range, and no sum of them
 
+      if (asserts) call assert(n <= size(chain%links), 'move_links: as many links as there are')
       q%origin = chain%origin
       call move_chain(n, chain%links, size(chain%ground), chain%ground, chain%ground_position, s%u, chain%length, &
          q%position, q%velocity, q%acceleration, finite)

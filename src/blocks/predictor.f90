@@ -14,6 +14,7 @@
 !> For comparison (--study) the order can be given: x_0 only, with its velocity, with its acceleration as well, and
 !> with the third derivative as the difference of two accelerations.
 module predictor
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: own_predictor
    use drive_path, only: drive_path_t
@@ -235,6 +236,7 @@ contains
       real(wp) :: step, d, w(3)
       integer :: i, k, known
 
+      if (asserts) call assert(history%filled >= 1, 'predict: a motion that is remembered')
       change = 0.0_wp
       step = t - history%t(0)
       known = 0

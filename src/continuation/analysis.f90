@@ -27,6 +27,7 @@
 !> | on_motion    | is beyond a limit    | skip_instant | beyond | the end of the motion                          |
 !> | lost, beyond | is beyond a limit    | skip_instant | beyond | that it is beyond                              |
 module analysis
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t, make_structure
@@ -132,6 +133,7 @@ contains
       type(diagnostic_t), allocatable :: list(:)
       integer :: iterations
 
+      if (asserts) call assert(abs(t) <= huge(t), 'advance: a time')
       call restore_instant(analysis)
       iterations = analysis%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)

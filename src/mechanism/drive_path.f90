@@ -4,6 +4,7 @@
 !> can go on by value. The parameter of a leg runs through the times between which the leader has the values of its
 !> ends.
 module drive_path
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: drive_t
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, halve, middle_of
@@ -37,6 +38,7 @@ contains
       real(wp), intent(in) :: parameter      !< of the path, in the deck's unit of time
       real(wp) :: f(3)
 
+      if (asserts) call assert(i >= 1 .and. i <= size(path%laws), 'drive_at: number of a drive')
       if (allocated(path%leg)) then
          f = [path%leg(1, i) + parameter*path%leg(2, i), path%leg(2, i), 0.0_wp]
       else

@@ -1,6 +1,7 @@
 !> The rows of the tables: the motion of links, of any point of any link, and of pairs; measures; instant centres, and
 !> centres of curvature.
 module points
+   use assertions, only: asserts, assert
    use kinds, only: wp, label_length
    use mechanism, only: settings_t, mechanism_t, request_t, has_guide, request_link, request_point, &
       request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, &
@@ -82,6 +83,7 @@ contains
       type(row_t), intent(inout) :: row
       real(wp) :: p(2, 0:2)
 
+      if (asserts) call assert(size(q%position, 2) == size(m%links), 'find_row: a motion of all links')
       if (request%drive > 0) then
          call find_ratio(m, q, request, row)
          return

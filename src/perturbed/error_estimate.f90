@@ -1,6 +1,7 @@
 !> The error estimate: how far the numbers of a motion are known. It solves the rows of mechanisms whose numbers are
 !> off by roundings, at instants at which digits of the tables could be in doubt or errors are asked for.
 module error_estimate
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_point, request_measure, request_pole, is_centre
    use motion, only: motion_t
@@ -86,6 +87,7 @@ contains
       type(error_estimate_t), intent(inout) :: found
       logical :: is_small
 
+      if (asserts) call assert(size(q%position, 2) == size(m%links), 'estimate_errors: a motion of all links')
       found%taken = .false.
       found%asked = always
       call find_amplification(estimator%sizes, m, b, x, state, q, found%amplification, found%may_lose_digits)

@@ -4,6 +4,7 @@
 !> Proof of a step: of the motion between two instants, in as many parts as that takes. A part that is not proved is
 !> divided in its middle, at which the blocks are solved once more.
 module motion_proof
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
@@ -73,6 +74,7 @@ contains
       integer, allocatable :: block_of(:)         !< of the ground, none, and of each unknown
       integer :: failed, i
 
+      if (asserts) call assert(size(q%position, 2) == size(m%links), 'prove_motion: a motion of all links')
       found%taken = .true.
       found%is_proved = .false.
       found%has_step = .false.

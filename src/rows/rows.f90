@@ -1,6 +1,7 @@
 !> The finished rows of a set at one instant, in the order of the cards: all that writers see of a motion. Only this
 !> module knows in which part of the set a row is, its request, the estimates of its errors and its sensitivities.
 module rows
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use motion, only: motion_t, new_motion
    use columns, only: columns_of_rows, forms, kinds_of_rows, row_turning, is_ratio, usual_size
@@ -47,6 +48,7 @@ contains
       type(finished_row_t), allocatable, intent(inout) :: rows(:)   !< (requests of the set)
       integer :: i
 
+      if (asserts) call assert(step >= 0, 'find_rows: number of an instant')
       if (.not. allocated(rows)) allocate (rows(size(motions%rows)))
       do i = 1, size(rows)
          associate (row => rows(i), c => motions%rows(i)%part, n => motions%rows(i)%number)

@@ -1,6 +1,7 @@
 !> The analysis of a set, each of its independent mechanisms by itself: its own steps and substeps, its own limits,
 !> change points and flags. The worst of them is reported for the set.
 module set_analysis
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, &
       measure_line
@@ -294,6 +295,11 @@ contains
       real(wp), intent(out) :: amplification   !< the factor by which roundings grow; 0 if nothing is estimated
       integer :: i
 
+      if (asserts) then
+         call assert(size(list) > 0, 'rows_at: at least one request')
+         call assert(all(list >= 1 .and. list <= size(set%now%rows)), 'rows_at: requests of the set')
+         call assert(all(set%now%rows(list)%part == set%now%rows(list(1))%part), 'rows_at: of one mechanism')
+      end if
       error = 0.0_wp
       amplification = 0.0_wp
       if (set%is_in_lane .and. .not. abs(t - set%now%motions(1)%t) > 0.0_wp) then
