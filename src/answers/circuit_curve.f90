@@ -22,7 +22,7 @@ module circuit_curve
    use cylinders, only: cylinder_t, cylinders_of, cylinder_length
    implicit none
    private
-   public :: curve_t, make_curve, is_redundant, drive_value, deck_position
+   public :: curve_t, make_curve, drive_value, deck_position
    public :: of_value, of_slope, of_bend, of_size, of_cylinder
    public :: curve_point_t, start_point, step_along, step_between, lies_between, offset_from, &
       same_place, same_position_tolerance, reversed
@@ -100,13 +100,6 @@ contains
       curve%factors = new_factors(curve%closure%n)
       curve%nonlinear = new_coordinates(curve%closure)
    end subroutine make_curve
-
-   !> Tells whether some equations are redundant, by count: two of each pair, one of each drive that is held.
-   pure logical function is_redundant(curve)
-      type(curve_t), intent(in) :: curve
-
-      is_redundant = 2*size(curve%closure%pairs) + size(curve%closure%drives) > curve%closure%n - 1
-   end function is_redundant
 
    !> Corrects curve%configuration by Newton's method, at right angles to the row `border`. curve%factors become those
    !> of the Jacobian there, with `border` in the place of the row of the free drive.

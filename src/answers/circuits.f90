@@ -15,8 +15,8 @@ module circuits
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, singular_dead
    use analysis, only: analysis_t, make_analysis, advance
    use assemblies, only: assemblies_t, assembly_t, find_assemblies
-   use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
-      of_size, of_cylinder, step_between, lies_between, same_place, same_position_tolerance
+   use circuit_curve, only: curve_t, make_curve, drive_value, deck_position, curve_point_t, start_point, of_size, &
+      of_cylinder, step_between, lies_between, same_place, same_position_tolerance
    use circuit_trace, only: circuit_t, trace, least_step, end_closed
    use ranges, only: held_at, estimate_side
    implicit none
@@ -352,4 +352,11 @@ contains
 
       turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/full_turn)
    end function turns_of
+
+   !> Tells whether some equations are redundant, by count: two of each pair, one of each drive that is held.
+   pure logical function is_redundant(curve)
+      type(curve_t), intent(in) :: curve
+
+      is_redundant = 2*size(curve%closure%pairs) + size(curve%closure%drives) > curve%closure%n - 1
+   end function is_redundant
 end module circuits

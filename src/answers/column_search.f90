@@ -13,10 +13,10 @@ module column_search
    use points, only: row_t, known_at
    use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at, errors_unasked, errors_in_doubt
-   use nodes, only: node_t, sample_t, joint_margin
+   use nodes, only: node_t, sample_t, joint_margin, extreme_t
    use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
-   use extremes, only: extremes_t, track_t, coordinate_t, offer_sample, record_velocity, add_interval, &
-      equal_part, never_better
+   use extremes, only: extremes_t, track_t, coordinate_t, add_interval, equal_part, offer, value_at_t, badly_known, &
+      greatest, least, outward
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
@@ -498,4 +498,61 @@ contains
          path = [path(:n), found, path(n + 1:)]
       end subroutine accept_extreme
    end subroutine search_columns
+
+   !> Offers a number of a sample as an extreme of a coordinate. The place is kept if dwells of the coordinate are asked
+   !> for.
+   pure subroutine offer_sample(coordinate, k, sample, at_zero, step)
+      type(coordinate_t), intent(inout) :: coordinate
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
+      type(sample_t), intent(in) :: sample
+      logical, intent(in) :: at_zero         !< the sample is at a zero of the next derivative
+      real(wp), intent(in) :: step           !< of TIME
+
+      call offer(coordinate, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, &
+         sample%error(k)), step)
+      if (k == 0 .and. coordinate%dwell > 0.0_wp) &
+         coordinate%places = [coordinate%places, value_at_t(sample%t, sample%f(0))]
+   end subroutine offer_sample
+
+   !> Finds the values between which a number of a coordinate is no new extreme for `offer`. If every value may be one,
+   !> or dwells need its place, the first is above the second.
+   pure function never_better(coordinate, k) result(inside)
+      type(coordinate_t), intent(in) :: coordinate
+      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
+      real(wp) :: inside(least:greatest)
+
+      associate (e => coordinate%found(:, k))
+         inside = e%value + outward*merge(equal_part*coordinate%size_of(k) + e%error, &
+            -badly_known*coordinate%size_of(k), e%is_located)
+         if ((k == 0 .and. coordinate%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
+            .and. e%error <= badly_known*coordinate%size_of(k))) inside = -huge(inside)*outward
+      end associate
+   end function never_better
+
+   !> Takes the velocity of a coordinate at the next place along the run. If its sign has changed, the coordinate has
+   !> reversed at its slowest place between.
+   pure subroutine record_velocity(coordinate, sample)
+      type(coordinate_t), intent(inout) :: coordinate
+      type(sample_t), intent(in) :: sample   !< at that place
+      real(wp) :: speed
+      integer :: this
+
+      speed = abs(sample%f(1))
+      if (speed <= noise_part*coordinate%size_of(1)) speed = 0.0_wp
+      if (speed < coordinate%speed) then
+         coordinate%slowest = value_at_t(sample%t, sample%f(0))
+         coordinate%speed = speed
+      end if
+      if (speed <= 0.0_wp) return
+
+      this = merge(1, -1, sample%f(1) > 0.0_wp)
+      if (coordinate%first_sign == 0) then
+         coordinate%first_sign = this
+         coordinate%start = coordinate%slowest
+      end if
+      if (coordinate%last_sign == -this) coordinate%reversals = [coordinate%reversals, coordinate%slowest]
+      coordinate%last_sign = this
+      coordinate%slowest = value_at_t(sample%t, sample%f(0))
+      coordinate%speed = speed
+   end subroutine record_velocity
 end module column_search

@@ -2,22 +2,22 @@
 !> time that `extreme_search` has reached; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use plane_vectors, only: pi, in_degrees, wrap_angle
+   use plane_vectors, only: pi, wrap_angle
    use mechanism, only: mechanism_t, request_t, request_measure
-   use scales, only: characteristic_length, characteristic_rate, is_length
+   use scales, only: characteristic_length, characteristic_rate
    use separations, only: closes, closes_to
    use drives, only: joints_of, largest_frequency
    use points, only: row_t, is_fixed, column_of_ratio
    use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
    use significance_check, only: max_amplification
    use independent, only: set_t
-   use nodes, only: node_t, sample_t, extreme_t, order_along
+   use nodes, only: node_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
    public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
-      requested_rows, new_extremes, offer, offer_sample, record_velocity, add_interval, is_cyclic, is_covered, &
-      varies, strokes_t, strokes_of, settle_ratios, badly_known, equal_part, never_better
+      requested_rows, new_extremes, offer, add_interval, is_cyclic, is_covered, varies, strokes_t, strokes_of, &
+      badly_known, equal_part
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, and the earlier one is
    !> printed: errors below a table's last digit may be as large.
@@ -148,30 +148,6 @@ contains
       coordinate%size_of(2) = coordinate%size_of(1)*rate
    end subroutine set_ratio
 
-   !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive. Both are at the same
-   !> places only if the rate of the drive is constant; otherwise they are not printed.
-   pure subroutine settle_ratios(coordinates, m)
-      type(coordinate_t), intent(inout) :: coordinates(:)   !< after the last instant
-      type(mechanism_t), intent(in) :: m     !< their mechanism, which has one drive if one of them is a ratio
-      real(wp) :: rate
-      integer :: i
-
-      do i = 1, size(coordinates)
-         if (.not. is_ratio(coordinates(i)%form)) cycle
-         associate (c => coordinates(i), drive => m%drives(1))
-            rate = drive%polynomial(2)
-            if (m%degrees .and. .not. is_length(drive)) rate = in_degrees(rate)
-            c%sought(2) = c%sought(2) .and. abs(rate) > 0.0_wp .and. .not. abs(drive%polynomial(3)) > 0.0_wp
-            if (allocated(drive%terms)) c%sought(2) = c%sought(2) .and. size(drive%terms) == 0
-            if (.not. c%sought(2)) cycle
-            c%found(:, 2)%value = c%found(:, 2)%value/rate
-            c%found(:, 2)%error = c%found(:, 2)%error/abs(rate)
-            c%size_of(2) = c%size_of(2)/abs(rate)
-            if (rate < 0.0_wp) c%found(:, 2) = c%found([greatest, least], 2)
-         end associate
-      end do
-   end subroutine settle_ratios
-
    !> Tells of which coordinates (3) of a row extremes are asked for: their own, or of a derivative.
    pure function are_sought(m, request) result(sought)
       type(mechanism_t), intent(in) :: m     !< whose request it is
@@ -246,21 +222,6 @@ contains
       end do
    end subroutine new_extremes
 
-   !> Offers a number of a sample as an extreme of a coordinate. The place is kept if dwells of the coordinate are asked
-   !> for.
-   pure subroutine offer_sample(coordinate, k, sample, at_zero, step)
-      type(coordinate_t), intent(inout) :: coordinate
-      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
-      type(sample_t), intent(in) :: sample
-      logical, intent(in) :: at_zero         !< the sample is at a zero of the next derivative
-      real(wp), intent(in) :: step           !< of TIME
-
-      call offer(coordinate, k, extreme_t(.true., .true., at_zero, sample%t, sample%f(k), sample%t_error, &
-         sample%error(k)), step)
-      if (k == 0 .and. coordinate%dwell > 0.0_wp) &
-         coordinate%places = [coordinate%places, value_at_t(sample%t, sample%f(0))]
-   end subroutine offer_sample
-
    !> Takes a value as the least or the greatest of a coordinate, if it is. A located value replaces the value of a node
    !> less than a step away. A node replaces another node less than a step away if it is more extreme by more than
    !> rounding, though equal otherwise: their distance is then the error of the time.
@@ -301,48 +262,6 @@ contains
          end associate
       end do
    end subroutine offer
-
-   !> Finds the values between which a number of a coordinate is no new extreme for `offer`. If every value may be one,
-   !> or dwells need its place, the first is above the second.
-   pure function never_better(coordinate, k) result(inside)
-      type(coordinate_t), intent(in) :: coordinate
-      integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
-      real(wp) :: inside(least:greatest)
-
-      associate (e => coordinate%found(:, k))
-         inside = e%value + outward*merge(equal_part*coordinate%size_of(k) + e%error, &
-            -badly_known*coordinate%size_of(k), e%is_located)
-         if ((k == 0 .and. coordinate%dwell > 0.0_wp) .or. .not. all(e%exists .and. e%has_bound &
-            .and. e%error <= badly_known*coordinate%size_of(k))) inside = -huge(inside)*outward
-      end associate
-   end function never_better
-
-   !> Takes the velocity of a coordinate at the next place along the run. If its sign has changed, the coordinate has
-   !> reversed at its slowest place between.
-   pure subroutine record_velocity(coordinate, sample)
-      type(coordinate_t), intent(inout) :: coordinate
-      type(sample_t), intent(in) :: sample   !< at that place
-      real(wp) :: speed
-      integer :: this
-
-      speed = abs(sample%f(1))
-      if (speed <= noise_part*coordinate%size_of(1)) speed = 0.0_wp
-      if (speed < coordinate%speed) then
-         coordinate%slowest = value_at_t(sample%t, sample%f(0))
-         coordinate%speed = speed
-      end if
-      if (speed <= 0.0_wp) return
-
-      this = merge(1, -1, sample%f(1) > 0.0_wp)
-      if (coordinate%first_sign == 0) then
-         coordinate%first_sign = this
-         coordinate%start = coordinate%slowest
-      end if
-      if (coordinate%last_sign == -this) coordinate%reversals = [coordinate%reversals, coordinate%slowest]
-      coordinate%last_sign = this
-      coordinate%slowest = value_at_t(sample%t, sample%f(0))
-      coordinate%speed = speed
-   end subroutine record_velocity
 
    !> Adds an interval of time to a list. Intervals that are near one another become one.
    pure subroutine add_interval(list, way, from, to, apart_by)

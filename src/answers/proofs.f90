@@ -5,7 +5,7 @@ module proofs
    use motion, only: flag_none
    use following, only: branch_crossed
    use motion_proof, only: holds
-   use set_analysis, only: set_analysis_t, set_bounds
+   use set_analysis, only: set_analysis_t
    implicit none
    private
    public :: proofs_t, reason_t, record_proof
@@ -78,4 +78,20 @@ contains
          proofs%count = proofs%count + 1
       end associate
    end subroutine record_proof
+
+   !> Finds the largest proved bounds (0:2) of the errors of any link, in the characteristic length and rate of its
+   !> mechanism.
+   pure function set_bounds(set) result(largest)
+      type(set_analysis_t), intent(in) :: set
+      real(wp) :: largest(0:2)
+      integer :: c
+
+      largest = 0.0_wp
+      do c = 1, size(set%list)
+         if (.not. set%now%proofs(c)%is_proved) cycle
+         associate (found => set%now%proofs(c)%largest, sizes => set%estimators(c)%sizes)
+            largest = max(largest, max(found(1, :)/sizes%length, found(2, :))/sizes%rate**[0, 1, 2])
+         end associate
+      end do
+   end function set_bounds
 end module proofs

@@ -11,7 +11,7 @@ module block_assemblies
    use block_rank, only: gauss_newton_step, moving_unknowns
    use bilinear, only: path_start_t, path_end_t, ends_t, solve_quadratic, coarser_rounding
    use homotopy, only: follow_paths
-   use block_bilinear, only: block_form_t, make_form, real_values
+   use block_bilinear, only: block_form_t, make_form
    implicit none
    private
    public :: block_positions_t, find_positions, max_group
@@ -184,4 +184,29 @@ contains
             own_unknowns(b, i) <= b%orientations))
       end function apart
    end subroutine find_positions
+
+   !> Finds the unknowns of the block at a solution, and tells whether they are real.
+   subroutine real_values(form, ending, level, values, is_real)
+      type(block_form_t), intent(in) :: form
+      type(path_end_t), intent(in) :: ending   !< the solution
+      real(dp), intent(in) :: level          !< part of the largest unknown by which the groups may fail to be conjugate
+      real(wp), intent(out) :: values(:)     !< (n) rad or unit of the loop
+      logical, intent(out) :: is_real        !< the two groups are conjugate
+      complex(dp) :: w(0:size(form%turns)), v(0:size(form%turns))
+      integer :: k
+
+      w = matmul(form%basis, ending%x)
+      v = matmul(conjg(form%basis), ending%y)
+      w = w/w(0)
+      v = conjg(v/v(0))
+      is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
+      w = 0.5_dp*(w + v)
+      do k = 1, size(values)
+         if (form%turns(k) < 0) then
+            values(k) = real(atan2(aimag(w(k)), real(w(k))), wp)
+         else
+            values(k) = real(w(k)*conjg(w(form%turns(k))), wp)
+         end if
+      end do
+   end subroutine real_values
 end module block_assemblies

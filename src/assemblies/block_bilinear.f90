@@ -10,10 +10,10 @@ module block_bilinear
    use blocks, only: blocks_t, geometry_t, loop_projection, loop_angles
    use block_state, only: state_t, given
    use block_equations, only: find_known_parts
-   use bilinear, only: bilinear_t, path_end_t, find_null_space
+   use bilinear, only: bilinear_t, find_null_space
    implicit none
    private
-   public :: block_form_t, make_form, real_values
+   public :: block_form_t, make_form
 
    !> The system of a block. The block's unknowns follow from its solutions.
    type :: block_form_t
@@ -319,29 +319,4 @@ contains
          form%system%c(:, :, j) = cmplx(c(:, :, j)/maxval(abs(c(:, :, j))), kind=dp)
       end do
    end subroutine reduce
-
-   !> Finds the unknowns of the block at a solution, and tells whether they are real.
-   subroutine real_values(form, ending, level, values, is_real)
-      type(block_form_t), intent(in) :: form
-      type(path_end_t), intent(in) :: ending   !< the solution
-      real(dp), intent(in) :: level          !< part of the largest unknown by which the groups may fail to be conjugate
-      real(wp), intent(out) :: values(:)     !< (n) rad or unit of the loop
-      logical, intent(out) :: is_real        !< the two groups are conjugate
-      complex(dp) :: w(0:size(form%turns)), v(0:size(form%turns))
-      integer :: k
-
-      w = matmul(form%basis, ending%x)
-      v = matmul(conjg(form%basis), ending%y)
-      w = w/w(0)
-      v = conjg(v/v(0))
-      is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
-      w = 0.5_dp*(w + v)
-      do k = 1, size(values)
-         if (form%turns(k) < 0) then
-            values(k) = real(atan2(aimag(w(k)), real(w(k))), wp)
-         else
-            values(k) = real(w(k)*conjg(w(form%turns(k))), wp)
-         end if
-      end do
-   end subroutine real_values
 end module block_bilinear

@@ -8,7 +8,7 @@ module block_motion
    use motion, only: motion_t, new_motion
    use drive_path, only: drive_path_t
    use convergence, only: convergence_t
-   use blocks, only: blocks_t, geometry_t, moving_blocks, blocks_that_give, largest_known, own_unknowns
+   use blocks, only: blocks_t, geometry_t, blocks_that_give, largest_known, own_unknowns
    use block_numbers, only: evaluate_geometry
    use block_state, only: state_t, unknown_t, set_drive_values
    use block_solver, only: workspace_t, solve_block, solve_explicit
@@ -16,8 +16,7 @@ module block_motion
       missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, &
-      flag_singular_links, get_driven_links, slide_unit
+   public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, flag_singular_links, get_driven_links
 
 contains
 
@@ -198,13 +197,19 @@ contains
       missing(own_unknowns(b, i)) = max(own, largest_known(b, i, missing))
    end subroutine record_missing
 
-   !> Gives the unit of a slide in the deck's; 1 of an angle.
-   pure real(wp) function slide_unit(b, x, k) result(unit)
+   !> Tells which blocks a drive moves, itself or through those on which they build (size(list)).
+   pure function moving_blocks(b, list) result(moving)
       type(blocks_t), intent(in) :: b
-      type(geometry_t), intent(in) :: x
-      integer, intent(in) :: k               !< the number of the unknown
+      integer, intent(in) :: list(:)   !< (any number) blocks with all on which they build, in solving order
+      logical :: moving(size(list))
+      integer :: moves(0:b%unknowns), k
 
-      unit = x%unit(k)
-      if (k > b%orientations) unit = unit*x%equations%length
-   end function slide_unit
+      moves = 0
+      do k = 1, size(list)
+         associate (block => b%list(list(k)))
+            moving(k) = any(b%rows(block%first_row:block%last_row)%drive > 0) .or. largest_known(b, list(k), moves) > 0
+            moves(b%unknown(block%first:block%last)) = merge(1, 0, moving(k))
+         end associate
+      end do
+   end function moving_blocks
 end module block_motion

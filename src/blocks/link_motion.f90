@@ -7,11 +7,11 @@ module link_motion
    use assertions, only: asserts, assert
    use kinds, only: wp
    use plane_vectors, only: rotated, quarter_turn, add_rotating
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, has_guide
    use motion, only: motion_t, flag_none, flag_not_converged, flag_singular
-   use spanning_tree, only: place_on_tree
    use blocks, only: blocks_t, geometry_t, chain_t, chain_link_t
    use block_state, only: unknown_t, state_t
+   use spanning_tree, only: axes_t, guide, link_offset_t, point_offset, spanning_tree_t
    implicit none
    private
    public :: new_chain, assign_chain, move_links, flag_links, &
@@ -191,4 +191,25 @@ contains
             links == missing_nothing)
       end associate
    end subroutine flag_links
+
+   !> Finds where a link is, seen from its parent, in the deck's unit of length.
+   pure function place_on_tree(m, tree, axes, link) result(p)
+      type(mechanism_t), intent(in) :: m
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(in) :: axes
+      integer, intent(in) :: link   !< its number; it has a parent
+      type(link_offset_t) :: p
+      real(wp) :: sign_of
+
+      associate (pair => m%pairs(tree%parent_joint(link)), parent => tree%parent(link))
+         sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
+         p%reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+         p%body_vector = point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
+         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - axes%origin)
+         if (.not. has_guide(pair%kind)) return
+         p%slide = tree%slide(tree%parent_joint(link))
+         p%slide_body_vector = sign_of*guide(m, axes, tree%parent_joint(link), across=.false.)
+         p%reach = p%reach - sign_of*guide(m, axes, tree%parent_joint(link), across=.true.)*pair%offset
+      end associate
+   end function place_on_tree
 end module link_motion

@@ -19,7 +19,7 @@ module predictor
    use mechanism, only: own_predictor
    use drive_path, only: drive_path_t
    use convergence, only: convergence_t
-   use blocks, only: blocks_t, geometry_t, iterated_unknowns, own_unknowns
+   use blocks, only: blocks_t, geometry_t, own_unknowns
    use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, &
       set_direction, set_values, largest_drive_rate
    use block_solver, only: solve_explicit
@@ -322,4 +322,17 @@ contains
       has_equal_steps = abs(history%t(0) - history%t(1) - step) <= equal_step_part*abs(step) &
          .and. abs(history%t(1) - history%t(2) - step) <= equal_step_part*abs(step)
    end function has_equal_steps
+
+   !> Lists the unknowns of those blocks that iterate.
+   pure function iterated_unknowns(b, list) result(unknowns)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)   !< (any number) numbers of blocks
+      integer, allocatable :: unknowns(:)
+      logical :: iterated(size(b%list))
+      integer :: u
+
+      iterated = .false.
+      iterated(list) = .not. b%list(list)%explicit
+      unknowns = pack([(u, u=1, b%unknowns)], iterated(b%block_of))
+   end function iterated_unknowns
 end module predictor

@@ -29,7 +29,7 @@
 module analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t, method_newton, with_all_links
    use structure, only: structure_t, make_structure
    use drive_path, only: moving_drives, time_beside
    use motion, only: motion_t, add_diagnostics, forget_links, known_of, flag_none, flag_not_converged, flag_singular, &
@@ -41,14 +41,14 @@ module analysis
    use block_solver, only: solve_blocks
    use block_motion, only: assign_geometry, get_ratios, get_driven_links
    use link_motion, only: move_links
-   use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
+   use dense_method, only: dense_t, make_dense, solve_all_links
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: leave, follow, go_by_value
    use strokes, only: find_length_limit, flag_strokes
-   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, &
-      step_stands, step_rests, follow_structure, move_memory, begin_motion, measure_closure_error, continue_to, &
-      accept_substep, revert, place_t, record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, &
-      certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
+   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, step_rests, &
+      follow_structure, begin_motion, measure_closure_error, continue_to, accept_substep, revert, place_t, &
+      record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, certificate_counts_t, branch_none, &
+      branch_first, branch_same, branch_crossed
    implicit none
    private
    public :: analysis_t, make_analysis, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant, &
@@ -533,4 +533,24 @@ contains
       redundancy_error = -1.0_wp
       if (analysis%blocks%redundant > 0) redundancy_error = analysis%max_closure_error
    end function redundancy_error
+
+   !> Makes the mechanism that the blocks solve for such a method: all its links, to the limit of rounding.
+   pure function for_blocks(m) result(own)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t) :: own
+
+      own = with_all_links(m)
+      own%method = method_newton
+      own%tolerance = 0.0_wp
+   end function for_blocks
+
+   !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
+   subroutine move_memory(old, new)
+      type(following_t), intent(inout) :: old, new
+
+      call move_alloc(old%blocks, new%blocks)
+      call move_alloc(old%geometry, new%geometry)
+      call move_alloc(old%guess, new%guess)
+      call move_alloc(old%work, new%work)
+   end subroutine move_memory
 end module analysis

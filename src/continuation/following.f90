@@ -27,7 +27,7 @@ module following
    use branch_switching, only: pass, is_short_and_right, branch_requests_t, new_branch_requests
    implicit none
    private
-   public :: following_t, step_record_t, begin_following, follow_structure, move_memory, begin_motion, solve_at, &
+   public :: following_t, step_record_t, begin_following, follow_structure, begin_motion, solve_at, &
       measure_closure_error, continue_to, accept_substep, revert, follow_from, place_t, record_checkpoint, restore, &
       passed_of
    public :: step_failed, step_blocked, step_creeps, step_there, step_stands, step_rests
@@ -153,16 +153,6 @@ contains
       end if
       call begin_motion(following, m)
    end subroutine follow_structure
-
-   !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
-   subroutine move_memory(old, new)
-      type(following_t), intent(inout) :: old, new
-
-      call move_alloc(old%blocks, new%blocks)
-      call move_alloc(old%geometry, new%geometry)
-      call move_alloc(old%guess, new%guess)
-      call move_alloc(old%work, new%work)
-   end subroutine move_memory
 
    !> Puts a mechanism into the state in which nothing is solved yet.
    subroutine begin_motion(following, m)

@@ -5,7 +5,7 @@ module deck_options
    use parameters, only: angle_in_radians
    use mechanism
    use card_sets, only: card_set_t, has_drawing, look_up, look_up_kinds, match_word, add_card_error
-   use columns, only: columns_of_rows, form_of, quantity_of, forms
+   use columns, only: columns_of_rows, form_of, forms, kinds_of_rows, quantities
    use cards
    use input_errors
    use name_table, only: name_table_t, store_name, find_name
@@ -566,4 +566,13 @@ contains
          end associate
       end do
    end subroutine check_centres
+
+   !> Gives the word of a column on COLUMN cards.
+   pure character(8) function quantity_of(form, j) result(word)
+      integer, intent(in) :: form            !< of the rows: row_link, ...
+      integer, intent(in) :: j               !< the column, in `columns_of_rows`
+
+      word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)
+      if (word == '') word = columns_of_rows(j)%english(:len(word))
+   end function quantity_of
 end module deck_options

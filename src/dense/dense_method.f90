@@ -7,7 +7,7 @@
 !> nearer. If the Jacobian has no inverse, links that only drives move have the rates of the drives.
 module dense_method
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, method_matrix, own_predictor, with_all_links
+   use mechanism, only: mechanism_t, method_matrix, own_predictor
    use motion, only: motion_t, new_motion
    use linear_solver, only: factors_t, new_factors, solve_factored => solve
    use block_matrix, only: shape_t, pivot_range
@@ -22,7 +22,7 @@ module dense_method
    use position_iteration, only: solve_position
    implicit none
    private
-   public :: dense_t, make_dense, for_blocks, solve_all_links
+   public :: dense_t, make_dense, solve_all_links
 
    !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain_part = 0.5_wp
@@ -61,16 +61,6 @@ contains
       dense%factors = new_factors(dense%system%n)
       allocate (dense%drive_values(3, size(m%drives)))
    end subroutine make_dense
-
-   !> Makes the mechanism that the blocks solve for such a method: all its links, to the limit of rounding.
-   pure function for_blocks(m) result(own)
-      type(mechanism_t), intent(in) :: m
-      type(mechanism_t) :: own
-
-      own = with_all_links(m)
-      own%method = method_newton
-      own%tolerance = 0.0_wp
-   end function for_blocks
 
    !> Solves for the motion of all links at a time at which the blocks have found one. If no try finds the position of
    !> the blocks, `found` has only their motion.

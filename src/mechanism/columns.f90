@@ -1,19 +1,19 @@
 !> Columns, forms and kinds of rows as data, for all modules that print, search or sum up the numbers of rows. No other
 !> module knows which numbers a row of a kind has, their names, or whether a number exists.
 module columns
-   use kinds, only: wp, label_length
+   use kinds, only: wp
    use plane_vectors, only: degree
    use scales, only: is_length
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_measure, &
       request_pole, request_curve, request_ratio, has_guide
-   use instant_centres, only: centre_finite, centre_infinite, centre_starting, centre_resting, points_coincide
+   use instant_centres, only: centre_finite, centre_infinite, points_coincide
    implicit none
    private
    public :: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, row_turning, last_form, &
       table_turning, last_table, of_length, of_angle, last_dimension
    public :: table_of, is_ratio, usual_size, quantities, drives
-   public :: quantity_of, cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, &
-      cell_spare, last_cell
+   public :: cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
+      last_cell
 
    !> The dimensions of numbers, of which derivatives are taken.
    integer, parameter :: of_length = 1, of_angle = 2
@@ -237,15 +237,6 @@ contains
       end do
       j = 0
    end function column_at
-
-   !> Gives the word of a column on COLUMN cards.
-   pure character(8) function quantity_of(form, j) result(word)
-      integer, intent(in) :: form            !< of the rows: row_link, ...
-      integer, intent(in) :: j               !< the column, in `columns_of_rows`
-
-      word = kinds_of_rows(forms(form)%kind)%quantities(columns_of_rows(j)%order)
-      if (word == '') word = columns_of_rows(j)%english(:len(word))
-   end function quantity_of
 
    !> Finds the contents of a cell: cell_number, cell_none, cell_spare, or the word for the state of its row.
    pure integer function cell_of(column, known, state) result(cell)

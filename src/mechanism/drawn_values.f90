@@ -7,7 +7,7 @@ module drawn_values
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
-   public :: complete_from_drawing, follow_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
+   public :: complete_from_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
 
    !> A relative difference below this is zero. A coordinate passes through about ten operations, each with an error of
    !> half a rounding of the places involved; coordinates that another program has printed are off by one or two more.
@@ -44,30 +44,6 @@ contains
       if (pair%drawn(3)) pair%beta = without_rounding(phi(2) - phi(1), sum(abs(phi)))
       m%pairs(i) = pair
    end subroutine complete_from_drawing
-
-   !> Gives all numbers that are as drawn the values of the drawing. If the mechanism has lengths, these have moved
-   !> points since the numbers were taken: then the numbers change as much as the drawing has changed since `before`.
-   pure recursive subroutine follow_drawing(m, before)
-      type(mechanism_t), intent(inout) :: m
-      type(mechanism_t), allocatable, intent(in) :: before   !< the mechanism earlier; without lengths not allocated
-      type(mechanism_t), allocatable :: taken, none
-      integer :: i
-
-      do i = 1, size(m%pairs)
-         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call complete_from_drawing(m, i)
-      end do
-      do i = 1, size(m%drives)
-         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
-      end do
-      if (.not. allocated(before)) return
-      taken = before
-      call follow_drawing(taken, none)
-      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - taken%pairs%alpha)
-      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - taken%pairs%offset)
-      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - taken%pairs%beta)
-      where (m%drives%drawn) m%drives%polynomial(1) = before%drives%polynomial(1) &
-         + (m%drives%polynomial(1) - taken%drives%polynomial(1))
-   end subroutine follow_drawing
 
    !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (length).
    pure real(wp) function drawn_opening(m, pair) result(opening)

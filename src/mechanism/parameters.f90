@@ -10,13 +10,13 @@ module parameters
       parameter_stroke, term_harmonic, term_power, term_table, term_kinds
    use scales, only: is_length
    use splines, only: new_spline
-   use drawn_values, only: follow_drawing
    use drawn_lengths, only: apply_lengths
    use names, only: drive_name
    use number_format, only: whole
+   use drawn_values, only: complete_from_drawing, drawn_drive
    implicit none
    private
-   public :: unit_t, takes_tolerance, is_as_drawn, parameter_name, parameter_unit, parameter_value, change_parameter, &
+   public :: is_as_drawn, unit_t, takes_tolerance, parameter_name, parameter_unit, parameter_value, change_parameter, &
       set_parameter, set_table, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
@@ -38,17 +38,6 @@ module parameters
       'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
 
 contains
-
-   !> Tells whether a number is blank on its card: the drawing gives its value.
-   pure logical function is_as_drawn(m, number)
-      type(mechanism_t), intent(in) :: m
-      type(parameter_t), intent(in) :: number
-
-      is_as_drawn = .false.
-      if (number%kind == parameter_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)
-      if (number%kind == parameter_drive .and. number%term == 0 .and. number%place == 1) is_as_drawn = &
-         m%drives(number%subject)%drawn
-   end function is_as_drawn
 
    !> Tells whether a number can have a tolerance. These numbers have none: the estimates of moving links; the axes of a
    !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
@@ -318,4 +307,39 @@ contains
       minute_in = 0.0_wp
       if (i > 0) minute_in = minutes(i)
    end function minute_in
+
+   !> Gives all numbers that are as drawn the values of the drawing. If the mechanism has lengths, these have moved
+   !> points since the numbers were taken: then the numbers change as much as the drawing has changed since `before`.
+   pure recursive subroutine follow_drawing(m, before)
+      type(mechanism_t), intent(inout) :: m
+      type(mechanism_t), allocatable, intent(in) :: before   !< the mechanism earlier; without lengths not allocated
+      type(mechanism_t), allocatable :: taken, none
+      integer :: i
+
+      do i = 1, size(m%pairs)
+         if (any(m%pairs(i)%drawn) .or. m%pairs(i)%pin > 0) call complete_from_drawing(m, i)
+      end do
+      do i = 1, size(m%drives)
+         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
+      end do
+      if (.not. allocated(before)) return
+      taken = before
+      call follow_drawing(taken, none)
+      where (m%pairs%drawn(1)) m%pairs%alpha = before%pairs%alpha + (m%pairs%alpha - taken%pairs%alpha)
+      where (m%pairs%drawn(2)) m%pairs%offset = before%pairs%offset + (m%pairs%offset - taken%pairs%offset)
+      where (m%pairs%drawn(3)) m%pairs%beta = before%pairs%beta + (m%pairs%beta - taken%pairs%beta)
+      where (m%drives%drawn) m%drives%polynomial(1) = before%drives%polynomial(1) &
+         + (m%drives%polynomial(1) - taken%drives%polynomial(1))
+   end subroutine follow_drawing
+
+   !> Tells whether a number is blank on its card: the drawing gives its value.
+   pure logical function is_as_drawn(m, number)
+      type(mechanism_t), intent(in) :: m
+      type(parameter_t), intent(in) :: number
+
+      is_as_drawn = .false.
+      if (number%kind == parameter_pair) is_as_drawn = m%pairs(number%subject)%drawn(number%place)
+      if (number%kind == parameter_drive .and. number%term == 0 .and. number%place == 1) is_as_drawn = &
+         m%drives(number%subject)%drawn
+   end function is_as_drawn
 end module parameters

@@ -13,11 +13,10 @@ module points
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
    use pair_geometry, only: pair_motion
    use plane_vectors, only: pi, full_turn, degree, direction, rotated, point_of, add_rotating, cross
-   use motion, only: motion_t, turned_t, known_of, flag_none, flag_singular, flag_stroke
+   use motion, only: motion_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
-   public :: row_t, column_of_ratio, find_row, known_at, keep_turns, amplification_in_measure, difference, is_due, &
-      is_listed, &
+   public :: row_t, column_of_ratio, find_row, known_at, amplification_in_measure, difference, is_due, is_listed, &
       is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
@@ -398,26 +397,6 @@ contains
       x = angle - full_turn*anint(angle/full_turn)
       if (x <= half_turn_margin - pi) x = x + full_turn
    end function between_half_turns
-
-   !> Keeps the values of the measures that continue, from which the next instant goes on.
-   pure subroutine keep_turns(m, q)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
-      type(row_t) :: row
-      integer :: i
-
-      if (.not. allocated(m%measures)) return
-      if (.not. any(m%measures%continues)) return
-      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
-      do i = 1, size(m%measures)
-         if (.not. m%measures(i)%continues) cycle
-         call find_row(m, q, request_t(request_measure, i), row)
-         associate (turned => q%turned(i))
-            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
-            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
-         end associate
-      end do
-   end subroutine keep_turns
 
    !> Gives the coordinate of a pair with its derivatives (0:2): its slide (length) or its angle (rad).
    pure function motion_of_pair(m, q, i) result(s)

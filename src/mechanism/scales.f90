@@ -8,8 +8,7 @@ module scales
       used_points
    implicit none
    private
-   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, &
-      latest_time, shortest_step
+   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, latest_time
 
 contains
 
@@ -103,19 +102,6 @@ contains
 
       t = max(abs(settings%t0), abs(settings%t1), maxval([0.0_wp, abs(settings%at)]))
    end function latest_time
-
-   !> Finds the shortest step from an instant to the next one in the deck's order, in the deck's unit of time. Steps of
-   !> length 0 do not count. Without a step it is the largest number.
-   pure real(wp) function shortest_step(settings) result(step)
-      class(settings_t), intent(in) :: settings
-      real(wp), allocatable :: times(:), steps(:)
-
-      times = settings%at
-      if (settings%steps >= 0) times = [settings%t1, settings%at]
-      steps = abs(times(2:) - times(:size(times) - 1))
-      if (settings%steps > 0) steps = [steps, abs(settings%t1 - settings%t0)/real(settings%steps, wp)]
-      step = minval(steps, mask=steps > 0.0_wp)
-   end function shortest_step
 
    !> Finds the largest power of two that is not above a value: division by it is exact.
    pure real(wp) function power_of_two(value) result(p)

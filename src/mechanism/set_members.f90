@@ -2,14 +2,13 @@
 !> in whatever part they are.
 module set_members
    use kinds, only: label_length
-   use mechanism, only: drive_t, request_t, shown_links
+   use mechanism, only: drive_t, request_t
    use independent, only: set_t, request_of
    use names, only: drive_name, subject_name
    use columns, only: form_of
    implicit none
    private
-   public :: requests_of, row_form, row_subject, link_of_point, link_names, drive_of, drive_number, drive_title, &
-      same_before, has_cylinders
+   public :: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
 
 contains
 
@@ -41,37 +40,6 @@ contains
       end associate
    end function row_subject
 
-   !> Names the link of the point of a row.
-   pure function link_of_point(set, i) result(name)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: i               !< number of the row in the set
-      character(label_length) :: name
-
-      associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
-         name = own%links(own%points(own%requests(k)%subject)%link)%name
-      end associate
-   end function link_of_point
-
-   !> Names links, without the blocks of slots.
-   pure function link_names(set, part, links) result(names)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: part            !< number of the independent mechanism
-      integer, intent(in) :: links(:)        !< numbers of the links there
-      character(label_length), allocatable :: names(:)
-
-      associate (own => set%parts(part))
-         names = own%links(shown_links(own, links))%name
-      end associate
-   end function link_names
-
-   !> Tells whether a set has cylinders.
-   pure logical function has_cylinders(set)
-      class(set_t), intent(in) :: set
-      integer :: c
-
-      has_cylinders = any([(any(set%parts(c)%pairs%is_cylinder), c=1, set%count)])
-   end function has_cylinders
-
    !> Gives a drive with its law. Assign the result: gfortran loses the memory of one that is used in an expression.
    pure type(drive_t) function drive_of(set, i)
       class(set_t), intent(in) :: set
@@ -99,15 +67,4 @@ contains
          name = trim(drive_name(own, own%drives(set%drives(i)%number)))
       end associate
    end function drive_title
-
-   !> Counts the drives of its mechanism before a drive that drive the same coordinate.
-   pure integer function same_before(set, i) result(count_before)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: i               !< number of the drive in the set
-
-      associate (n => set%drives(i)%number, drives => set%parts(set%drives(i)%part)%drives)
-         count_before = count(drives(:n - 1)%kind == drives(n)%kind .and. drives(:n - 1)%subject == drives(n)%subject &
-            .and. drives(:n - 1)%second == drives(n)%second)
-      end associate
-   end function same_before
 end module set_members

@@ -12,7 +12,7 @@ module changed_rows
    use block_equations, only: assemble_dense, right_hand_side
    use block_structure, only: structure_t, make_structure
    use drive_path, only: drive_path_t
-   use block_motion, only: select_solved_blocks, assign_geometry, assign_path, get_ratios, slide_unit
+   use block_motion, only: select_solved_blocks, assign_geometry, assign_path, get_ratios
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
    use link_motion, only: move_links, flag_links, missing_nothing, missing_rates, missing_all
@@ -258,4 +258,14 @@ contains
          end do
       end associate
    end subroutine refine_rates
+
+   !> Gives the unit of a slide in the deck's; 1 of an angle.
+   pure real(wp) function slide_unit(b, x, k) result(unit)
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      integer, intent(in) :: k               !< the number of the unknown
+
+      unit = x%unit(k)
+      if (k > b%orientations) unit = unit*x%equations%length
+   end function slide_unit
 end module changed_rows

@@ -19,7 +19,7 @@ module sensitivities
    use convergence, only: inconsistent_level
    implicit none
    private
-   public :: sensitivities_t, find_sensitivities, has_tolerances, worst_case, root_of_squares
+   public :: sensitivities_t, find_sensitivities, has_tolerances
 
    !> At one instant, in the units of the rows (lengths, radians) and of the numbers on their cards.
    type :: sensitivities_t
@@ -230,31 +230,4 @@ contains
          side = merge(1, -1, ahead > joint_distance(term))
       end associate
    end subroutine look_at_joint
-
-   !> Gives the largest change (3, 0:2) of a row that tolerances allow.
-   pure function worst_case(tolerances, changes) result(x)
-      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
-      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
-      real(wp) :: x(3, 0:2)
-      integer :: d
-
-      x = 0.0_wp
-      do d = 1, size(tolerances)
-         x = x + abs(changes(:, :, d))*tolerances(d)%size_of
-      end do
-   end function worst_case
-
-   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time.
-   pure function root_of_squares(tolerances, changes) result(x)
-      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
-      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
-      real(wp) :: x(3, 0:2)
-      integer :: c, k
-
-      do k = 0, 2
-         do c = 1, 3
-            x(c, k) = norm2(changes(c, k, :)*tolerances%size_of)
-         end do
-      end do
-   end function root_of_squares
 end module sensitivities

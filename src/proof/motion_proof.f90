@@ -14,10 +14,10 @@ module motion_proof
    use block_state, only: state_t, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_blocks
    use balls, only: ball_t
-   use ball_equations, only: ball_numbers_t
+   use ball_equations, only: ball_numbers_t, new_ball_state
    use ball_numbers, only: new_ball_numbers
    use position_proof, only: placed_t, new_placed, prove_position, max_proved_unknowns
-   use tube_proof, only: tube_t, new_tube, prove_tube
+   use tube_proof, only: tube_t, prove_tube
    use link_bounds, only: bound_links
    implicit none
    private
@@ -170,4 +170,15 @@ contains
          if (proof%is_proved) call prove_part(middle, to, shortest)
       end subroutine prove_part
    end subroutine prove_step
+
+   !> Makes room for a tube of a structure.
+   pure function new_tube(b, drives) result(tube)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: drives          !< number of drives
+      type(tube_t) :: tube
+
+      allocate (tube%radius(0:b%unknowns), source=0.0_wp)
+      tube%curve = new_ball_state(b, drives)
+      tube%balls = tube%curve
+   end function new_tube
 end module motion_proof

@@ -20,12 +20,11 @@ module tube_proof
    use blocks, only: blocks_t
    use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room
-   use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
-      ball_accelerations
+   use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, set_ball, set_radius, ball_accelerations
    use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product, time_error
    implicit none
    private
-   public :: tube_t, new_tube, prove_tube
+   public :: tube_t, prove_tube
 
    !> The tube, in the units of the blocks.
    type :: tube_t
@@ -37,17 +36,6 @@ module tube_proof
    end type tube_t
 
 contains
-
-   !> Makes room for a tube of a structure.
-   pure function new_tube(b, drives) result(tube)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: drives          !< number of drives
-      type(tube_t) :: tube
-
-      allocate (tube%radius(0:b%unknowns), source=0.0_wp)
-      tube%curve = new_ball_state(b, drives)
-      tube%balls = tube%curve
-   end function new_tube
 
    !> Proves the motion of the needed blocks between two positions. The proof ends at the first block that is not
    !> proved.

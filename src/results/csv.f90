@@ -20,8 +20,7 @@ module csv
    use drives, only: drive_motion
    use points, only: row_t
    use independent, only: set_t, request_of
-   use set_members, only: requests_of, row_form, row_subject, link_of_point, drive_of, drive_number, drive_title, &
-      same_before
+   use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
    use name_table, only: name_table_t, store_name, find_name
    use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
@@ -385,4 +384,26 @@ contains
 
       table_width = 1 + size(table%drives) + size(table%columns)
    end function table_width
+
+   !> Counts the drives of its mechanism before a drive that drive the same coordinate.
+   pure integer function same_before(set, i) result(count_before)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the drive in the set
+
+      associate (n => set%drives(i)%number, drives => set%parts(set%drives(i)%part)%drives)
+         count_before = count(drives(:n - 1)%kind == drives(n)%kind .and. drives(:n - 1)%subject == drives(n)%subject &
+            .and. drives(:n - 1)%second == drives(n)%second)
+      end associate
+   end function same_before
+
+   !> Names the link of the point of a row.
+   pure function link_of_point(set, i) result(name)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the row in the set
+      character(label_length) :: name
+
+      associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
+         name = own%links(own%points(own%requests(k)%subject)%link)%name
+      end associate
+   end function link_of_point
 end module csv

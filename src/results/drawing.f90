@@ -16,7 +16,7 @@ module drawing
    implicit none
    private
    public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
-   public :: point_place, point_velocity, moved
+   public :: point_place, moved
 
    !> Between the instants of a deck others are computed, so that the motion has about this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation would leap.
@@ -302,19 +302,6 @@ contains
 
       p = point_of(snapshot%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
-
-   !> Gives the velocity (2) of a point at a position; 0 if it is not known.
-   pure function point_velocity(m, snapshot, i) result(v)
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: snapshot   !< of a drawing with arrows
-      integer, intent(in) :: i               !< the number of the point
-      real(wp) :: v(2)
-
-      associate (link => m%points(i)%link)
-         v = snapshot%velocity(:, link) &
-            + snapshot%rate(link)*quarter_turn(point_place(m, snapshot, i) - snapshot%place(:2, link))
-      end associate
-   end function point_velocity
 
    !> Finds the outlines (links) of all links of a mechanism, in one pass over its points.
    pure function outlines_of(m) result(list)

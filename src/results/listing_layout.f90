@@ -8,16 +8,16 @@ module listing_layout
    use plane_vectors, only: degree
    use mechanism, only: drive_t, settings_t, request_t, request_link
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning, last_form, &
-      table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, &
-      usual_size, cell_none, last_cell, of_length, of_angle
+      table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, usual_size, cell_none, &
+      last_cell, of_length, of_angle, cell_words
    use independent, only: set_t, request_of
    use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
    use drives, only: growing_sizes
    use names, only: more
-   use scales, only: characteristic_length, characteristic_rate, latest_time, is_length, shortest_step
+   use scales, only: characteristic_length, characteristic_rate, latest_time, is_length
    use number_format, only: numeral_length
    use text_output, only: output_t, put
-   use table, only: format_t, words_of_cells, choose_digits, power_text, unit_of, digits_after_first, order_margin
+   use table, only: format_t, choose_digits, power_text, unit_of, digits_after_first, order_margin
    use phrases
    implicit none
    private
@@ -359,4 +359,27 @@ contains
          if (present(next)) head = next
       end do
    end subroutine write_folded
+
+   !> Finds the shortest step from an instant to the next one in the deck's order, in the deck's unit of time. Steps of
+   !> length 0 do not count. Without a step it is the largest number.
+   pure real(wp) function shortest_step(settings) result(step)
+      class(settings_t), intent(in) :: settings
+      real(wp), allocatable :: times(:), steps(:)
+
+      times = settings%at
+      if (settings%steps >= 0) times = [settings%t1, settings%at]
+      steps = abs(times(2:) - times(:size(times) - 1))
+      if (settings%steps > 0) steps = [steps, abs(settings%t1 - settings%t0)/real(settings%steps, wp)]
+      step = minval(steps, mask=steps > 0.0_wp)
+   end function shortest_step
+
+   !> Gives the words of cells without a number, each at the end of its field.
+   pure function words_of_cells(polish) result(words)
+      logical, intent(in) :: polish          !< in Polish
+      character(numeral_length) :: words(cell_none:last_cell)
+
+      words = cell_words%english
+      if (polish) words = cell_words%polish
+      words = adjustr(words)
+   end function words_of_cells
 end module listing_layout

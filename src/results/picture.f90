@@ -3,11 +3,11 @@
 !> shows the frame in which the mechanism is read best, and a few others.
 module picture
    use kinds, only: wp
-   use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use mechanism, only: has_guide, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, mechanism_t
    use plane_vectors, only: degree, direction, quarter_turn
    use drives, only: drive_motion
    use names, only: drive_name
-   use drawing, only: drawing_t, snapshot_t, point_place, point_velocity, moved
+   use drawing, only: drawing_t, snapshot_t, point_place, moved
    use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
    use canvas, only: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_outlines, place_name, &
       draw_label, draw_foot, draw_bar, caption, add_lines, add_box, cover_of, line_height
@@ -359,4 +359,17 @@ contains
       end do
       if (distance > 0.0_wp) distance = distance/max(extent, distance)
    end function distance
+
+   !> Gives the velocity (2) of a point at a position; 0 if it is not known.
+   pure function point_velocity(m, snapshot, i) result(v)
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: snapshot   !< of a drawing with arrows
+      integer, intent(in) :: i               !< the number of the point
+      real(wp) :: v(2)
+
+      associate (link => m%points(i)%link)
+         v = snapshot%velocity(:, link) &
+            + snapshot%rate(link)*quarter_turn(point_place(m, snapshot, i) - snapshot%place(:2, link))
+      end associate
+   end function point_velocity
 end module picture

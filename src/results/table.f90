@@ -3,15 +3,14 @@
 module table
    use kinds, only: wp, label_length
    use plane_vectors, only: in_degrees
-   use columns, only: cell_words, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
-      last_cell
+   use columns, only: cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare
    use number_format, only: numeral_length, full_length, max_decimals, write_fixed, write_full, whole
    use masked_numbers, only: write_known, nothing_known, unknown_digit
    use text_output, only: output_t, add, replaced
    implicit none
    private
-   public :: format_t, cell_t, words_of_cells, choose_digits, write_cell, write_number, number_text, cell_text, &
-      power_text, unit_of, add_name, add_number, add_cell, right, digits_after_first, order_margin
+   public :: format_t, cell_t, choose_digits, write_cell, write_number, number_text, cell_text, power_text, unit_of, &
+      add_name, add_number, add_cell, right, digits_after_first, order_margin
 
    !> Digits after the first one.
    integer, parameter :: digits_after_first = 6
@@ -40,16 +39,6 @@ module table
    character(*), parameter :: unbounded_words(2) = ['-inf', ' inf']
 
 contains
-
-   !> Gives the words of cells without a number, each at the end of its field.
-   pure function words_of_cells(polish) result(words)
-      logical, intent(in) :: polish          !< in Polish
-      character(numeral_length) :: words(cell_none:last_cell)
-
-      words = cell_words%english
-      if (polish) words = cell_words%polish
-      words = adjustr(words)
-   end function words_of_cells
 
    !> Writes a cell of the listing: a number, or a word in its place.
    pure subroutine write_cell(format, more, cell, value, error, words, field, masked)

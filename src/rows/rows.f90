@@ -8,9 +8,10 @@ module rows
    use points, only: row_t, find_row, is_due, is_listed
    use assemblies, only: assemblies_t
    use error_estimate, only: estimate_of, row_error
-   use sensitivities, only: has_tolerances, worst_case, root_of_squares
+   use sensitivities, only: has_tolerances
    use set_motion, only: set_motion_t
    use number_format, only: whole
+   use mechanism, only: tolerance_t
    implicit none
    private
    public :: finished_row_t, find_rows, word_worst, word_rss
@@ -151,4 +152,31 @@ contains
          row%others = [row%others, one]
       end subroutine add
    end subroutine find_others
+
+   !> Gives the largest change (3, 0:2) of a row that tolerances allow.
+   pure function worst_case(tolerances, changes) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
+      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
+      real(wp) :: x(3, 0:2)
+      integer :: d
+
+      x = 0.0_wp
+      do d = 1, size(tolerances)
+         x = x + abs(changes(:, :, d))*tolerances(d)%size_of
+      end do
+   end function worst_case
+
+   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time.
+   pure function root_of_squares(tolerances, changes) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
+      real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
+      real(wp) :: x(3, 0:2)
+      integer :: c, k
+
+      do k = 0, 2
+         do c = 1, 3
+            x(c, k) = norm2(changes(c, k, :)*tolerances%size_of)
+         end do
+      end do
+   end function root_of_squares
 end module rows

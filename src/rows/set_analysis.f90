@@ -3,8 +3,7 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, &
-      measure_line
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line, request_t
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
@@ -15,20 +14,17 @@ module set_analysis
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
-   use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_unused, &
-      diagnostic_turned, motion_t, new_motion, turned_t, flag_inconsistent
+   use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_turned, motion_t, &
+      new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
-   use separations, only: motions_apart
-   use points, only: row_t, find_row, keep_turns
+   use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant, &
-      redundancy_error
-   use convergence, only: inconsistent_level
+   use analysis, only: analysis_t, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant
+   use instant_centres, only: points_coincide
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, begin_analysis, foresee_closure, renew_set_analysis, advance_set, &
-      accept_state, rows_at, apart_from_first, sample_set, prove_set, set_bounds, set_certificates, &
-      set_closing_diagnostics
+   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, accept_state, &
+      rows_at, sample_set, prove_set
    public :: errors_unasked, errors_in_doubt, errors_always
 
    !> The angles from which measures go on between the instants of TIME, if extremes are searched for.
@@ -97,27 +93,6 @@ contains
       end do
       call begin_paths(set)
    end subroutine begin_analysis
-
-   !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the
-   !> run is known better. Without a closing tolerance, or if equations agree without it, the error is 0.
-   subroutine foresee_closure(set)
-      type(set_analysis_t), intent(inout) :: set   !< before its first instant
-      type(analysis_t) :: trial
-      type(motion_t) :: q
-      integer :: c, k
-
-      do c = 1, set%now%count
-         if (.not. (set%now%closing > 0.0_wp .and. set%list(c)%blocks%redundant > 0)) cycle
-         trial = set%list(c)
-         q = new_motion(size(set%now%parts(c)%links))
-         do k = 0, instant_count(set%now) - 1
-            call advance(trial, instant(set%now, k), q)
-         end do
-         ! The error of an instant without a position is larger than the tolerance.
-         if (redundancy_error(trial) > inconsistent_level) &
-            set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
-      end do
-   end subroutine foresee_closure
 
    !> Begins the paths of the set: no instant is taken yet.
    subroutine begin_paths(set)
@@ -371,15 +346,6 @@ contains
       end subroutine take
    end subroutine rows_at
 
-   !> Finds the distance (3) of the last motion of an independent mechanism from its first, as `motions_apart` gives it.
-   pure function apart_from_first(set, part) result(apart)
-      type(set_analysis_t), intent(in) :: set
-      integer, intent(in) :: part               !< its number
-      real(wp) :: apart(3)
-
-      apart = motions_apart(set%now%parts(part), set%now%first(part), set%now%motions(part))
-   end function apart_from_first
-
    !> Estimates the errors of the motion found last, and finds its sensitivities to numbers with tolerances.
    subroutine sample_set(set, always)
       type(set_analysis_t), intent(inout) :: set
@@ -397,14 +363,6 @@ contains
       end do
    end subroutine sample_set
 
-   !> Gives the counts of certificates of all instants of the set.
-   pure type(certificate_counts_t) function set_certificates(set)
-      type(set_analysis_t), intent(in) :: set
-
-      set_certificates = set%worst
-      if (size(set%list) == 1) set_certificates = set%list(1)%certificate_counts
-   end function set_certificates
-
    !> Proves the motion found last, and the step to it; before any other motion is looked at.
    subroutine prove_set(set, bounded)
       type(set_analysis_t), intent(inout) :: set
@@ -419,45 +377,23 @@ contains
       end do
    end subroutine prove_set
 
-   !> Finds the largest proved bounds (0:2) of the errors of any link, in the characteristic length and rate of its
-   !> mechanism.
-   pure function set_bounds(set) result(largest)
-      type(set_analysis_t), intent(in) :: set
-      real(wp) :: largest(0:2)
-      integer :: c
+   !> Keeps the values of the measures that continue, from which the next instant goes on.
+   pure subroutine keep_turns(m, q)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
+      type(row_t) :: row
+      integer :: i
 
-      largest = 0.0_wp
-      do c = 1, size(set%list)
-         if (.not. set%now%proofs(c)%is_proved) cycle
-         associate (found => set%now%proofs(c)%largest, sizes => set%estimators(c)%sizes)
-            largest = max(largest, max(found(1, :)/sizes%length, found(2, :))/sizes%rate**[0, 1, 2])
+      if (.not. allocated(m%measures)) return
+      if (.not. any(m%measures%continues)) return
+      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
+      do i = 1, size(m%measures)
+         if (.not. m%measures(i)%continues) cycle
+         call find_row(m, q, request_t(request_measure, i), row)
+         associate (turned => q%turned(i))
+            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
+            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
          end associate
       end do
-   end function set_bounds
-
-   !> Gives the diagnostics (any number) after the last instant: BRANCH cards after whose instants no change point was
-   !> passed, in their order.
-   pure function set_closing_diagnostics(set) result(list)
-      type(set_analysis_t), intent(in) :: set
-      type(diagnostic_t), allocatable :: list(:)
-      logical, allocatable :: used(:)
-      integer :: c, k, n
-
-      n = 0
-      do c = 1, set%now%count
-         n = max(n, maxval([0, set%list(c)%branch_requests%cards%card]))
-      end do
-      allocate (list(n), used(n))
-      used = .false.
-      do c = 1, set%now%count
-         associate (cards => set%list(c)%branch_requests%cards)
-            used(cards%card) = used(cards%card) .or. set%list(c)%branch_requests%used
-            do k = 1, size(cards)
-               list(cards(k)%card) = diagnostic_t(kind=diagnostic_unused, part=c, t=cards(k)%t)
-               list(cards(k)%card)%links(1) = cards(k)%link
-            end do
-         end associate
-      end do
-      list = pack(list, .not. used)
-   end function set_closing_diagnostics
+   end subroutine keep_turns
 end module set_analysis

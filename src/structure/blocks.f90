@@ -20,8 +20,7 @@ module blocks
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
       loop_projection, loop_angles, geometry_t, chain_t, chain_link_t, block_numbers_t, row_numbers_t, loop_numbers_t
-   public :: blocks_that_give, moving_blocks, iterated_unknowns, blocks_below, largest_known, known_to, &
-      own_unknowns
+   public :: blocks_that_give, blocks_below, largest_known, known_to, own_unknowns
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -177,35 +176,6 @@ contains
       end do
       list = pack([(i, i=1, size(taken))], needed)
    end function blocks_that_give
-
-   !> Tells which blocks a drive moves, itself or through those on which they build (size(list)).
-   pure function moving_blocks(b, list) result(moving)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)   !< (any number) blocks with all on which they build, in solving order
-      logical :: moving(size(list))
-      integer :: moves(0:b%unknowns), k
-
-      moves = 0
-      do k = 1, size(list)
-         associate (block => b%list(list(k)))
-            moving(k) = any(b%rows(block%first_row:block%last_row)%drive > 0) .or. largest_known(b, list(k), moves) > 0
-            moves(b%unknown(block%first:block%last)) = merge(1, 0, moving(k))
-         end associate
-      end do
-   end function moving_blocks
-
-   !> Lists the unknowns of those blocks that iterate.
-   pure function iterated_unknowns(b, list) result(unknowns)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)   !< (any number) numbers of blocks
-      integer, allocatable :: unknowns(:)
-      logical :: iterated(size(b%list))
-      integer :: u
-
-      iterated = .false.
-      iterated(list) = .not. b%list(list)%explicit
-      unknowns = pack([(u, u=1, b%unknowns)], iterated(b%block_of))
-   end function iterated_unknowns
 
    !> Gives the largest mark of the unknowns on which a block builds; 0 at least.
    pure integer function largest_known(b, i, mark) result(largest)

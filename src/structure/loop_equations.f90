@@ -6,11 +6,11 @@
 !> Equations are integers; `equation_numbers_t` holds what the numbers of the cards make of them.
 module loop_equations
    use kinds, only: wp
-   use plane_vectors, only: wrap_angle
+   use plane_vectors, only: wrap_angle, direction
    use disjoint_sets, only: sorted_t, sorted
    use mechanism, only: mechanism_t, pair_links, has_guide, drive_angle, drive_x, drive_y, drive_relangle, &
-      drive_slide
-   use spanning_tree, only: spanning_tree_t, axes_t, assign_axes, guide
+      drive_slide, plane_origin
+   use spanning_tree, only: spanning_tree_t, axes_t, guide, other_link
    use vector_loops, only: search_t, find_path, vector_loops_t, &
       add_vector_loop, loop_sums_t, assign_sums, vanishes
    use matching, only: incidence_t
@@ -319,4 +319,23 @@ contains
          g%unknown(n) = unknown
       end subroutine note
    end function incidence
+
+   !> Puts the numbers of a mechanism into the axes of its links.
+   pure subroutine assign_axes(m, tree, axes)
+      type(mechanism_t), intent(in) :: m
+      type(spanning_tree_t), intent(in) :: tree
+      type(axes_t), intent(inout) :: axes
+      integer :: i, k, link
+
+      axes%origin = plane_origin(m)
+      do i = 1, size(tree%by_angle)
+         link = tree%by_angle(i)
+         k = tree%angle_pair(link)
+         axes%angle_offset(link) = 0.0_wp
+         if (m%links(link)%ground) axes%angle_offset(link) = m%links(link)%position(3)
+         if (k > 0) axes%angle_offset(link) = axes%angle_offset(other_link(m, k, link)) &
+            + merge(-m%pairs(k)%beta, m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
+         axes%turn(:, link) = direction(axes%angle_offset(link))
+      end do
+   end subroutine assign_axes
 end module loop_equations

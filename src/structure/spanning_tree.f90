@@ -8,11 +8,10 @@ module spanning_tree
    use kinds, only: wp
    use plane_vectors, only: direction, rotated, quarter_turn
    use disjoint_sets, only: sorted_t, sorted
-   use mechanism, only: mechanism_t, has_guide, pair_links, plane_origin
+   use mechanism, only: mechanism_t, has_guide, pair_links
    implicit none
    private
-   public :: spanning_tree_t, new_tree, axes_t, assign_axes, other_link, link_offset_t, place_on_tree, point_offset, &
-      guide
+   public :: spanning_tree_t, new_tree, axes_t, other_link, link_offset_t, point_offset, guide
 
    type :: spanning_tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -179,25 +178,6 @@ contains
       end subroutine attach
    end function new_tree
 
-   !> Puts the numbers of a mechanism into the axes of its links.
-   pure subroutine assign_axes(m, tree, axes)
-      type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(inout) :: axes
-      integer :: i, k, link
-
-      axes%origin = plane_origin(m)
-      do i = 1, size(tree%by_angle)
-         link = tree%by_angle(i)
-         k = tree%angle_pair(link)
-         axes%angle_offset(link) = 0.0_wp
-         if (m%links(link)%ground) axes%angle_offset(link) = m%links(link)%position(3)
-         if (k > 0) axes%angle_offset(link) = axes%angle_offset(other_link(m, k, link)) &
-            + merge(-m%pairs(k)%beta, m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
-         axes%turn(:, link) = direction(axes%angle_offset(link))
-      end do
-   end subroutine assign_axes
-
    !> Gives the number of the link at the other end of a pair.
    pure integer function other_link(m, k, link) result(other)
       type(mechanism_t), intent(in) :: m
@@ -206,27 +186,6 @@ contains
 
       other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
-
-   !> Finds where a link is, seen from its parent, in the deck's unit of length.
-   pure function place_on_tree(m, tree, axes, link) result(p)
-      type(mechanism_t), intent(in) :: m
-      type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(in) :: axes
-      integer, intent(in) :: link   !< its number; it has a parent
-      type(link_offset_t) :: p
-      real(wp) :: sign_of
-
-      associate (pair => m%pairs(tree%parent_joint(link)), parent => tree%parent(link))
-         sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
-         p%reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
-         p%body_vector = point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
-         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - axes%origin)
-         if (.not. has_guide(pair%kind)) return
-         p%slide = tree%slide(tree%parent_joint(link))
-         p%slide_body_vector = sign_of*guide(m, axes, tree%parent_joint(link), across=.false.)
-         p%reach = p%reach - sign_of*guide(m, axes, tree%parent_joint(link), across=.true.)*pair%offset
-      end associate
-   end function place_on_tree
 
    !> Gives the direction (2) of the guide of a prismatic pair, or of its normal, in the axes of its orientation.
    pure function guide(m, axes, k, across) result(e)
