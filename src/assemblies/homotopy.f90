@@ -215,14 +215,16 @@ contains
       real(dp) :: t, step, try, finite(0:max_tenths)
       integer :: k
 
-
-      is_infinite = .false.
       t = t_near_end
       step = steps_by_tenth(1)
       z = start
       do k = 0, max_tenths
          call record_end(z)
          finite(k) = finiteness(bilinear, ending%x, ending%y)
+         is_done = .false.
+         if (k > least_tenths .and. finite(k) <= infinity_level) then
+            if (power_of(finite(:k)) >= sure_power) exit
+         end if
          last = z
          try = steps_to_end(1)
          call follow(paths, t, 0.0_dp, try, steps_to_end(2), last, is_done)
@@ -265,11 +267,18 @@ contains
       associate (k => size(finite))
          falls = .false.
          if (k < 3) return
-         power = 0.5_dp*log10(finite(k - 2)/finite(k))
+         power = power_of(finite)
          falls = finite(k) <= infinity_level .or. (k > least_tenths .and. power >= least_power) &
             .or. (finite(k) <= near_infinity .and. power >= sure_power)
       end associate
    end function falls
+
+   !> Gives the power of t with which `finiteness` fell in the last two tenths.
+   pure real(dp) function power_of(finite)
+      real(dp), intent(in) :: finite(:)      !< (3 or more) as `falls`
+
+      power_of = 0.5_dp*log10(finite(size(finite) - 2)/finite(size(finite)))
+   end function power_of
 
    !> Follows a path between two values of t: the tangent by Runge and Kutta's rule, then Newton's correction. Steps are
    !> divided down to the least. If this fails, the point is the last one found.

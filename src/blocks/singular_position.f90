@@ -10,7 +10,7 @@
 !> has solutions x' = p + l k only if w . b = 0. Otherwise there is none: the drives cannot go on at a finite velocity
 !> (dead point, toggle position). A solution is the velocity of a motion only if J x'' = b2(x') has solutions too:
 !> w . b2(p + l k) = 0, of second degree in l. Two real roots are two branches that cross (change point); no root is a
-!> position without neighbours.
+!> position without neighbours. A drive that turns on a dead point has b = 0 and an acceleration: two branches cross.
 module singular_position
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
@@ -58,7 +58,8 @@ contains
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s      !< with the singular position, just solved
       type(svd_t) :: v
-      real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level, speed
+      real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level
+      real(wp) :: driving(2)
       real(wp) :: jacobian(size(r)*size(first))
 
       if (b%list(i)%shape%rows > max_examined_rows .or. size(first) == 0) return
@@ -67,11 +68,11 @@ contains
       level = max(sum_size, maxval(abs(first)), x%blocks(i)%coarse)
       ! A rounding of an angle that drives and earlier blocks give counts along w: at a dead point in full. At a change
       ! point it does not count, since such an angle leaves that as it is to the first order.
-      speed = driving_speed(b, i, s)
-      if (speed > 0.0_wp) then
+      driving = driving_motion(b, i, s)
+      if (driving(1) > 0.0_wp) then
          call assemble_dense(b, x, i, s, jacobian, r)
          call right_hand_side(b, x, i, 1, s, r)
-         level = max(level, maxval(abs(s%u%value))*abs(dot_product(v%left(:, v%n), r))/speed)
+         level = max(level, maxval(abs(s%u%value))*abs(dot_product(v%left(:, v%n), r))/driving(1))
       end if
 
       q = curvature_of(b, x, i, first, v%left(:, v%n), v%right(v%n, :), s)
@@ -98,26 +99,29 @@ contains
       end subroutine go_to
    end subroutine settle
 
-   !> Gives the largest rate (rad, lengths) of the drives that move a block, itself or through those on which it builds.
-   !> It is 0 if they rest, or if only rounding tells them from the turning point of a motion with their accelerations.
-   real(wp) function driving_speed(b, i, s) result(speed)
+   !> Gives the largest rate and acceleration (rad, lengths) of the drives that move a block, itself or through blocks
+   !> below it. The rate is 0 if they rest, or if only rounding tells them from the turning point of a motion with their
+   !> accelerations.
+   function driving_motion(b, i, s) result(largest)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s
+      real(wp) :: largest(2)
       integer, allocatable :: below(:)
       integer :: k, row
 
-      speed = 0.0_wp
+      largest = 0.0_wp
       below = blocks_below(b, i)
       do k = 1, size(below)
          do row = b%list(below(k))%first_row, b%list(below(k))%last_row
             associate (drive => s%drive_value(:, b%rows(row)%drive))
                ! The drive goes no further than rate**2/(2 acceleration) before it turns.
-               if (drive(2)**2 > standstill*abs(drive(3))) speed = max(speed, abs(drive(2)))
+               if (drive(2)**2 > standstill*abs(drive(3))) largest(1) = max(largest(1), abs(drive(2)))
+               largest(2) = max(largest(2), abs(drive(3)))
             end associate
          end do
       end do
-   end function driving_speed
+   end function driving_motion
 
    !> Tells which singular position a block has. The kind is unclear if all that moves the block is at rest. It is also
    !> unclear if the links can move to a place nearby with an equal judgement: a drive moves nothing, or adds nothing.
@@ -127,12 +131,13 @@ contains
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(in) :: s         !< with its singular position
       type(state_t) :: aside
-      real(wp) :: speed
+      real(wp) :: driving(2), speed
       logical :: agrees, crosses, agrees_aside, moves(b%list(i)%last - b%list(i)%first + 1)
 
       found = singular_unclear
       if (b%list(i)%shape%rows > max_examined_rows) return
-      speed = driving_speed(b, i, s)
+      driving = driving_motion(b, i, s)
+      speed = merge(driving(1), sqrt(driving(2)), driving(1) > 0.0_wp)
       if (speed <= 0.0_wp) return
       aside = s
       call judge(b, x, i, speed, aside, agrees, crosses)
@@ -152,7 +157,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
-      real(wp), intent(in) :: speed          !< of the drives that move it, as `driving_speed`
+      real(wp), intent(in) :: speed          !< the largest rate of its drives, or the root of their acceleration
       type(state_t), intent(inout) :: s      !< with its position; its rates are overwritten
       logical, intent(out) :: agrees         !< its equations for the velocities have solutions
       logical, intent(out) :: crosses        !< two of them are velocities of branches

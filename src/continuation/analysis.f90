@@ -33,17 +33,15 @@ module analysis
    use structure, only: structure_t, make_structure
    use drive_path, only: moving_drives, time_beside
    use motion, only: motion_t, add_diagnostics, forget_links, known_of, flag_none, flag_not_converged, flag_singular, &
-      flag_overflow, flag_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, &
+      flag_overflow, flag_inconsistent, singular_unclear, singular_change, diagnostic_t, diagnostic_inconsistent, &
+      diagnostic_limit, diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, &
       diagnostic_dead_end, diagnostic_stroke
    use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
-   use block_state, only: set_drive_values
-   use block_solver, only: solve_blocks
    use block_motion, only: assign_geometry, get_ratios, get_driven_links
    use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, solve_all_links
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
-   use change_point_passage, only: leave, follow, go_by_value
+   use change_point_passage, only: leave, follow, go_by_value, solve_regular_blocks
    use strokes, only: find_length_limit, flag_strokes
    use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, step_rests, &
       follow_structure, begin_motion, measure_closure_error, continue_to, accept_substep, revert, place_t, &
@@ -228,12 +226,7 @@ contains
       type(step_record_t), intent(inout) :: step
 
       if (analysis%is_left) call restore(analysis%following_t, analysis%left)
-      call set_drive_values(analysis%path, t, analysis%state)
-      associate (moving => analysis%blocks%moving)
-         call solve_blocks(analysis%blocks, analysis%geometry, pack(moving, .not. analysis%state%is_singular(moving)), &
-            analysis%work, analysis%state, analysis%convergence)
-      end associate
-      analysis%convergence%singular = .true.
+      call solve_regular_blocks(analysis%following_t, t)
       step%ending = step_rests
    end subroutine rest
 
@@ -298,6 +291,7 @@ contains
       end if
 
       call accept_motion(analysis, found)
+      if (step%ending == step_stands .and. found%mark == flag_singular) found%singularity = singular_change
       analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       crosses = passed_of(step) > 0
       if (crosses) call add_diagnostics(step%passed, found)

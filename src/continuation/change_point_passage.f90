@@ -6,13 +6,15 @@ module change_point_passage
    use motion, only: diagnostic_t, diagnostic_dead_end
    use convergence, only: is_solved
    use predictor, only: begin_at
+   use block_state, only: set_drive_values
+   use block_solver, only: solve_blocks
    use branch_switching, only: switch_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use following, only: following_t, step_record_t, step_failed, step_there, step_stands, place_t, solve_at, &
       continue_to, accept_substep, revert, follow_from, record_checkpoint, restore, passed_of
    implicit none
    private
-   public :: leave, follow, go_by_value
+   public :: leave, follow, go_by_value, solve_regular_blocks
 
    !> So far back from a singular position the motion begins by the value of a drive, in radians and in the unit of
    !> length: far enough for rates, near enough for the same branch.
@@ -108,6 +110,9 @@ contains
       step%passed = by_value%passed
       if (by_value%ending == step_there) return
       list = change_diagnostics(following%blocks, following%geometry, following%state, t)
+      call solve_regular_blocks(following, t)
+      ! By time a dead point at which the drive turns is one.
+      if (size(list) == 0) list = change_diagnostics(following%blocks, following%geometry, following%state, t)
       if (size(list) > 0) step%ending = step_stands
       call follow_from(following, before)
    end subroutine go_by_value
@@ -172,4 +177,19 @@ contains
          .and. is_solved(following%convergence) .and. .not. following%convergence%singular)
       if (step%ending == step_there) call accept_substep(following, parameter)
    end subroutine resume_motion
+
+   !> Finds velocities and accelerations of the blocks that are regular at a singular position. The others keep their
+   !> positions.
+   subroutine solve_regular_blocks(following, t)
+      type(following_t), intent(inout) :: following   !< its state stands there
+      real(wp), intent(in) :: t                  !< time
+
+      call set_drive_values(following%path, t, following%state)
+      associate (moving => following%blocks%moving)
+         call solve_blocks(following%blocks, following%geometry, &
+            pack(moving, .not. following%state%is_singular(moving)), following%work, following%state, &
+            following%convergence)
+      end associate
+      following%convergence%singular = .true.
+   end subroutine solve_regular_blocks
 end module change_point_passage

@@ -39,8 +39,13 @@ far_end_later() { slider 40.0 -10.0 3.5; slide B 3.5 0.5; }
 # Crank and coupler in line, 1.5 + 3.5 = 5, over the base of 4: the rocker of 3 stands across it.
 rocker() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 -10.0; }
 rocker_later() { four_bar 1.5 3.5 3.0 4.0 60.0 30.0 80.0; angle RO 80.0 10.0; }
-# At its limit the drive turns round: at that instant it is at rest.
-rocker_turns() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 0.0 -20.0; }
+# At its limit the drive turns round: the crank goes on or back, at two finite velocities of opposite signs.
+rocker_turns() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 0.0 20.0; }
+# It turns at T = 1, at 100 - 20 t + 10 t**2 deg; or it accelerates beyond its limit: that position is alone.
+rocker_turns_later() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 100.0; angle RO 100.0 -20.0 20.0; }
+parallelogram_turns() { four_bar 2.0 4.0 2.0 4.0 60.0 0.0 60.0; angle CR 60.0 -120.0 120.0; }
+rocker_turns_out() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 0.0 -20.0; }
+far_end_turns() { slider 0.0 0.0 4.0; card DRIVE X "B$mark" '' "$(long 4.0)" 0.0 "$(long -0.5)"; }
 # The angle that a parallelogram keeps, driven at a speed, and at rest.
 idle() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 30.0; }
 idle_at_rest() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 0.0; }
@@ -91,7 +96,11 @@ says 0 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" near_end
 says 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle_at_rest
 METHODS='NEWTON DENSE'
 says 0 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker
-says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear" rocker_turns
+says 0 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns
+says 1 "CHANGE POINT, LINKS CR+, CO+ COLLINEAR$change" rocker_turns_later
+says 0 "CHANGE POINT, LINKS CR+, RD+ COLLINEAR$change" far_end_turns
+says 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" parallelogram_turns
+says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear" rocker_turns_out
 says 1 "CHANGE POINT, LINKS CO+, RO+ COLLINEAR$change" kite_later
 says 1 "DEAD POINT, LINKS CR+, RD+ COLLINEAR$dead" far_end_later
 says 1 "DEAD POINT, LINKS CR+, CO+ COLLINEAR$dead" rocker_later
@@ -105,8 +114,8 @@ CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change" rocker parallelogram
 says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
 CHANGE POINT, LINKS CO+++, RO+++ COLLINEAR$change
-DEAD POINT, LINKS CR++++, RD++++ COLLINEAR$dead" rocker_turns parallelogram parallelogram far_end
-deck NEWTON 0 PL rocker_turns parallelogram far_end > "$w/deck"
+DEAD POINT, LINKS CR++++, RD++++ COLLINEAR$dead" rocker_turns_out parallelogram parallelogram far_end
+deck NEWTON 0 PL rocker_turns_out parallelogram far_end > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
 equal 'in Polish' 'JAKOBIAN OSOBLIWY, OGNIWA CR+, CO+ WSPOLLINIOWE: BRAK JEDNOZNACZNYCH PREDKOSCI
 PUNKT ZMIANY, OGNIWA CO++, RO++ WSPOLLINIOWE: PREDKOSCI NIEJEDNOZNACZNE
@@ -134,6 +143,17 @@ angles 0 '0.000000 0.000000 0.000000 ' far_end_of_a_short_crank
 angles 0 '180.000000 0.000000 180.000000 ' parallelogram_guessed
 angles 0 '36.869898 36.869898 90.000000 ' rocker_guessed
 angles 0 '36.869898 36.869898 36450.00000 ' rocker_after_turns
+# A link that is driven has the rate and acceleration of its drive there: 0 and what turns it, in deg/s and deg/s**2.
+# driven K WORDS NAME LINK
+driven() {
+   for method in NEWTON DENSE; do
+      deck "$method" 0 EN "$3" > "$w/deck"
+      equal "$3, METHOD $method: rate and acceleration of $4" "$2" "$("$kinmat" "$w/deck" 2> "$w/err" |
+         awk -v k="$1" -v link="$4+" '/^ INSTANT/ { at = $2 } at "" == k && $1 == link { printf "%.9g %.9g", $7, $10; exit }')"
+   done
+}
+driven 1 '0 20' rocker_turns_later RO
+driven 1 '0 120' parallelogram_turns CR
 # The position at the start does not say how the motion goes on: the estimate does, and the listing says so, once.
 begins=' --- THE MOTION BEGINS HERE, IN THE ASSEMBLY NEAREST TO THE INITIAL GUESS'
 angles 1 '220.000000 0.000000 220.000000 ' parallelogram_guessed
