@@ -3,32 +3,31 @@
 . tests/counting.sh
 
 # tags FILE: what is wrong with its tags and characters
-tags() { awk '
-   { text = text $0 "\n"; if ($0 ~ /[^ -~]/) print FILENAME ":" FNR ": not printable ASCII" }
-   END {
-      while (match(text, /<[^>]*>/)) {
-         between = substr(text, 1, RSTART - 1)
-         tag = substr(text, RSTART + 1, RLENGTH - 2)
-         text = substr(text, RSTART + RLENGTH)
-         gsub(/&(amp|lt|gt|quot);/, "", between)
-         if (between ~ /[&<>]/) print FILENAME ": text: " between
-         if (tag ~ /^[?]/) continue
-         name = tag
-         sub(/[ \/].*/, "", name)
-         if (tag ~ /^\//) {
-            if (depth < 1 || open[depth] != substr(tag, 2)) print FILENAME ": closes " tag
-            depth--
-            continue
-         }
-         rest = substr(tag, length(name) + 1)
-         sub(/\/$/, "", rest)
-         gsub(/ [a-zA-Z0-9-]+="[^"<]*"/, "", rest)
-         if (rest != "") print FILENAME ": attributes: " tag
-         if (depth == 0 && roots++) print FILENAME ": a second root"
-         if (tag !~ /\/$/) open[++depth] = name
+tags() { LC_ALL=C grep -n '[^ -~]' "$1" | sed 's/:.*/: not printable ASCII/'; tr '\n' ' ' < "$1" | awk -v file="$1" '
+   BEGIN { RS = "<" }
+   NR == 1 { if (/[&>]/) print file ": text: " $0; next }
+   {
+      end = index($0, ">")
+      between = substr($0, end + 1)
+      tag = substr($0, 1, end - 1)
+      if (!end) { print file ": not closed: " $0; next }
+      if (between ~ /[&>]/) { gsub(/&(amp|lt|gt|quot);/, "", between); if (between ~ /[&>]/) print file ": text: " between }
+      if (tag ~ /^[?]/) next
+      name = tag
+      sub(/[ \/].*/, "", name)
+      if (tag ~ /^\//) {
+         if (depth < 1 || open[depth] != substr(tag, 2)) print file ": closes " tag
+         depth--
+         next
       }
-      if (depth != 0 || roots != 1) print FILENAME ": " depth " open, " roots " roots"
-   }' "$1"; }
+      rest = substr(tag, length(name) + 1)
+      sub(/\/$/, "", rest)
+      gsub(/ [a-zA-Z0-9-]+="[^"<]*"/, "", rest)
+      if (rest != "") print file ": attributes: " tag
+      if (depth == 0 && roots++) print file ": a second root"
+      if (tag !~ /\/$/) open[++depth] = name
+   }
+   END { if (depth != 0 || roots != 1) print file ": " depth " open, " roots " roots" }'; }
 # xml FILE: the same by xmllint, where that is installed
 xml() { [ -z "$xmllint" ] || equal "$1: by xmllint" '' "$(xmllint --noout "$1" 2>&1)"; }
 xmllint=$(command -v xmllint)
