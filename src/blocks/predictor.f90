@@ -236,7 +236,8 @@ contains
       real(wp) :: step, d, w(3)
       integer :: i, k, known
 
-      if (asserts) call assert(history%filled >= 1, 'predict: a motion that is remembered')
+      if (asserts) call assert(history%filled > 0 .or. .not. abs(t - history%t(0)) > 0.0_wp, &
+         'predict: a motion that is remembered, or its parameter')
       change = 0.0_wp
       step = t - history%t(0)
       known = 0
