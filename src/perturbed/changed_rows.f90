@@ -201,7 +201,9 @@ contains
                if (lack < missing_all) then
                   call solve_block(b, x, i, .true., w, s, c)
                   place%ratio = max(place%ratio, c%kantorovich_ratio)
-                  place%opened = max(place%opened, c%open%value/c%open%level)
+                  ! A position out of reach contradicts nothing: a smaller change may find one.
+                  if (is_solved(c) .or. c%ended == ended_inconsistent) &
+                     place%opened = max(place%opened, c%open%value/c%open%level)
                   place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
                      .or. place%opened > place%room
 

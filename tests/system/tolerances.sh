@@ -162,6 +162,44 @@ toleranced 'DRIVE POINT' < input/dixon.deck > "$w/dixon.deck"
 equal 'redundant equations that do not: status' 0 $?
 equal 'redundant equations that do not: numbers named' yes "$(grep -c 'MECHANISM JAMS' "$w/listing" | awk '$1 > 10 { print "yes" }')"
 equal 'redundant equations that do not: no sensitivities' '' "$(grep -E '^  (WORST|RSS)' "$w/listing" | grep '[0-9]')"
+# A piston that two drives push in one way is out of reach after a change near its dead point: that contradicts no
+# equation. With the crank 1, the rod 3 and the eye at X the rod's angle has cos = (X**2 + 8)/(6 X).
+cat > "$w/pushed.deck" <<'END'
+UNITS   M       DEG     S
+GROUND  BASE
+LINK    CRANK                                                   40.0
+LINK    ROD                     0.766           0.643           -13.0
+LINK    PISTON                  3.7
+POINT   O       BASE
+POINT   O-CR    CRANK
+POINT   PIN-CR  CRANK           1.0
+POINT   PIN     ROD
+POINT   EYE     ROD             3.0
+POINT   P       PISTON
+POINT   Q       PISTON          0.5
+TOLER                           0.001
+REVOLUTEO       O-CR    A
+REVOLUTEPIN-CR  PIN     B
+REVOLUTEEYE     Q       C
+PRISM   O       P       G       0.0             0.0             0.0
+DRIVE   X       P               3.0             0.5
+DRIVE   X       P               3.0             0.5
+TIME    18                      0.0             0.99
+PRINT   LINKS   ROD
+END
+END
+"$kinmat" --csv "$w/found.csv" "$w/pushed.deck" > "$w/listing" 2>&1
+equal 'a change out of reach does not jam' 0 "$(grep -c JAMS "$w/listing")"
+equal 'a change out of reach: angles of the rod' '19 of 19' "$(awk -F, '
+   $4 == "LINK WORST" {
+      x = 3.5 + 0.5*$3
+      c = (x*x + 8)/(6*x)
+      slope = (1 - 8/(x*x))/6/sqrt(1 - c*c)
+      off = $8 - 0.001*slope*180/atan2(0, -1)
+      n++
+      near += $8 != "" && off*off < 1e-16
+   }
+   END { print near " of " n }' "$w/found.csv")"
 
 # Poles and curves have none, which the listing says.
 awk '/^END/ { print "POLE    BASE    ROCKER"; print; exit } { print }' input/tolerances.deck > "$w/poles.deck"
