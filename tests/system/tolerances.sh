@@ -164,7 +164,7 @@ equal 'redundant equations that do not: numbers named' yes "$(grep -c 'MECHANISM
 equal 'redundant equations that do not: no sensitivities' '' "$(grep -E '^  (WORST|RSS)' "$w/listing" | grep '[0-9]')"
 # A piston that two drives push in one way is out of reach after a change near its dead point: that contradicts no
 # equation. With the crank 1, the rod 3 and the eye at X the rod's angle has cos = (X**2 + 8)/(6 X).
-cat > "$w/pushed.deck" <<'END'
+cat > "$w/pushed.deck" <<'CARDS'
 UNITS   M       DEG     S
 GROUND  BASE
 LINK    CRANK                                                   40.0
@@ -187,7 +187,7 @@ DRIVE   X       P               3.0             0.5
 TIME    18                      0.0             0.99
 PRINT   LINKS   ROD
 END
-END
+CARDS
 "$kinmat" --csv "$w/found.csv" "$w/pushed.deck" > "$w/listing" 2>&1
 equal 'a change out of reach does not jam' 0 "$(grep -c JAMS "$w/listing")"
 equal 'a change out of reach: angles of the rod' '19 of 19' "$(awk -F, '
