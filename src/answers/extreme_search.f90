@@ -31,7 +31,7 @@ module extreme_search
    real(wp), parameter :: well_known_limit = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp))
    !> Otherwise they are tried nearer to a change point by this factor, though roundings grow there; or farther from a
    !> limit of the motion, near which some of the motion may not be found.
-   real(wp), parameter :: nearer_by = 0.25_wp, farther_by = 4.0_wp
+   real(wp), parameter :: nearer_by = 0.25_wp
    !> Up to so many such tries.
    integer, parameter :: max_nearer = 5, max_farther = 8
    !> The places near an end of a piece.
@@ -41,11 +41,12 @@ module extreme_search
    !> a limit of the motion the power is 5/2.
    real(wp), parameter :: from_change_point = 1.0_wp/256.0_wp, &
       from_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
-   !> The polynomials at s = 0: through the five places, and through the first four for an estimate of the error.
-   real(wp), parameter :: in_time(places) = [5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, &
-      1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
-   real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
-      four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
+   !> (places, 2, 2) The polynomials at s = 0: through the five places, and through the first four for an estimate of
+   !> the error; in time, and in its root.
+   real(wp), parameter :: at_zero(places, 2, 2) = reshape([ &
+      5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, 1.0_wp/126.0_wp, &
+      1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp, &
+      5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp, 4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp], [places, 2, 2])
    !> A number that grows by more than this factor when s is halved is UNBOUNDED: 1/s doubles, s^(-2/3) grows by 1.59.
    !> Numbers below this part of their characteristic value are bounded.
    real(wp), parameter :: unbounded_growth = 1.4_wp, bounded_part = 1.0e-3_wp
@@ -222,12 +223,12 @@ contains
          real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
          integer :: i, k, n, try
 
-         five = merge(in_time, in_root, at%is_change)
-         four = merge(four_in_time, four_in_root, at%is_change)
+         five = at_zero(:, 1, merge(1, 2, at%is_change))
+         four = at_zero(:, 2, merge(1, 2, at%is_change))
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             ! The nearest first, on the side of `other`.
-            nearest = merge(nearer_by**try*from_change_point, farther_by**try*from_limit, at%is_change)*extremes%step
+            nearest = merge(nearer_by**try*from_change_point, nearer_by**(-try)*from_limit, at%is_change)*extremes%step
             nearest = min(nearest, abs(other - at%t)/(2*places**2))
             times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places

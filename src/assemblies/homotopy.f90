@@ -36,7 +36,7 @@ module homotopy
    integer, parameter :: max_corrections = 4
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
    !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
-   real(dp), parameter :: t_near_end = 0.1_dp, tenth = 0.1_dp
+   real(dp), parameter :: tenth = 0.1_dp, t_near_end = tenth
    !> The first step and the least, parts of the way: to `t_near_end`, by the first tenth, and to the end.
    real(dp), parameter :: steps_near_end(2) = [0.02_dp, 1.0e-5_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
    real(dp), parameter :: steps_to_end(2) = 0.3_dp

@@ -16,7 +16,8 @@ module block_solver
       entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use convergence, only: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, &
-      ended_limit, ended_diverged, ended_inconsistent, is_solved, record_closure_error, inconsistent_level, contradict
+      ended_limit, ended_diverged, ended_inconsistent, is_solved, record_closure_error, inconsistent_level, &
+      rounding_level, contradict
    use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
       slide_t, known_to, loop_projection
@@ -30,8 +31,6 @@ module block_solver
 
    !> Residuals below this part of the largest value have nothing to correct.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
-   !> Residuals above this part of the largest value are more than rounding of angles and of their sines.
-   real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    !> Corrections below this part of their values are at the rounding level.
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
    !> rad: a smaller change of direction is applied without a new sine and cosine: its square is lost in rounding.

@@ -13,6 +13,8 @@ module convergence
    !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
    !> with the sign of the determinant that this one had before.
    real(wp), parameter, public :: max_kantorovich_ratio = 0.1_wp
+   !> Residuals above this part of the largest value are more than rounding of angles and of their sines.
+   real(wp), parameter, public :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    !> Closure errors that differ by less than this part are equal.
    real(wp), parameter :: equal_opening_part = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.

@@ -19,6 +19,7 @@ module singular_position
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    use block_rank, only: svd_t, decomposed, residual_of, curvature_of, &
       difference_step, gauss_newton_step, try_to_move
+   use convergence, only: rounding_level
    implicit none
    private
    public :: settle, block_singularity
@@ -32,8 +33,6 @@ module singular_position
    !> A residual below this part of the level is rounding. The level is the largest of: the values, a sum of lengths,
    !> and the rounding of drives and earlier blocks.
    real(wp), parameter :: rounding_residual = 1.5_wp*epsilon(1.0_wp)
-   !> A residual above this part of the level is the residual of no position.
-   real(wp), parameter :: largest_residual = 12.0_wp*epsilon(1.0_wp)
    !> A sum of lengths counts as so many, in units of the loop.
    real(wp), parameter :: sum_size = 3.0_wp
    !> Part of the Lipschitz constant below which the second derivative counts as zero: along a motion with the drives
@@ -84,7 +83,7 @@ contains
             call go_to(y + sign(sqrt(-2.0_wp*left_open/q), dot_product(first - y, k))*k)
       end associate
       if (maxval(abs(y - first)) > furthest_place/sqrt(min(1.0_wp, abs(q))) .or. &
-         maxval(abs(residual_of(b, x, i, y, s))) > largest_residual*level) call set_values(b, i, first, s)
+         maxval(abs(residual_of(b, x, i, y, s))) > rounding_level*level) call set_values(b, i, first, s)
 
    contains
 

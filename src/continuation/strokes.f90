@@ -6,7 +6,8 @@ module strokes
       flag_stroke
    use drive_path, only: drive_at
    use scales, only: is_length
-   use cylinders, only: cylinder_t, cylinder_length, is_out_of_stroke, rounded
+   use drawn_lengths, only: rounded => same_place_tolerance
+   use cylinders, only: cylinder_t, cylinder_length, is_out_of_stroke
    use block_diagnostics, only: near_limit_part
    use following, only: following_t, lengths_followed
    implicit none

@@ -16,8 +16,9 @@
 module position_iteration
    use kinds, only: wp
    use linear_solver, only: factors_t, factor, solve
-   use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged
-   use block_solver, only: rounding_level, angle_limit
+   use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged, &
+      rounding_level
+   use block_solver, only: angle_limit
    use predictor, only: largest_predicted_change
    use configuration, only: system_t, configuration_t, set_configuration, choose_references, add_to_links
    use closure_equations, only: residual, jacobian

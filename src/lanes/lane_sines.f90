@@ -21,14 +21,15 @@ module lane_sines
    !> number.
    real(wp), parameter :: whole = 1.5_wp/epsilon(1.0_wp)
    !> pi/2 in three parts.
-   real(wp), parameter :: part_1 = 1.57079632673412561417E+00_wp, part_2 = 6.07710050630396597660E-11_wp, &
-      part_3 = 2.02226624879595063154E-21_wp, two_over_pi = 6.36619772367581382433E-01_wp
-   real(wp), parameter :: s1 = -1.66666666666666324348E-01_wp, s2 = 8.33333333332248946124E-03_wp, &
-      s3 = -1.98412698298579493134E-04_wp, s4 = 2.75573137070700676789E-06_wp, s5 = -2.50507602534068634195E-08_wp, &
-      s6 = 1.58969099521155010221E-10_wp
-   real(wp), parameter :: c1 = 4.16666666666666019037E-02_wp, c2 = -1.38888888888741095749E-03_wp, &
-      c3 = 2.48015872894767294178E-05_wp, c4 = -2.75573143513906633035E-07_wp, c5 = 2.08757232129817482790E-09_wp, &
-      c6 = -1.13596475577881948265E-11_wp
+   real(wp), parameter :: parts(3) = [1.57079632673412561417E+00_wp, 6.07710050630396597660E-11_wp, &
+      2.02226624879595063154E-21_wp], two_over_pi = 6.36619772367581382433E-01_wp
+   !> Coefficients of sine and cosine.
+   real(wp), parameter :: s(6) = [-1.66666666666666324348E-01_wp, 8.33333333332248946124E-03_wp, &
+      -1.98412698298579493134E-04_wp, 2.75573137070700676789E-06_wp, -2.50507602534068634195E-08_wp, &
+      1.58969099521155010221E-10_wp]
+   real(wp), parameter :: c(6) = [4.16666666666666019037E-02_wp, -1.38888888888741095749E-03_wp, &
+      2.48015872894767294178E-05_wp, -2.75573143513906633035E-07_wp, 2.08757232129817482790E-09_wp, &
+      -1.13596475577881948265E-11_wp]
 
 contains
 
@@ -50,22 +51,23 @@ contains
          n = angles(l)*two_over_pi + whole
          quadrant = transfer(n, quadrant)
          n = n - whole
-         t = angles(l) - n*part_1
-         u = n*part_2
+         t = angles(l) - n*parts(1)
+         u = n*parts(2)
 
          r = t - u
          ! The part of r that rounding has left out.
          z = r - t
-         rest = (t - (r - z)) - (u + z) - n*part_3
+         rest = (t - (r - z)) - (u + z) - n*parts(3)
          t = r
          r = t + rest
          rest = (t - r) + rest
          z = r*r
 
-         sine = r + (z*r*(s1 + z*(s2 + z*(s3 + z*(s4 + z*(s5 + z*s6))))) + rest*(1.0_wp - 0.5_wp*z))
+         sine = r + (z*r*(s(1) + z*(s(2) + z*(s(3) + z*(s(4) + z*(s(5) + z*s(6)))))) + rest*(1.0_wp - 0.5_wp*z))
          half = 0.5_wp*z
          u = 1.0_wp - half
-         cosine = u + (((1.0_wp - u) - half) + (z*(z*(c1 + z*(c2 + z*(c3 + z*(c4 + z*(c5 + z*c6)))))) - r*rest))
+         cosine = u + (((1.0_wp - u) - half) &
+            + (z*(z*(c(1) + z*(c(2) + z*(c(3) + z*(c(4) + z*(c(5) + z*c(6))))))) - r*rest))
 
          of_sine = transfer(sine, of_sine)
          of_cosine = transfer(cosine, of_cosine)

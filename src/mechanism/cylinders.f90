@@ -4,9 +4,10 @@ module cylinders
    use plane_vectors, only: direction, rotated, point_of, add_rotating
    use mechanism, only: mechanism_t
    use instant_centres, only: seen_from
+   use drawn_lengths, only: rounded => same_place_tolerance
    implicit none
    private
-   public :: cylinder_t, cylinders_of, cylinder_length, cylinder_motion, stays_within, is_out_of_stroke, rounded
+   public :: cylinder_t, cylinders_of, cylinder_length, cylinder_motion, stays_within, is_out_of_stroke
 
    !> A cylinder. Lengths are in the deck's unit.
    type :: cylinder_t
@@ -17,9 +18,6 @@ module cylinders
       real(wp) :: stroke(2) = [0.0_wp, huge(1.0_wp)]   !< its least and greatest length
       real(wp) :: bounds(2) = [0.0_wp, huge(1.0_wp)]   !< between them its length stays in a motion that is followed
    end type cylinder_t
-
-   !> A length that a card gives is known to some roundings: by this part.
-   real(wp), parameter :: rounded = 64.0_wp*epsilon(1.0_wp)
 
 contains
 

@@ -26,12 +26,11 @@ module position_proof
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
       assemble_balls, ball_accelerations, find_direct
+   use ball_numbers, only: number_error
    implicit none
    private
    public :: placed_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
 
-   !> Relative error of a time, which is a number of the deck.
-   real(wp), parameter, public :: time_error = 4.0_wp*rounding
    !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, and a step may
    !> have a thousand parts.
    integer, parameter, public :: max_proved_unknowns = 100
@@ -93,7 +92,7 @@ contains
       ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
       placed%u(:) = unknown_t()
       do i = 1, size(path%laws)
-         law = bounds_of(path%laws(i), s%t - time_error*abs(s%t), s%t + time_error*abs(s%t), .true.)
+         law = bounds_of(path%laws(i), s%t - number_error*abs(s%t), s%t + number_error*abs(s%t), .true.)
          associate (value => s%drive_value(:, i), unit => path%unit(i))
             placed%drive(:, i)%mid = value
             placed%drive(:, i)%radius = (max(law%high*unit - value, value - law%low*unit) + &

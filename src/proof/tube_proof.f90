@@ -21,7 +21,8 @@ module tube_proof
    use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, set_ball, set_radius, ball_accelerations
-   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product, time_error
+   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product
+   use ball_numbers, only: number_error
    implicit none
    private
    public :: tube_t, prove_tube
@@ -105,7 +106,7 @@ contains
          real(wp) :: late, earliest, change
          integer :: i
 
-         late = time_error*max(abs(from%t), abs(to%t))
+         late = number_error*max(abs(from%t), abs(to%t))
          ! No rounding moves a time across 0, where some powers begin.
          earliest = min(from%t, to%t)
          earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)

@@ -22,13 +22,12 @@ module picture
 
    !> The arrow of a drive is a line of so many pieces; the last ones are its tip.
    integer, parameter :: arrow_pieces = 10, tip_pieces = 2
-   !> Pixels of a straight arrow: its length, its distance from the point, half its tip; radius of an arc.
-   real(wp), parameter :: arrow_length = 45.0_wp, arrow_aside = half_block(2) + 10.0_wp, &
-      tip_half = 4.5_wp, arc_radius = 24.0_wp
+   !> Pixels of a straight arrow: its length, its distance from the point; radius of an arc.
+   real(wp), parameter :: arrow_length = 45.0_wp, arrow_aside = half_block(2) + 10.0_wp, arc_radius = 24.0_wp
    !> The angle of an arc, and the angles at which it may begin, from the side of the link in its own sense (degrees).
    real(wp), parameter :: arc_angle = 130.0_wp, &
       arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
-   !> The longest arrow of a velocity, and its tip (pixels).
+   !> The longest arrow of a velocity, and the length of a tip, which is as wide (pixels).
    real(wp), parameter :: longest_velocity = 55.0_wp, tip_length = 9.0_wp
    !> The weight of an arrow for names.
    real(wp), parameter :: arrow_weight = 3.0_wp
@@ -212,7 +211,7 @@ contains
       real(wp) :: e(2)
 
       associate (n => size(line, 2), tip => line(:, size(line, 2)), tail => line(:, size(line, 2) - 1))
-         e = tip_half*quarter_turn(tip - tail)/norm2(tip - tail)
+         e = 0.5_wp*tip_length*quarter_turn(tip - tail)/norm2(tip - tail)
          call draw_line(canvas%output, 'polyline', line(:, :n - 1), of_line)
          call draw_line(canvas%output, 'polygon', reshape([tip, tail + e, tail - e], [2, 3]), of_tip)
       end associate
