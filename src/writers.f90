@@ -6,7 +6,7 @@ module writers
    use mechanism, only: settings_t, request_t, instant, instant_count
    use set_members, only: requests_of
    use deck_variants, only: variation_t
-   use text_output, only: output_t, put
+   use text_output, only: put
    use command_line, only: options_t, out_listing, out_csv, out_table, out_log
    use outputs, only: outputs_t
    use listing, only: layout_t, listing_state_t, listing_instant, listing_end, write_waiting

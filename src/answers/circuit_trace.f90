@@ -10,7 +10,7 @@ module circuit_trace
    use configuration, only: add_to_links
    implicit none
    private
-   public :: circuit_t, trace, least_step, end_closed, end_far, end_lost, end_shut
+   public :: circuit_t, trace, least_step, end_closed, end_far, end_shut
 
    !> A certified step below this means a change point: rounding does not distinguish other positions that are nearer.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp

@@ -9,7 +9,7 @@ module initial_assembly
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
    use cylinders, only: cylinder_length
-   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_inconsistent, ended_elsewhere
+   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_elsewhere
    use motion, only: motion_t, new_motion
    use blocks, only: blocks_t, geometry_t, largest_known, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns

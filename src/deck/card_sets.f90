@@ -1,7 +1,7 @@
 !> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END: here
 !> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
-   use kinds, only: wp, label_length
+   use kinds, only: wp
    use mechanism
    use cards
    use card_reader, only: parsed_card_t, find_long_label

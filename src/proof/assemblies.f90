@@ -8,7 +8,7 @@ module assemblies
    use cylinders, only: cylinder_length, is_out_of_stroke
    use separations, only: separation
    use motion, only: motion_t, new_motion
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: is_solved
    use block_state, only: set_drive_values
    use following, only: following_t, begin_following, solve_at
    use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => same_assembly_tolerance

@@ -10,8 +10,7 @@ module canvas
    use number_format, only: full, whole
    use drawing, only: drawing_t, snapshot_t, moved
    use shapes, only: element_t, shapes_of
-   use svg, only: page_t, page_width, tie, draw_words, draw_circle, draw_line, open_group, close_group, attribute, &
-      fitted
+   use svg, only: page_t, page_width, tie, draw_words, draw_circle, draw_line, open_group, close_group, fitted
    use text_output, only: output_t
    use listing, only: words_of_flag
    use listing_layout, only: angle_unit

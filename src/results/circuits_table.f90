@@ -4,7 +4,7 @@ module circuits_table
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_limit
    use independent, only: set_t
-   use circuit_trace, only: end_closed, end_far, end_lost, end_shut
+   use circuit_trace, only: end_closed, end_far, end_shut
    use circuits, only: circuits_t, circuit_branch_t, turns_of
    use set_circuits, only: known
    use ranges_table, only: side_words

@@ -19,7 +19,7 @@ module csv
    use scales, only: is_length
    use drives, only: drive_motion
    use points, only: row_t
-   use independent, only: set_t, request_of
+   use independent, only: set_t
    use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
    use name_table, only: name_table_t, store_name, find_name
    use masked_numbers, only: nothing_known

@@ -7,9 +7,9 @@ module listing_layout
    use kinds, only: wp, label_length
    use plane_vectors, only: degree
    use mechanism, only: drive_t, settings_t, request_t, request_link
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, row_turning, last_form, &
-      table_turning, last_table, last_dimension, quantities, of_drives => drives, is_ratio, usual_size, cell_none, &
-      last_cell, of_length, of_angle, cell_words
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, last_form, table_turning, last_table, &
+      last_dimension, quantities, of_drives => drives, is_ratio, usual_size, cell_none, last_cell, of_length, &
+      of_angle, cell_words
    use independent, only: set_t, request_of
    use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
    use drives, only: growing_sizes

@@ -8,7 +8,7 @@ module picture
    use drives, only: drive_motion
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place, moved
-   use shapes, only: element_t, shapes_of, color_of, link_color, pole_name, half_block
+   use shapes, only: element_t, shapes_of, link_color, pole_name, half_block
    use canvas, only: canvas_t, label_t, make_canvas, to_pixels, draw_shape, record_shape, draw_outlines, place_name, &
       draw_label, draw_foot, draw_bar, caption, add_lines, add_box, cover_of, line_height
    use labels, only: labels_of, clear_of_point

@@ -2,7 +2,7 @@
 module variant_rows
    use kinds, only: wp, label_length
    use plane_vectors, only: in_degrees
-   use mechanism, only: mechanism_t, request_t, drive_t
+   use mechanism, only: request_t, drive_t
    use columns, only: columns_of_rows, cell_count, cell_number, cell_unbounded, cell_none, cell_word, of_angle
    use scales, only: is_length
    use table, only: format_t, cell_t, choose_digits

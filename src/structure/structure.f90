@@ -4,7 +4,6 @@
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
-   use kinds, only: label_length
    use cards, only: card_forms, form_ground
    use failures, only: failure_t, fail, status_rejected
    use number_format, only: whole

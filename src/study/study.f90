@@ -5,8 +5,8 @@ module study
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
    use kinds, only: wp, wp_name
    use failures, only: failure_t, status_solved, status_flagged
-   use mechanism, only: mechanism_t, request_t, request_pair, method_newton, method_dense, method_matrix, &
-      method_words, own_predictor, instant_count, instant
+   use mechanism, only: mechanism_t, request_t, method_newton, method_dense, method_matrix, method_words, &
+      own_predictor, instant_count, instant
    use independent, only: request_of
    use structure, only: structure_report_t, find_structure, check_structure
    use deck, only: read_deck
