@@ -32,9 +32,15 @@ conclude() {
 
 # card NAME A B C R1 R2 R3: one card of a deck
 card() {
-   card=$(printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s.' "$1" "$2" "$3" "$4" "$5" "$6" "$7")
-   card=${card%.}
-   echo "${card%"${card##*[! ]}"}"
+   card=$1
+   for width in 8 16 24 32 48 64; do
+      [ $# -gt 1 ] || break
+      shift
+      [ -n "$1" ] || continue
+      while [ ${#card} -lt $width ]; do card="$card "; done
+      card=$card$1
+   done
+   echo "$card"
 }
 
 # with DECK CARD...: the deck of input/ with these cards before each END

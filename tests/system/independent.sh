@@ -25,7 +25,7 @@ four_bar() { chain 1.0 3.5 3.0 4.0 0.25 0.9 1.9; point P CO 1.7 0.6; angle CR 0.
 # The crank passes the limit at about 1 s.
 limit() { chain 3.0 3.5 1.0 4.0 0.2 0.9 1.9; angle CR 0.2 0.9; }
 # A parallelogram, through its change point, and an instant on it.
-change() { chain 2.0 4.0 2.0 4.0 2.0 0.0 2.0; angle CR 2.141592653589793 1.0; }
+change() { chain 2.0 4.0 2.0 4.0 2.0 0.0 2.0; angle CR 2.14159265358979 1.0; }
 branch() { change; card BRANCH "CO$mark" '' '' 0.0; }
 at_start() { chain 2.0 4.0 2.0 4.0 0.0 0.0 0.0; angle CR 0.0 0.5; }
 # Three parallel cranks: one equation too many, by nothing or by a tenth of a crank.
