@@ -31,7 +31,7 @@ module extreme_search
    real(wp), parameter :: well_known_limit = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp))
    !> Otherwise they are tried nearer to a change point by this factor, though roundings grow there; or farther from a
    !> limit of the motion, near which some of the motion may not be found.
-   real(wp), parameter :: nearer_by = 0.25_wp
+   real(wp), parameter :: nearer_by = 0.25_wp, farther_by = 4.0_wp
    !> Up to so many such tries.
    integer, parameter :: max_nearer = 5, max_farther = 8
    !> The places near an end of a piece.
@@ -228,7 +228,7 @@ contains
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             ! The nearest first, on the side of `other`.
-            nearest = merge(nearer_by**try*from_change_point, nearer_by**(-try)*from_limit, at%is_change)*extremes%step
+            nearest = merge(nearer_by**try*from_change_point, farther_by**try*from_limit, at%is_change)*extremes%step
             nearest = min(nearest, abs(other - at%t)/(2*places**2))
             times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
             do i = 1, places

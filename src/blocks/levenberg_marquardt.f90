@@ -17,8 +17,7 @@ module levenberg_marquardt
    real(wp), parameter :: longest_step = 0.5_wp
    !> Steps of that length do not make a larger residual small; the square of this one is well below overflow.
    real(wp), parameter :: largest_reducible = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
-   !> The damping at the beginning, and the least and the largest.
-   real(wp), parameter :: first_damping = 1.0e-2_wp, dampings(2) = [1.0e-12_wp, 1.0e8_wp]
+   real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
    !> With a smaller residual no other start is tried.
    real(wp), parameter :: good_residual = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> A smaller residual has nothing to correct.
@@ -138,7 +137,7 @@ contains
       call assemble_dense(b, x, i, s, jacobian, r)
       do iteration = 1, max_damped_steps
          largest = maxval(weights*abs(r))
-         if (largest <= least_residual .or. damping > dampings(2) .or. .not. largest <= largest_reducible) exit
+         if (largest <= least_residual .or. damping > max_damping .or. .not. largest <= largest_reducible) exit
          square = sum((weights*r)**2)
          values = values_of(b, i, s)
 
@@ -157,7 +156,7 @@ contains
          call set_values(b, i, values - d(:size(values)), s)
          call assemble_dense(b, x, i, s, jacobian, r)
          if (sum((weights*r)**2) < square) then
-            damping = max(0.2_wp*damping, dampings(1))
+            damping = max(0.2_wp*damping, min_damping)
             if (step <= min_step) exit
          else
             damping = 5.0_wp*damping

@@ -19,10 +19,12 @@ module deck_options
    integer, parameter :: max_steps = 99999999
    !> A relative tolerance is above this: below, rounding prevents convergence.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
-   !> The largest relative tolerance, and closing tolerance: above, the result is no solution.
+   !> The largest relative tolerance: above, the result is no solution.
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
    !> The smallest closing tolerance (characteristic lengths, rad): equations that agree so well need none.
    real(wp), parameter :: min_closing = 1.0e-10_wp
+   !> The largest closing tolerance (characteristic lengths, rad): above, the result is no solution.
+   real(wp), parameter :: max_closing = 1.0e-2_wp
    !> The word of a TIME card that counts turns of a drive.
    character(*), parameter :: turns_word = 'TURNS'
    !> Words that can only be meant as a unit of angles.
@@ -83,7 +85,7 @@ contains
                    (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
                   call add_card_error(set, number_range, k, real_1, 'ABOVE 1E-15, UP TO 1E-2')
                m%closing = card%real(2)
-               if (abs(m%closing) > 0.0_wp .and. (m%closing < min_closing .or. m%closing > max_tolerance)) then
+               if (abs(m%closing) > 0.0_wp .and. (m%closing < min_closing .or. m%closing > max_closing)) then
                   call add_card_error(set, number_range, k, real_2, '1E-10 TO 1E-2')
                else if (m%closing > 0.0_wp .and. m%method /= method_newton) then
                   call add_card_error(set, newton_needed, k, real_2)

@@ -44,8 +44,8 @@ module canvas
 
    !> Pixels around the mechanism, for names and supports.
    real(wp), parameter :: side_margin = 62.0_wp
-   !> Pixels: the least and the largest height of the mechanism.
-   real(wp), parameter :: heights(2) = [60.0_wp, 520.0_wp]
+   !> Pixels: the largest and the least height of the mechanism.
+   real(wp), parameter :: max_height = 520.0_wp, min_height = 60.0_wp
    !> Pixels above the mechanism for the title, and below it for times, scale and flagged instants.
    integer, parameter :: title_height = 34, foot_height = 61
    !> Pixels of the height of a line of words.
@@ -58,7 +58,7 @@ module canvas
    integer, parameter :: max_caption = 78
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
-   real(wp), parameter :: letter_size(2) = [8.7_wp, 9.0_wp]
+   real(wp), parameter :: letter_width = 8.7_wp, letter_height = 9.0_wp
    !> The distances at which a name may stand from its place, in pixels.
    real(wp), parameter :: name_distances(*) = [9.0_wp, 11.0_wp, 14.0_wp, 21.0_wp, 30.0_wp, 42.0_wp]
    !> A pixel of distance costs as much as so many pixels of overlap.
@@ -130,12 +130,12 @@ contains
       associate (extent => high - low)
          room = real(page_width, wp) - 2.0_wp*side_margin
          if (any(extent > 0.0_wp)) then
-            canvas%scale = 1.0_wp/max(extent(1)/room, extent(2)/heights(2))
+            canvas%scale = 1.0_wp/max(extent(1)/room, extent(2)/max_height)
             canvas%scale = canvas%scale*(1.0_wp + tie)
             canvas%scale = scale(aint(256.0_wp*fraction(canvas%scale)), exponent(canvas%scale) - 8)
          end if
 
-         height = 2*ceiling(0.5_wp*max(heights(1), canvas%scale*extent(2)) + side_margin - tie)
+         height = 2*ceiling(0.5_wp*max(min_height, canvas%scale*extent(2)) + side_margin - tie)
          top = page%height
          page%height = top + title_height + height + foot_height
          canvas%shift = anint([0.5_wp*real(page_width, wp) - canvas%scale*(low(1) + 0.5_wp*extent(1)), &
@@ -369,7 +369,7 @@ contains
       real(wp) :: low(2), high(2), half(2), distance, cost, least
       integer :: i, d, x, y
 
-      half = 0.5_wp*letter_size*[real(len(name), wp), 1.0_wp]
+      half = 0.5_wp*[letter_width*real(len(name), wp), letter_height]
       least = huge(least)
       label%name = name
       label%clear = clear

@@ -35,10 +35,10 @@ module circuits_picture
    integer, parameter :: legend_height = 56
    real(wp), parameter :: legend_width = 70.0_wp
    !> Pixels on the left of a diagram, on its right, above it and below it.
-   real(wp), parameter :: rooms(4) = [84.0_wp, 24.0_wp, 26.0_wp, 42.0_wp]
+   real(wp), parameter :: left_room = 84.0_wp, right_room = 24.0_wp, top_room = 26.0_wp, bottom_room = 42.0_wp
    !> Pixels of the height of a diagram.
    real(wp), parameter :: diagram_height = 300.0_wp
-   integer, parameter :: chart_height = nint(rooms(3) + diagram_height + rooms(4))
+   integer, parameter :: chart_height = nint(top_room + diagram_height + bottom_room)
    !> Pixels of dead points, change points and ticks.
    real(wp), parameter :: dot_radius = 3.5_wp, ring_radius = 6.0_wp, tick_length = 5.0_wp
    !> An axis goes on by this part of the range of its values, and at least by this part of the largest value.
@@ -178,8 +178,8 @@ contains
       end do
 
       ! Ticks and numbers, below and on the left.
-      corner = [rooms(1), real(page%height, wp) + rooms(3)]
-      extent = [real(page_width, wp) - rooms(1) - rooms(2), diagram_height]
+      corner = [left_room, real(page%height, wp) + top_room]
+      extent = [real(page_width, wp) - left_room - right_room, diagram_height]
       page%height = page%height + chart_height
       call open_group(page%body, 'class="circuits" '//attribute('data-drive', drive_words), name)
       do k = 1, 2

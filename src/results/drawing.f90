@@ -38,9 +38,10 @@ module drawing
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
-   !> Points of a link closer than this part of the link's extent are one. Corners whose angle has a smaller sine are
-   !> collinear.
+   !> Points of a link closer than this part of the link's extent are one.
    real(wp), parameter :: same_corner_part = 1.0e-6_wp
+   !> Corners whose angle has a smaller sine are collinear.
+   real(wp), parameter :: collinear_sine = 1.0e-6_wp
 
    !> The shape of a link for the eye: the convex hull of its points, in its own axes.
    type :: outline_t
@@ -359,7 +360,7 @@ contains
             ! The sine of the angle from the next place to this one.
             associate (u => p(:, next) - p(:, last), v => p(:, i) - p(:, last))
                side = cross(u/norm2(u), v/norm2(v))
-               if (side < -same_corner_part .or. (side <= same_corner_part .and. norm2(v) > norm2(u))) next = i
+               if (side < -collinear_sine .or. (side <= collinear_sine .and. norm2(v) > norm2(u))) next = i
             end associate
          end do
          if (next == 0 .or. n == size(p, 2)) exit

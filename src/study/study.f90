@@ -67,6 +67,8 @@ module study
    integer, parameter :: max_equations = 130
    !> The tolerances that are tried; 0: the limit of rounding.
    real(dp), parameter :: tolerances(*) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, 1.0e-12_dp, 0.0_dp]
+   !> Microseconds in a second.
+   real(dp), parameter :: micro = 1.0e6_dp
    !> Degrees in a radian.
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
@@ -363,7 +365,7 @@ contains
          end do
          time = time + (seconds() - begun)
       end do
-      time = 1.0e6_dp*time/(real(passes, dp)*steps)
+      time = micro*time/(real(passes, dp)*steps)
    end function step_time
 
    !> Reads the clock, in seconds from some instant.
