@@ -11,9 +11,9 @@ module kinmat_c
    use mechanism, only: mechanism_t, instant, instant_count
    use deck, only: read_deck_text
    use structure, only: structure_report_t, check_structure
-   use set_motion, only: new_set_motion, is_flagged
+   use set_motion, only: is_flagged
    use rows, only: finished_row_t, find_rows
-   use set_analysis, only: set_analysis_t, begin_analysis, advance_set, sample_set
+   use set_analysis, only: set_analysis_t, analyze_set, advance_set, sample_set
    use csv, only: table_t, new_table, find_table_row, table_width
    implicit none
    private
@@ -118,8 +118,7 @@ contains
       end if
       if (allocated(failure)) return
 
-      call new_set_motion(sets(number), handle%set%now, structure_report(number))
-      call begin_analysis(handle%set, structure_report(number))
+      call analyze_set(sets(number), structure_report(number), handle%set)
       handle%table = new_table(handle%set%now, .false.)
       allocate (handle%rows(size(handle%set%now%rows)), handle%values(table_width(handle%table)))
       handle%names = [character(column_name_length) :: 't', handle%table%drives, handle%table%columns%name]

@@ -24,7 +24,7 @@ module variant_runs
    use lane_state, only: lanes_t
    use phrases, only: text_broken_variant
    use set_motion, only: new_set_motion
-   use set_analysis, only: set_analysis_t, begin_analysis, renew_set_analysis
+   use set_analysis, only: set_analysis_t, analyze_set, renew_set_analysis
    use kinds, only: wp
    implicit none
    private
@@ -124,8 +124,7 @@ contains
             call check_variant(run%m, structure_report, row)
             run%is_over = row%rejected /= ''
             if (run%is_over) return
-            call new_set_motion(run%m, run%s%now, structure_report)
-            call begin_analysis(run%s, structure_report)
+            call analyze_set(run%m, structure_report, run%s)
          end if
          call begin_run(run)
       end subroutine start

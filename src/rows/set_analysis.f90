@@ -23,8 +23,8 @@ module set_analysis
    use instant_centres, only: points_coincide
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, accept_state, &
-      rows_at, sample_set, prove_set
+   public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, renew_set_analysis, advance_set, &
+      accept_state, rows_at, sample_set, prove_set
    public :: errors_unasked, errors_in_doubt, errors_always
 
    !> The angles from which measures go on between the instants of TIME, if extremes are searched for.
@@ -68,9 +68,18 @@ contains
       type(structure_report_t) :: structure_report
 
       structure_report = find_structure(m)
+      call analyze_set(m, structure_report, set)
+   end subroutine make_set_analysis
+
+   !> Makes the analysis of a set whose structure is known, ready for its first instant.
+   subroutine analyze_set(m, structure_report, set)
+      type(mechanism_t), intent(in) :: m     !< the set
+      type(structure_report_t), intent(inout) :: structure_report   !< its structure, which is given up
+      type(set_analysis_t), intent(out) :: set
+
       call new_set_motion(m, set%now, structure_report)
       call begin_analysis(set, structure_report)
-   end subroutine make_set_analysis
+   end subroutine analyze_set
 
    !> Begins the analysis of a set that is divided into its mechanisms.
    subroutine begin_analysis(set, structure_report)
