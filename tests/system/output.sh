@@ -160,9 +160,10 @@ stopped() {
 }
 { sed '/^LANG/d' long | awk '{ print } /^TITLE/ && !told { print "LANG    PL"; told = 1 }'; } > polish
 rm -f stop[.-]*
+release=$kinmat
 for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debug'; do
    set -- $one
-   if [ -n "$4" ]; then kinmat=$debug; fi
+   [ -z "$4" ] || kinmat=$debug
    stopped "$1" "$3"
    told "SIG$1, $3" "$2" $status ''
    case $3 in polish) words='OBLICZENIA PRZERWANO PO CHWILI' ;; *) words='THE RUN WAS BROKEN OFF AFTER INSTANT' ;; esac
@@ -176,10 +177,11 @@ for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debu
    columns "SIG$1, $3" stop.csv
    rm -f stop[.-]*
 done
+kinmat=$release
 
 # A signal that comes anywhere, mostly between two sets: the last line says after which, for each number of processes.
 { card GROUND BASE; card LINK CRANK; card JOINT O BASE CRANK; card DRIVE ANGLE CRANK '' 1.0; card TIME 2 '' '' 0.0 1.0; echo END; } > one.deck
-awk -v count=20000 '{ text = text $0 "\n" } END { for (i = 0; i < count; i++) printf "%s", text }' one.deck > sets
+awk -v count=5000 '{ text = text $0 "\n" } END { for (i = 0; i < count; i++) printf "%s", text }' one.deck > sets
 for pause in 0 0.02 0.05 0.08; do
    for jobs in 1 2; do
       rm -f stop.lst
