@@ -384,8 +384,10 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable :: list(:)
       type(branch_requests_t) :: before
+      integer :: filled
 
       before = following%branch_requests
+      filled = following%history%filled
       call pass(following%blocks, following%geometry, following%path, following%history, following%work, &
          following%state, following%branch_requests, following%convergence, list)
       if (following%convergence%keeps_signs .and. following%convergence%kantorovich_ratio <= max_kantorovich_ratio) then
@@ -395,8 +397,9 @@ contains
          if (size(list) > 0 .and. .not. following%convergence%keeps_signs) &
             step%dead_end = pack(list, list%kind == diagnostic_dead_end)
          following%convergence%keeps_signs = .false.
-         ! Close to a dead point it may only look like a change point: no card is used up there.
+         ! Close to a dead point it may only look like a change point: no card is used up there, and no motion forgotten.
          following%branch_requests = before
+         following%history%filled = filled
       end if
    end subroutine pass_change_points
 
