@@ -220,7 +220,7 @@ contains
             call make_set_analysis(sets(i), a)
             call advance_set(a, instant(sets(i), 0))
             call find_all_circuits(a, found)
-            call draw_circuits(pages(out_circuits), sets(i), a, found)
+            call draw_circuits(pages(out_circuits), sets(i), a%now, found)
          end if
       end do
 
@@ -269,7 +269,7 @@ contains
 
       call make_set_analysis(with_all_links(m), a)
       d = new_drawing(m, merge(1, 0, m%steps >= 0), .false., .false.)
-      call new_paths(m, a%now, paths)
+      call new_paths(m, paths)
       do k = 0, merge(m%steps, instant_count(m) - 1, m%steps >= 0)
          call advance_set(a, instant(m, k))
          if (k == 0) call record_instant(d, a%now, k)

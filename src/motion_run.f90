@@ -8,8 +8,8 @@ module motion_run
    use outputs, only: is_over
    use shares, only: write_in_turn
    use writers, only: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off
-   use answers, only: answers_t, new_answers, update_answers, finish_answers
-   use answer_tables, only: write_answers
+   use answers, only: answers_t, new_answers, update_answers
+   use dwells, only: find_dwells
    use counts, only: counts_t, record_flag
    use phrases, only: text_broken_off
    use motion_proof, only: holds
@@ -68,11 +68,8 @@ contains
       end do
 
       call end_tables(p, writers, set)
-      if (p%lists) then
-         call finish_answers(asked, set)
-         call write_answers(writers%files(out_listing), writers%layout, asked, set)
-      end if
-      call print_end(p, writers, set, counts)
+      if (p%lists .and. asked%wants_extremes) call find_dwells(asked%extremes, set, asked%dwells)
+      call print_end(p, writers, set, counts, asked)
    end subroutine run_motion
 
    !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the

@@ -5,7 +5,7 @@ module variant_runs
    use failures, only: status_flagged
    use mechanism, only: settings_t, mechanism_t, request_t
    use independent, only: set_t
-   use set_members, only: requests_of
+   use set_members, only: requests_of, has_cylinders
    use structure, only: structure_report_t, find_structure, faults_text
    use deck, only: build_variant
    use deck_variants, only: variation_t
@@ -183,12 +183,4 @@ contains
          .not. (not_have .or. settings%proves .or. settings%closing > 0.0_wp .or. &
          outputs%asked(out_csv) .or. outputs%asked(out_log))
    end function are_together
-
-   !> Tells whether a set has cylinders.
-   pure logical function has_cylinders(set)
-      class(set_t), intent(in) :: set
-      integer :: c
-
-      has_cylinders = any([(any(set%parts(c)%pairs%is_cylinder), c=1, set%count)])
-   end function has_cylinders
 end module variant_runs

@@ -1,7 +1,6 @@
 !> The outputs of a job, and the text of a motion: at its beginning, at its instants and at its end. This module alone
 !> knows the order of the outputs; `motion_run` and `variant_runs` know only its procedures.
 module writers
-   use kinds, only: wp
    use failures, only: status_solved
    use mechanism, only: settings_t, request_t, instant, instant_count
    use set_members, only: requests_of
@@ -14,6 +13,13 @@ module writers
    use csv, only: csv_instant, table_t, table_instant
    use solver_log, only: log_instant
    use counts, only: counts_t
+   use answers, only: answers_t
+   use extremes_table, only: write_extremes
+   use ranges_table, only: write_ranges
+   use assembly_table, only: write_assemblies
+   use circuits_table, only: write_circuits
+   use contributions_table, only: write_shares
+   use proof_table, only: write_proofs
    use rows, only: finished_row_t, find_rows
    use set_motion, only: has_words
    use set_analysis, only: set_analysis_t, sample_set
@@ -134,18 +140,28 @@ contains
       call write_columns(writers%files(out_listing), printing%columns, set%now)
    end subroutine end_tables
 
-   !> Prints the end of the listing of a set: how its motion ended, with the counts of its instants.
-   subroutine print_end(printing, writers, set, counts)
+   !> Prints the end of the listing of a set: the answers to its cards, and how its motion ended, with the counts of its
+   !> instants.
+   subroutine print_end(printing, writers, set, counts, answers)
       type(printing_t), intent(in) :: printing
       type(writers_t), intent(inout) :: writers
       type(set_analysis_t), intent(in) :: set
       class(counts_t), intent(in) :: counts
+      type(answers_t), intent(in) :: answers
       integer :: i
 
       if (.not. printing%lists) return
-      call listing_end(writers%files(out_listing), set%now, counts%solved, counts%flagged, set_certificates(set), &
-         maxval([(redundancy_error(set%list(i)), i=1, size(set%list))]), &
-         maxval([(set%estimators(i)%closure, i=1, size(set%list))]), set_closing_diagnostics(set))
+      associate (o => writers%files(out_listing), l => writers%layout)
+         if (answers%wants_extremes) call write_extremes(o, l, set%now, answers%extremes, answers%dwells)
+         if (set%now%ranges) call write_ranges(o, set%now, answers%ranges)
+         if (set%now%assemblies) call write_assemblies(o, l, set)
+         if (allocated(answers%circuits)) call write_circuits(o, set%now, answers%circuits)
+         if (answers%wants_contributions) call write_shares(o, l, answers%shares, set%now)
+         if (set%now%proves) call write_proofs(o, l, answers%proofs, set%now)
+         call listing_end(o, set%now, counts%solved, counts%flagged, set_certificates(set), &
+            maxval([(redundancy_error(set%list(i)), i=1, size(set%list))]), &
+            maxval([(set%estimators(i)%closure, i=1, size(set%list))]), set_closing_diagnostics(set))
+      end associate
    end subroutine print_end
 
    !> Ends the run before its time. The last line of the listing tells after which instant, variant or set; nothing

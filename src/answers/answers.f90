@@ -8,7 +8,7 @@ module answers
    use rows, only: finished_row_t
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: record_instant
-   use dwells, only: dwell_t, find_dwells
+   use dwells, only: dwell_t
    use tolerance_contributions, only: contributions_t, record_sensitivities
    use ranges, only: range_t
    use circuits, only: circuits_t
@@ -16,7 +16,7 @@ module answers
    use proofs, only: proofs_t, record_proof
    implicit none
    private
-   public :: answers_t, new_answers, update_answers, finish_answers
+   public :: answers_t, new_answers, update_answers
 
    type :: answers_t
       logical :: takes_instants = .false.           !< some answer is made of the instants
@@ -68,12 +68,4 @@ contains
       if (answers%wants_contributions .and. due) call record_sensitivities(answers%shares, set%now, rows)
       if (answers%wants_extremes) call record_instant(answers%extremes, set, k)
    end subroutine update_answers
-
-   !> Finds the answers that need the whole run, after its last instant.
-   subroutine finish_answers(answers, set)
-      type(answers_t), intent(inout) :: answers
-      type(set_analysis_t), intent(inout) :: set   !< after its last instant
-
-      if (answers%wants_extremes) call find_dwells(answers%extremes, set, answers%dwells)
-   end subroutine finish_answers
 end module answers

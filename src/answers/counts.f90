@@ -40,7 +40,6 @@ contains
             i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
             if (i == 0) cycle
             counts%limit = q%diagnostics(i)
-            counts%limit%part = c
          end associate
       end do
    end subroutine record_flag

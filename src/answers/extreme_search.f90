@@ -14,15 +14,12 @@
 module extreme_search
    use kinds, only: wp
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
+   use set_motion, only: apart_from
    use set_analysis, only: set_analysis_t, errors_in_doubt, errors_always
    use nodes, only: node_t, extreme_t, times_between, joint_margin
    use extremes, only: extremes_t, end_t, offer, badly_known, add_interval, coordinate_t, greatest, least
    use column_search, only: find_node, find_next, add_node, search_waiting
-   use scales, only: is_length
-   use plane_vectors, only: in_degrees
-   use mechanism, only: mechanism_t
    use columns, only: is_ratio
-   use separations, only: motions_apart
    implicit none
    private
    public :: record_instant, is_searched, search_instant
@@ -112,8 +109,8 @@ contains
          call add_node(extremes, set, part)
          if (k == set%now%steps) call search_waiting(extremes, set, part)
          if (k == set%now%steps) then
-            track%closure = apart_from_first(set, part)
-            call settle_ratios(track%coordinates, set%now%parts(part))
+            track%closure = apart_from(set%now, part, set%now%first(part))
+            call settle_ratios(track%coordinates)
          end if
          if (.not. known) call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
          track%last = end_t(t, .not. known, q%singularity == singular_change)
@@ -290,22 +287,14 @@ contains
       end subroutine evaluate_at
    end subroutine search_instant
 
-   !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive. Both are at the same
-   !> places only if the rate of the drive is constant; otherwise they are not printed.
-   pure subroutine settle_ratios(coordinates, m)
+   !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive.
+   pure subroutine settle_ratios(coordinates)
       type(coordinate_t), intent(inout) :: coordinates(:)   !< after the last instant
-      type(mechanism_t), intent(in) :: m     !< their mechanism, which has one drive if one of them is a ratio
-      real(wp) :: rate
       integer :: i
 
       do i = 1, size(coordinates)
-         if (.not. is_ratio(coordinates(i)%form)) cycle
-         associate (c => coordinates(i), drive => m%drives(1))
-            rate = drive%polynomial(2)
-            if (m%degrees .and. .not. is_length(drive)) rate = in_degrees(rate)
-            c%sought(2) = c%sought(2) .and. abs(rate) > 0.0_wp .and. .not. abs(drive%polynomial(3)) > 0.0_wp
-            if (allocated(drive%terms)) c%sought(2) = c%sought(2) .and. size(drive%terms) == 0
-            if (.not. c%sought(2)) cycle
+         associate (c => coordinates(i), rate => coordinates(i)%drive_rate)
+            if (.not. (is_ratio(c%form) .and. c%sought(2))) cycle
             c%found(:, 2)%value = c%found(:, 2)%value/rate
             c%found(:, 2)%error = c%found(:, 2)%error/abs(rate)
             c%size_of(2) = c%size_of(2)/abs(rate)
@@ -313,13 +302,4 @@ contains
          end associate
       end do
    end subroutine settle_ratios
-
-   !> Finds the distance (3) of the last motion of an independent mechanism from its first, as `motions_apart` gives it.
-   pure function apart_from_first(set, part) result(apart)
-      type(set_analysis_t), intent(in) :: set
-      integer, intent(in) :: part               !< its number
-      real(wp) :: apart(3)
-
-      apart = motions_apart(set%now%parts(part), set%now%first(part), set%now%motions(part))
-   end function apart_from_first
 end module extreme_search

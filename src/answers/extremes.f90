@@ -2,22 +2,22 @@
 !> time that `extreme_search` has reached; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use plane_vectors, only: pi, wrap_angle
-   use mechanism, only: mechanism_t, request_t, request_measure
-   use scales, only: characteristic_length, characteristic_rate
+   use plane_vectors, only: pi, in_degrees, wrap_angle
+   use mechanism, only: request_t, drive_t, request_measure
+   use scales, only: is_length
    use separations, only: closes, closes_to
    use drives, only: joints_of, largest_frequency
-   use points, only: row_t, is_fixed, column_of_ratio
-   use columns, only: columns_of_rows, forms, form_of, column_at, is_ratio, usual_size, of_angle
+   use points, only: row_t, column_of_ratio
+   use columns, only: columns_of_rows, forms, column_at, is_ratio, usual_size, of_angle
    use significance_check, only: max_amplification
-   use independent, only: set_t
+   use independent, only: set_t, request_of
+   use set_members, only: row_form, ratio_drive, moving_extremes, drive_of, sizes_of
    use nodes, only: node_t, extreme_t, order_along
    use zero_search, only: noise_part
    implicit none
    private
    public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
-      requested_rows, new_extremes, offer, add_interval, is_cyclic, is_covered, varies, strokes_t, strokes_of, &
-      badly_known, equal_part
+      new_extremes, offer, add_interval, is_cyclic, is_covered, varies, strokes_t, strokes_of, badly_known, equal_part
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, and the earlier one is
    !> printed: errors below a table's last digit may be as large.
@@ -52,6 +52,7 @@ module extremes
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
+      real(wp) :: drive_rate = 0.0_wp                  !< of a ratio: of the drive at t = 0, in the deck's units
       type(extreme_t) :: found(least:greatest, 0:2)
       real(wp) :: last(3) = 0.0_wp                     !< its latest rate, acceleration and jerk with a clear sign
       type(value_at_t), allocatable :: places(:)       !< nodes and extremes, if it may dwell
@@ -116,111 +117,95 @@ module extremes
 
 contains
 
-   !> Finds the numbers of the rows of a set whose extremes are asked for, but those of the ground, which does not move.
-   pure function requested_rows(set) result(asked)
-      class(set_t), intent(in) :: set
-      integer, allocatable :: asked(:)
-      logical :: is_asked(size(set%rows))
-      integer :: i
-
-      do i = 1, size(set%rows)
-         associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
-            is_asked(i) = own%requests(k)%extremes .and. .not. is_fixed(own, own%requests(k))
-         end associate
-      end do
-      asked = pack([(i, i=1, size(is_asked))], is_asked)
-   end function requested_rows
-
-   !> Makes the coordinate of a ratio: a search takes it as the velocity of a coordinate of which nothing is known, and
-   !> the rate of the ratio as the acceleration.
-   pure subroutine set_ratio(coordinate, length, rate, degrees)
-      type(coordinate_t), intent(inout) :: coordinate   !< has the places of the numbers of its row
-      real(wp), intent(in) :: length         !< characteristic length of the mechanism
-      real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
-      logical, intent(in) :: degrees         !< the deck's unit of angles
-
-      coordinate%column = column_of_ratio
-      coordinate%columns = [0, coordinate%columns(:1)]
-      coordinate%sought = [.false., coordinate%sought(:1)]
-      ! No digit of the unknown coordinate counts.
-      coordinate%size_of(0) = sqrt(huge(1.0_wp))
-      coordinate%size_of(1) = usual_size(columns_of_rows(coordinate%columns(1))%dimension, 0, length, rate, degrees)
-      coordinate%size_of(2) = coordinate%size_of(1)*rate
-   end subroutine set_ratio
-
-   !> Tells of which coordinates (3) of a row extremes are asked for: their own, or of a derivative.
-   pure function are_sought(m, request) result(sought)
-      type(mechanism_t), intent(in) :: m     !< whose request it is
-      type(request_t), intent(in) :: request
-      logical :: sought(3)
-      integer :: i
-
-      sought = [(i <= forms(form_of(m, request))%coordinates, i=1, 3)] .and. any(request%sought, dim=2)
-   end function are_sought
-
    !> Prepares the search for extremes of a set, before its first instant.
    subroutine new_extremes(set, extremes)
       class(set_t), intent(in) :: set
       type(extremes_t), intent(out) :: extremes
-      integer, allocatable :: asked(:)
-      real(wp) :: length, rate, fastest
-      logical :: sought(3)
-      integer :: i, c, n, q, k
+      type(drive_t) :: drive
+      real(wp) :: sizes(2), fastest
+      type(request_t) :: request
+      integer :: i, c, n, q
 
-      extremes%asked = requested_rows(set)
+      extremes%asked = moving_extremes(set)
       extremes%run = set%t1 - set%t0
       extremes%way = sign(1.0_wp, extremes%run)
       extremes%step = abs(extremes%run)/real(set%steps, wp)
       allocate (extremes%gaps(0), extremes%open(0), extremes%tracks(set%count))
 
       do c = 1, size(extremes%tracks)
-         associate (track => extremes%tracks(c), own => set%parts(c))
-            asked = pack(extremes%asked, set%rows(extremes%asked)%part == c)
-            track%requests = asked
-            allocate (track%rows(size(asked)), track%error(3, 0:2, size(asked)))
-            length = characteristic_length(own)
-            rate = characteristic_rate(own, length)
-            allocate (track%coordinates(sum([(count(are_sought(own, own%requests(set%rows(asked(q))%number))), &
-               q=1, size(asked))])))
-
+         associate (track => extremes%tracks(c))
+            track%requests = pack(extremes%asked, set%rows(extremes%asked)%part == c)
+            sizes = sizes_of(set, c)
+            n = size(track%requests)
+            allocate (track%rows(n), track%error(3, 0:2, n))
+            allocate (track%coordinates(3*n))
             n = 0
-            do q = 1, size(asked)
-               associate (request => own%requests(set%rows(asked(q))%number))
-                  sought = are_sought(own, request)
-                  do i = 1, size(sought)
-                     if (.not. sought(i)) cycle
-                     n = n + 1
-
-                     associate (one => track%coordinates(n))
-                        one%request = asked(q)
-                        one%part = c
-                        one%row = q
-                        one%column = i
-                        one%form = form_of(own, request)
-                        one%columns = [(column_at(one%form, i, k), k=0, 2)]
-                        one%sought = request%sought(i, :)
-                        one%is_angle = columns_of_rows(one%columns(0))%dimension == of_angle
-                        one%is_measure = request%kind == request_measure
-                        if (one%sought(0)) one%dwell = request%dwell(merge(2, 1, one%is_angle))
-                        one%size_of = merge(1.0_wp, length, one%is_angle)*rate**[(k, k=0, 2)]
-                        if (is_ratio(one%form)) call set_ratio(one, length, rate, set%degrees)
-                        allocate (one%places(0), one%reversals(0))
-                     end associate
-                  end do
-               end associate
+            do q = 1, size(track%requests)
+               request = request_of(set, track%requests(q))
+               do i = 1, forms(row_form(set, track%requests(q)))%coordinates
+                  if (.not. any(request%sought(i, :))) cycle
+                  n = n + 1
+                  track%coordinates(n)%part = c
+                  track%coordinates(n)%row = q
+                  call set_coordinate(track%coordinates(n), set, track%requests(q), i, sizes)
+               end do
             end do
+            track%coordinates = track%coordinates(:n)
 
             allocate (track%joints(0))
             fastest = 0.0_wp
-            do i = 1, merge(size(own%drives), 0, n > 0)
-               track%joints = [track%joints, joints_of(own%drives(i))]
-               fastest = max(fastest, largest_frequency(own%drives(i)))
+            do i = 1, merge(size(set%drives), 0, n > 0)
+               if (set%drives(i)%part /= c) cycle
+               drive = drive_of(set, i)
+               track%joints = [track%joints, joints_of(drive)]
+               fastest = max(fastest, largest_frequency(drive))
             end do
             track%joints = track%joints(order_along(track%joints, extremes%way))
-            track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
+            track%longest = 2.0_wp*pi/(parts_of_turn*max(sizes(2), fastest))
          end associate
       end do
    end subroutine new_extremes
+
+   !> Makes a coordinate of a row ready for the search. A search takes a ratio as the velocity of a coordinate of which
+   !> nothing is known, and the rate of the ratio as the acceleration. The derivative by the drive has its extremes
+   !> where the rate has them only if the rate of the drive is constant; otherwise they are not sought.
+   subroutine set_coordinate(coordinate, set, request, column, sizes)
+      type(coordinate_t), intent(inout) :: coordinate
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: request         !< number of the row in the set
+      integer, intent(in) :: column          !< of the row, 1 to 3
+      real(wp), intent(in) :: sizes(2)       !< of its mechanism, by `sizes_of`
+      type(request_t) :: asked
+      type(drive_t) :: drive
+      integer :: k
+
+      asked = request_of(set, request)
+      coordinate%request = request
+      coordinate%column = column
+      coordinate%form = row_form(set, request)
+      coordinate%columns = [(column_at(coordinate%form, column, k), k=0, 2)]
+      coordinate%sought = asked%sought(column, :)
+      coordinate%is_angle = columns_of_rows(coordinate%columns(0))%dimension == of_angle
+      coordinate%is_measure = asked%kind == request_measure
+      if (coordinate%sought(0)) coordinate%dwell = asked%dwell(merge(2, 1, coordinate%is_angle))
+      coordinate%size_of = merge(1.0_wp, sizes(1), coordinate%is_angle)*sizes(2)**[(k, k=0, 2)]
+      allocate (coordinate%places(0), coordinate%reversals(0))
+      if (.not. is_ratio(coordinate%form)) return
+
+      drive = drive_of(set, ratio_drive(set, request))
+      coordinate%drive_rate = drive%polynomial(2)
+      if (set%degrees .and. .not. is_length(drive)) coordinate%drive_rate = in_degrees(coordinate%drive_rate)
+      if (abs(drive%polynomial(3)) > 0.0_wp .or. .not. abs(drive%polynomial(2)) > 0.0_wp) coordinate%sought(1) = .false.
+      if (allocated(drive%terms)) coordinate%sought(1) = coordinate%sought(1) .and. size(drive%terms) == 0
+      coordinate%column = column_of_ratio
+      coordinate%columns = [0, coordinate%columns(:1)]
+      coordinate%sought = [.false., coordinate%sought(:1)]
+      ! No digit of the unknown coordinate counts.
+      coordinate%size_of(0) = sqrt(huge(1.0_wp))
+      coordinate%size_of(1) = usual_size(columns_of_rows(coordinate%columns(1))%dimension, 0, sizes(1), sizes(2), &
+         set%degrees)
+      coordinate%size_of(2) = coordinate%size_of(1)*sizes(2)
+   end subroutine set_coordinate
 
    !> Takes a value as the least or the greatest of a coordinate, if it is. A located value replaces the value of a node
    !> less than a step away. A node replaces another node less than a step away if it is more extreme by more than

@@ -34,6 +34,7 @@ contains
             if (set%now%motions(c)%known >= 0) then
                call find_range(set%now%parts(c), set%now%motions(c), i, r)
                r%part = c
+               r%limit%part = c
                list = [list, r]
             else if (set%now%variants == 0) then
                call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
@@ -61,6 +62,7 @@ contains
             do side = lower_end, upper_end
                r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
                if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))
+               r%limit(side)%part = found%part
                r%limit(side)%value = known(b%range(side))
             end do
          end associate

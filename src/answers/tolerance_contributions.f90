@@ -31,17 +31,18 @@ contains
       type(contributions_t), intent(inout) :: shares
       type(set_motion_t), intent(in) :: motions
       type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
-      integer :: i, j, n, c
+      integer :: i, j, k, n, c
 
       if (.not. allocated(shares%list)) then
          allocate (shares%list(3, 0:2, size(motions%rows)))
-         allocate (shares%jams(maxval([(size(motions%parts(c)%tolerances), c=1, motions%count)]), motions%count), &
+         allocate (shares%jams(maxval([(size(motions%sensitivities(c)%jams), c=1, motions%count)]), motions%count), &
             source=.false.)
       end if
       do i = 1, size(rows)
          if (.not. (rows(i)%listed .and. allocated(rows(i)%others))) cycle
          associate (others => rows(i)%others, c => rows(i)%part, form => forms(rows(i)%form))
             if (others(1)%word /= word_worst) cycle
+            n = size(motions%sensitivities(c)%jams)
             ! The further rows are WORST, RSS, then one for each number.
             do j = form%first, form%last
                associate (at => columns_of_rows(j)%at, &
@@ -52,10 +53,9 @@ contains
                   one%root = others(2)%row%value(at(1), at(2))
                   one%worst = others(1)%row%value(at(1), at(2))
                   one%t = motions%motions(1)%t
-                  one%s = [(others(n)%row%value(at(1), at(2)), n=3, 2 + size(motions%parts(c)%tolerances))]
+                  one%s = [(others(k)%row%value(at(1), at(2)), k=3, 2 + n)]
                end associate
             end do
-            n = size(motions%sensitivities(c)%jams)
             shares%jams(:n, c) = shares%jams(:n, c) .or. motions%sensitivities(c)%jams
          end associate
       end do

@@ -19,7 +19,7 @@ module drives
    use plane_vectors, only: pi
    use splines, only: spline_t, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
-      term_parabola, term_kinds
+      term_kinds
    implicit none
    private
    public :: drive_motion, bounds_t, bounds_of, drive_rate, joints_of, largest_frequency

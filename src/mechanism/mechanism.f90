@@ -480,12 +480,13 @@ contains
       is_centre = kind == request_pole .or. kind == request_curve
    end function is_centre
 
-   !> Tells whether only the listing has the rows of a request, since no card asks for them: no picture, no path.
-   elemental logical function is_listed_alone(request)
+   !> Tells whether pictures have the path of a request: a card asks for a point. Points that only the listing has,
+   !> since no card asks for them, have no path.
+   elemental logical function has_path(request)
       type(request_t), intent(in) :: request
 
-      is_listed_alone = request%listed .and. .not. request%extremes
-   end function is_listed_alone
+      has_path = request%kind == request_point .and. (request%extremes .or. .not. request%listed)
+   end function has_path
 
    !> Tells of each link (links) whether a request needs it. Ranges, circuits, proofs, assemblies and tolerances need
    !> all links.

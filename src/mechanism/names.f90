@@ -6,12 +6,15 @@ module names
    use number_format, only: whole
    implicit none
    private
-   public :: drive_name, subject_name, listed, more
+   public :: drive_name, drive_length, subject_name, listed, more
 
    !> The largest number of names in a list; the rest is only counted.
    integer, parameter :: max_listed_names = 8
    !> The largest number of characters of these names: drives have long names.
    integer, parameter :: max_list_length = 84
+
+   !> Characters of the name of a drive.
+   integer, parameter :: drive_length = 3*label_length + 2
 
 contains
 
@@ -19,7 +22,7 @@ contains
    pure function drive_name(m, drive) result(name)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: drive
-      character(3*label_length + 2) :: name
+      character(drive_length) :: name
 
       name = trim(drive_words(drive%kind))//' '//subject_name(m, driven_kinds(drive%kind), drive%subject)
       if (drive%kind == drive_relangle) name = trim(name)//' '//m%links(drive%second)%name

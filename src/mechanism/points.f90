@@ -16,7 +16,7 @@ module points
    use motion, only: motion_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
-   public :: row_t, column_of_ratio, find_row, known_at, amplification_in_measure, difference, is_due, is_listed, &
+   public :: row_t, column_of_ratio, find_row, known_at, amplification_in_measure, difference, is_due, is_printed, &
       is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
@@ -63,15 +63,6 @@ contains
       is_printed = request%every > 0
       if (is_printed) is_printed = mod(k, request%every) == 0 .or. k == instant_count(settings) - 1
    end function is_printed
-
-   !> Tells whether the listing has a row of a request at an instant: it is printed, or is listed without a card for it.
-   pure logical function is_listed(settings, request, k)
-      class(settings_t), intent(in) :: settings
-      type(request_t), intent(in) :: request
-      integer, intent(in) :: k               !< number of the instant, from 0
-
-      is_listed = request%listed .or. is_printed(settings, request, k)
-   end function is_listed
 
    !> Finds the row of a request, as far as the motion is known. Links and points of the ground are known at every
    !> instant. It is a subroutine: of the many rows of a table none is copied.

@@ -1,14 +1,19 @@
 !> Rows and drives of a set by their numbers in the order of the cards: what they are called and which law a drive has,
-!> in whatever part they are.
+!> in whatever part they are. Links, pairs, drives and tolerances of a part by their numbers there.
 module set_members
-   use kinds, only: label_length
-   use mechanism, only: drive_t, request_t
+   use kinds, only: wp, label_length
+   use mechanism, only: drive_t, request_t, tolerance_t, shown_links
+   use motion, only: diagnostic_t
    use independent, only: set_t, request_of
    use names, only: drive_name, subject_name
+   use scales, only: characteristic_length, characteristic_rate
    use columns, only: form_of
+   use points, only: is_fixed
    implicit none
    private
-   public :: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
+   public :: requests_of, row_form, row_subject, link_of_point, ratio_drive, moving_extremes, drive_of, drive_number, &
+      drive_title, same_before, has_cylinders
+   public :: sizes_of, tolerances_of, link_names, name_in, name_of_drive
 
 contains
 
@@ -40,6 +45,91 @@ contains
       end associate
    end function row_subject
 
+   !> Names the link of the point of a row.
+   pure function link_of_point(set, i) result(name)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the row in the set
+      character(label_length) :: name
+
+      associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
+         name = own%links(own%points(own%requests(k)%subject)%link)%name
+      end associate
+   end function link_of_point
+
+   !> Finds the drive of a ratio: its number among all drives of the set; 0 if the row is no ratio.
+   pure integer function ratio_drive(set, i)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the row in the set
+
+      type(request_t) :: request
+
+      request = request_of(set, i)
+      ratio_drive = drive_number(set, set%rows(i)%part, request%drive)
+   end function ratio_drive
+
+   !> Finds the numbers of the rows whose extremes are asked for, but those of the ground, which does not move.
+   pure function moving_extremes(set) result(asked)
+      class(set_t), intent(in) :: set
+      integer, allocatable :: asked(:)
+      type(request_t) :: requests(size(set%rows))
+      integer :: i
+
+      requests = requests_of(set)
+      asked = pack([(i, i=1, size(requests))], requests%extremes .and. &
+         .not. [(is_fixed(set%parts(set%rows(i)%part), requests(i)), i=1, size(requests))])
+   end function moving_extremes
+
+   !> Gives the characteristic length of a part and its characteristic rate, 1 over the unit of time.
+   pure function sizes_of(set, part) result(sizes)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of the independent mechanism
+      real(wp) :: sizes(2)
+
+      sizes(1) = characteristic_length(set%parts(part))
+      sizes(2) = characteristic_rate(set%parts(part), sizes(1))
+   end function sizes_of
+
+   !> Gives the tolerances of a part, if some number of the set has one.
+   pure function tolerances_of(set, part) result(tolerances)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of the independent mechanism
+      type(tolerance_t), allocatable :: tolerances(:)
+
+      tolerances = set%parts(part)%tolerances
+   end function tolerances_of
+
+   !> Names links, without the blocks of slots.
+   pure function link_names(set, part, links) result(names)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of the independent mechanism
+      integer, intent(in) :: links(:)        !< numbers of the links there
+      character(label_length), allocatable :: names(:)
+
+      associate (own => set%parts(part))
+         names = own%links(shown_links(own, links))%name
+      end associate
+   end function link_names
+
+   !> Names the pair of a diagnostic, or its measure.
+   pure function name_in(set, diagnostic) result(name)
+      class(set_t), intent(in) :: set
+      type(diagnostic_t), intent(in) :: diagnostic
+      character(label_length) :: name
+
+      associate (own => set%parts(diagnostic%part))
+         if (diagnostic%pair > 0) name = own%pairs(diagnostic%pair)%name
+         if (diagnostic%measure > 0) name = own%measures(diagnostic%measure)%name
+      end associate
+   end function name_in
+
+   !> Tells whether a set has cylinders.
+   pure logical function has_cylinders(set)
+      class(set_t), intent(in) :: set
+      integer :: c
+
+      has_cylinders = any([(any(set%parts(c)%pairs%is_cylinder), c=1, set%count)])
+   end function has_cylinders
+
    !> Gives a drive with its law. Assign the result: gfortran loses the memory of one that is used in an expression.
    pure type(drive_t) function drive_of(set, i)
       class(set_t), intent(in) :: set
@@ -63,8 +153,27 @@ contains
       integer, intent(in) :: i               !< number of the drive in the set
       character(:), allocatable :: name
 
-      associate (own => set%parts(set%drives(i)%part))
-         name = trim(drive_name(own, own%drives(set%drives(i)%number)))
-      end associate
+      name = name_of_drive(set, set%drives(i)%part, set%drives(i)%number)
    end function drive_title
+
+   !> Names a drive of a part.
+   pure function name_of_drive(set, part, number) result(name)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: part            !< number of the independent mechanism
+      integer, intent(in) :: number          !< number of the drive there
+      character(:), allocatable :: name
+
+      name = trim(drive_name(set%parts(part), set%parts(part)%drives(number)))
+   end function name_of_drive
+
+   !> Counts the drives of its mechanism before a drive that drive the same coordinate.
+   pure integer function same_before(set, i) result(count_before)
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the drive in the set
+
+      associate (n => set%drives(i)%number, drives => set%parts(set%drives(i)%part)%drives)
+         count_before = count(drives(:n - 1)%kind == drives(n)%kind .and. drives(:n - 1)%subject == drives(n)%subject &
+            .and. drives(:n - 1)%second == drives(n)%second)
+      end associate
+   end function same_before
 end module set_members

@@ -174,7 +174,11 @@ contains
             associate (link => labels(i)%link)
                call open_group(canvas%output, 'class="label"', '')
                if (.not. canvas%mechanism%links(link)%ground) then
-                  offset = offset_of(labels(i)%of, canvas%snapshot%place(:, link))
+                  ! The place of the pixel in the axes of the link.
+                  offset = (labels(i)%of - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
+                  associate (place => canvas%snapshot%place(:, link))
+                     offset = rotated(offset - place(:2), direction(-place(3)))
+                  end associate
                   last = 1
                   do k = 1, size(frame)
                      if (drawing%frame(frame(k))%known(link)) last = frame(k)
@@ -187,16 +191,6 @@ contains
             end associate
          end do
       end subroutine draw_names
-
-      !> Gives the place (2) of a pixel in the axes of a link.
-      pure function offset_of(p, position) result(offset)
-         real(wp), intent(in) :: p(2)        !< pixel
-         real(wp), intent(in) :: position(3)   !< of the link: x, y (lengths), phi (rad)
-         real(wp) :: offset(2)
-
-         offset = (p - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
-         offset = rotated(offset - position(:2), direction(-position(3)))
-      end function offset_of
 
       !> Writes the time, in red with the reason if the instant is flagged: a column of lines in a window of one line.
       subroutine draw_clock()

@@ -1,14 +1,13 @@
 !> The answer to the card CIRCUITS in the listing: a row for each branch, then the dead points and the change points.
 module circuits_table
    use kinds, only: wp
-   use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_limit
    use independent, only: set_t
+   use set_members, only: name_of_drive
    use circuit_trace, only: end_closed, end_far, end_shut
    use circuits, only: circuits_t, circuit_branch_t, turns_of
    use set_circuits, only: known
    use ranges_table, only: side_words
-   use names, only: drive_name
    use text_output, only: output_t, put
    use number_format, only: whole
    use listing, only: at_limit, full_turn_words, measure, value_digits
@@ -38,38 +37,38 @@ contains
       call put(o, '')
       do n = 1, size(list)
          if (n > 1) call put(o, '')
-         associate (found => list(n), m => set%parts(list(n)%part))
-            call put(o, ' '//phrase(text_circuits, m%polish)//', '//phrase(text_drive, m%polish)//' ' &
-               //trim(drive_name(m, m%drives(found%drive))))
-            if (.not. found%is_complete) call put(o, ' *** '//phrase(text_circuits_missing, m%polish))
+         associate (found => list(n))
+            call put(o, ' '//phrase(text_circuits, set%polish)//', '//phrase(text_drive, set%polish)//' ' &
+               //name_of_drive(set, found%part, found%drive))
+            if (.not. found%is_complete) call put(o, ' *** '//phrase(text_circuits_missing, set%polish))
             if (found%are_more) &
-               call put(o, ' *** '//phrase(text_more_circuits, m%polish)//' '//whole(size(found%list)))
+               call put(o, ' *** '//phrase(text_more_circuits, set%polish)//' '//whole(size(found%list)))
             if (found%is_redundant) then
-               call put(o, ' *** '//phrase(text_not_followed, m%polish))
+               call put(o, ' *** '//phrase(text_not_followed, set%polish))
             else if (size(found%list) == 0) then
-               call put(o, '   '//phrase(text_none, m%polish))
+               call put(o, '   '//phrase(text_none, set%polish))
             else
-               call write_branches(o, m, found)
+               call write_branches(o, set, found)
             end if
          end associate
       end do
    end subroutine write_circuits
 
    !> Writes a row for each branch of the circuits of a drive, then the dead points and the change points.
-   subroutine write_branches(o, m, found)
+   subroutine write_branches(o, set, found)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: set
       type(circuits_t), intent(in) :: found   !< of the drive
       character(column_ends(3)) :: row
       character(:), allocatable :: text
       type(diagnostic_t) :: meeting
       integer :: i, k
 
-      row = ' '//phrase(text_circuit, m%polish)
-      row(column_ends(1) + 1:) = phrase(text_branch, m%polish)
-      row(column_ends(2) + 1:) = phrase(text_assembly_number, m%polish)
-      call put(o, row//phrase(text_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
-         //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
+      row = ' '//phrase(text_circuit, set%polish)
+      row(column_ends(1) + 1:) = phrase(text_branch, set%polish)
+      row(column_ends(2) + 1:) = phrase(text_assembly_number, set%polish)
+      call put(o, row//phrase(text_range_of, set%polish)//' '//name_of_drive(set, found%part, found%drive)//', ' &
+         //trim(merge(angle_unit(set), set%length_unit, found%curve%is_angle)))
       do k = 1, size(found%branches)
          associate (b => found%branches(k))
             text = words_of(b%assemblies)
@@ -78,34 +77,36 @@ contains
             ! If there are more assemblies than the column has room for, the range follows them.
             text = text(2:)
             text = row(:column_ends(2))//text//repeat(' ', max(1, column_ends(3) - column_ends(2) - len(text)))
-            call write_folded(o, text, range_words(m, found, b), repeat(' ', len(text)))
+            call write_folded(o, text, range_words(set, found, b), repeat(' ', len(text)))
          end associate
       end do
 
       ! For each dead point the drive's value, links, and the branches that end there.
-      if (size(found%dead) > 0) call put(o, ' '//phrase(text_dead_points, m%polish))
+      if (size(found%dead) > 0) call put(o, ' '//phrase(text_dead_points, set%polish))
       do i = 1, size(found%dead)
+         meeting = found%dead(i)
+         meeting%part = found%part
          text = meeting_words(text_branch, text_branches, pack([(k, k=1, size(found%branches))], &
-            [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
-            //value_words(m, found, found%dead(i)%value)
-         if (found%dead(i)%links(1) > 0) text = text//', '//at_limit(m, found%dead(i))
+            [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), set%polish)//' ' &
+            //value_words(set, found, meeting%value)
+         if (meeting%links(1) > 0) text = text//', '//at_limit(set, meeting)
          call write_folded(o, '   ', text, repeat(' ', 6))
       end do
 
       ! For each change point the circuits that meet there, and the drive's value.
-      if (size(found%meetings) > 0) call put(o, ' '//phrase(text_change_points, m%polish))
+      if (size(found%meetings) > 0) call put(o, ' '//phrase(text_change_points, set%polish))
       do i = 1, size(found%meetings)
          meeting = diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=found%meetings(i)%value)
          if (abs(meeting%value) <= sqrt(epsilon(1.0_wp))) meeting%value = 0.0_wp
          call put(o, '   '//meeting_words(text_circuit, text_circuit_numbers, &
-            pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
-            //measure(m, meeting, meeting_digits))
+            pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), set%polish)//' ' &
+            //measure(set, meeting, meeting_digits))
       end do
    end subroutine write_branches
 
    !> Gives the range of the drive on a branch in words.
-   function range_words(m, found, branch) result(text)
-      type(mechanism_t), intent(in) :: m
+   function range_words(set, found, branch) result(text)
+      class(set_t), intent(in) :: set
       type(circuits_t), intent(in) :: found
       type(circuit_branch_t), intent(in) :: branch
       character(:), allocatable :: text
@@ -114,31 +115,31 @@ contains
 
       associate (circuit => found%list(branch%circuit))
          if (circuit%rests) then
-            text = phrase(text_at_rest, m%polish)//' '//value_words(m, found, branch%range(1))
+            text = phrase(text_at_rest, set%polish)//' '//value_words(set, found, branch%range(1))
          else if (all(circuit%ends == end_closed) .and. all(branch%dead == 0)) then
-            text = full_turn_words(turns_of(circuit), m%polish)
+            text = full_turn_words(turns_of(circuit), set%polish)
          else
             ! The head of the column has their unit.
-            text = value_words(m, found, branch%range(1))
-            text = text(:index(text, ' '))//'.. '//value_words(m, found, branch%range(2))
+            text = value_words(set, found, branch%range(1))
+            text = text(:index(text, ' '))//'.. '//value_words(set, found, branch%range(2))
             text = text(:index(text, ' ', back=.true.) - 1)
             rises = circuit%points(branch%first)%value(0) < circuit%points(branch%last)%value(0)
             do side = 1, 2
                if (branch%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
-                  //phrase(end_words(circuit%ends(merge(side, 3 - side, rises))), m%polish)
+                  //phrase(end_words(circuit%ends(merge(side, 3 - side, rises))), set%polish)
             end do
          end if
       end associate
    end function range_words
 
    !> Gives a value of the free drive with its unit; 0 if it is rounding.
-   function value_words(m, found, number) result(words)
-      type(mechanism_t), intent(in) :: m
+   function value_words(set, found, number) result(words)
+      class(set_t), intent(in) :: set
       type(circuits_t), intent(in) :: found
       real(wp), intent(in) :: number         !< rad or length
       character(:), allocatable :: words
 
-      words = measure(m, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(number)), &
+      words = measure(set, diagnostic_t(diagnostic_limit, is_angle=found%curve%is_angle, value=known(number)), &
          value_digits)
    end function value_words
 

@@ -9,7 +9,7 @@ module column_table
    use set_members, only: requests_of, row_form, drive_title
    use set_motion, only: set_motion_t, is_flagged
    use rows, only: finished_row_t
-   use listing_layout, only: layout_t, line_length, column_name, column_unit, row_title
+   use listing_layout, only: layout_t, line_length, line_starts, column_name, column_unit, column_format, row_title
    use listing_tables, only: law_error, mask_words
    use table, only: format_t, write_cell, write_number, power_text, right
    use text_output, only: output_t, open_held, move_text, put
@@ -54,7 +54,7 @@ contains
       class(set_t), intent(in) :: set
       type(column_table_t), intent(out) :: table
       type(request_t), allocatable :: requests(:)
-      integer :: i, used
+      integer :: i
 
       if (.not. allocated(set%columns)) return
       requests = requests_of(set)
@@ -70,15 +70,7 @@ contains
       end do
 
       ! A table ends if a line has no room for the next column. After the time there is the flag.
-      table%starts = [2]
-      used = table%columns(1)%width + len(flag)
-      do i = 2, size(table%columns)
-         used = used + table%columns(i)%width
-         if (used <= line_length) cycle
-         table%starts = [table%starts, i]
-         used = table%columns(1)%width + len(flag) + table%columns(i)%width
-      end do
-      table%starts = [table%starts, size(table%columns) + 1]
+      table%starts = line_starts(table%columns(1)%width + len(flag), table%columns%width)
       allocate (table%lines(size(table%starts) - 1))
       do i = 1, size(table%lines)
          call open_held(table%lines(i))
@@ -107,12 +99,10 @@ contains
          type(listed_column_t), intent(inout) :: column
 
          column%request = set%columns(i)%request
-         associate (part => set%rows(column%request)%part)
-            column%number = columns_of_rows(column_at(row_form(set, column%request), set%columns(i)%at(1), &
-               set%columns(i)%at(2)))
-            call write_heads(column, row_title(set, column%request), column_name(l, column%number), &
-               l%own(part)%format(column%number%dimension, column%number%order), column_unit(l, column%number))
-         end associate
+         column%number = columns_of_rows(column_at(row_form(set, column%request), set%columns(i)%at(1), &
+            set%columns(i)%at(2)))
+         call write_heads(column, row_title(set, column%request), column_name(l, column%number), &
+            column_format(l, set, column%request, column%number), column_unit(l, column%number))
       end subroutine set_number_column
 
       !> Gives a column its heads and the width that they need.

@@ -2,15 +2,13 @@
 !> largest first.
 module contributions_table
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, is_centre
+   use mechanism, only: request_t, tolerance_t, is_centre
    use independent, only: set_t
-   use set_members, only: requests_of, row_form
+   use set_members, only: requests_of, row_form, row_subject, tolerances_of
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, row_turning
    use table, only: format_t, unit_of, number_text
-   use names, only: subject_name
-   use sensitivities, only: has_tolerances
    use tolerance_contributions, only: contributions_t, contribution_t, equal_share_part
-   use listing_layout, only: layout_t, column_name, column_unit
+   use listing_layout, only: layout_t, column_name, column_unit, column_format
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use number_format, only: fixed, whole
@@ -37,6 +35,7 @@ contains
       type(contributions_t), intent(in) :: shares
       class(set_t), intent(in) :: set
       type(request_t), allocatable :: requests(:)
+      type(tolerance_t), allocatable :: tolerances(:)
       integer :: i, c, d, j, form
 
       call put(o, '')
@@ -47,33 +46,30 @@ contains
       if (any(requests%drive > 0)) &
          call put(o, ' --- '//phrase(text_no_ratio_shares, set%polish))
       do c = 1, set%count
-         do d = 1, size(set%parts(c)%tolerances)
+         tolerances = tolerances_of(set, c)
+         do d = 1, size(tolerances)
             if (shares%jams(d, c)) &
-               call put(o, ' *** '//trim(set%parts(c)%tolerances(d)%name)//': '//phrase(text_jams, set%polish))
+               call put(o, ' *** '//trim(tolerances(d)%name)//': '//phrase(text_jams, set%polish))
          end do
       end do
 
       do i = 1, size(set%rows)
-         associate (part => set%rows(i)%part, request => requests(i))
-            if (.not. has_tolerances(set%parts(part), request)) cycle
-            form = merge(row_turning, row_form(set, i), request%angle_alone)
-            do j = forms(form)%first, forms(form)%last
-               associate (c => columns_of_rows(j))
-                  call write_quantity(o, l, l%own(part)%format(c%dimension, c%order), set%parts(part), request, c, &
-                     shares%list(c%at(1), c%at(2), i))
-               end associate
-            end do
-         end associate
+         form = merge(row_turning, row_form(set, i), requests(i)%angle_alone)
+         do j = forms(form)%first, forms(form)%last
+            associate (column => columns_of_rows(j))
+               call write_quantity(o, l, set, i, column, shares%list(column%at(1), column%at(2), i))
+            end associate
+         end do
       end do
    end subroutine write_shares
 
-   !> Writes the lines of a quantity, one column of a row; none if its root of squares is zero in the tables.
-   subroutine write_quantity(o, l, format, m, request, column, share)
+   !> Writes the lines of a quantity, one column of a row; none if it has no sensitivities, or if its root of squares is
+   !> zero in the tables.
+   subroutine write_quantity(o, l, set, row, column, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(format_t), intent(in) :: format   !< of the tables
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: row             !< number of the row in the set
       type(row_column_t), intent(in) :: column
       type(contribution_t), intent(in) :: share
       character(:), allocatable :: unit, word
@@ -81,48 +77,38 @@ contains
       integer :: i
       real(wp), allocatable :: part(:)
       character(12) :: sensitivity
-      character(max(parameter_name, len(m%tolerances%name))) :: name
+      type(tolerance_t), allocatable :: tolerances(:)
 
       if (.not. allocated(share%s)) return
-      f = format
-      f%decimals = format%decimals + l%more_decimals
+      f = column_format(l, set, row, column)
+      f%decimals = f%decimals + l%more_decimals
       if (share%root/f%unit < 0.5_wp*10.0_wp**(f%power - f%decimals)) return
       unit = unit_of(f%power, column_unit(l, column))
-      associate (kind => kinds_of_rows(request%kind))
+      associate (kind => kinds_of_rows(forms(row_form(set, row))%kind))
          word = trim(merge(kind%polish, kind%english, l%polish))
       end associate
-      call put(o, ' '//word//' '//trim(subject_name(m, request%kind, request%subject))//'  ' &
+      call put(o, ' '//word//' '//trim(row_subject(set, row))//'  ' &
          //column_name(l, column)//'   T = '//time_text(l, share%t)//l%after_time &
-         //'   RSS = '//value_text(share%root)//'   '//phrase(text_worst, m%polish)//' = ' &
-         //value_text(share%worst)//' '//unit)
+         //'   RSS = '//number_text(f, share%root, 0.0_wp)//'   '//phrase(text_worst, l%polish)//' = ' &
+         //number_text(f, share%worst, 0.0_wp)//' '//unit)
 
       ! A line for each number with a larger share than the least, the largest first: share, name, sensitivity,
       ! tolerance.
-      part = (share%s*m%tolerances%size_of/share%root)**2
+      tolerances = tolerances_of(set, set%rows(row)%part)
+      part = (share%s*tolerances%size_of/share%root)**2
       do while (any(part >= least_share))
          ! If some are equal, the first one comes first.
          i = findloc(part >= maxval(part)*(1.0_wp - equal_share_part), .true., dim=1)
-         associate (one => m%tolerances(i))
+         associate (one => tolerances(i))
             write (sensitivity, '(es12.4e3)') share%s(i)/f%unit
-            name = one%name
             ! A half is rounded up, whatever the last bit.
             call put(o, fixed(100.0_wp*part(i)*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
-               //name(:max(parameter_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
-               //trim(one%unit_name))
+               //one%name(:max(parameter_name, len_trim(one%name)))//'  S = '//sensitivity//'   +- ' &
+               //trim(one%text)//' '//trim(one%unit_name))
          end associate
          part(i) = -1.0_wp
       end do
-      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(text_small_shares, m%polish)//' ' &
+      if (any(part >= 0.0_wp)) call put(o, '   '//phrase(text_small_shares, l%polish)//' ' &
          //whole(count(part >= 0.0_wp)))
-
-   contains
-
-      !> Gives a value of the quantity.
-      function value_text(value) result(text)
-         real(wp), intent(in) :: value           !< in the deck's units and rad
-         character(:), allocatable :: text
-
-         text = number_text(f, value, 0.0_wp)
-      end function value_text
    end subroutine write_quantity
 end module contributions_table

@@ -20,11 +20,11 @@ module csv
    use drives, only: drive_motion
    use points, only: row_t
    use independent, only: set_t
-   use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
+   use set_members, only: requests_of, row_form, row_subject, link_of_point, ratio_drive, moving_extremes, drive_of, &
+      drive_title, same_before
    use name_table, only: name_table_t, store_name, find_name
    use masked_numbers, only: nothing_known
    use set_motion, only: set_motion_t
-   use extremes, only: requested_rows
    use rows, only: finished_row_t
    use table, only: add_name, add_number
    use text_output, only: output_t, put, add, replaced
@@ -211,7 +211,7 @@ contains
       rows = [(i, i=1, size(set%rows))]
       form = [(row_form(set, i), i=1, size(set%rows))]
       if (of_extremes) then
-         rows = requested_rows(set)
+         rows = moving_extremes(set)
       else if (allocated(set%columns)) then
          rows = set%columns%request
       else
@@ -222,11 +222,7 @@ contains
          call store_name(links, row_subject(set, rows(i)), i, k)
       end do
 
-      n = 0
-      do i = 1, size(rows)
-         n = n + forms(form(rows(i)))%last - forms(form(rows(i)))%first + 1
-      end do
-      allocate (t%columns(n))
+      allocate (t%columns(sum(forms(form(rows))%last - forms(form(rows))%first + 1)))
 
       n = 0
       if (allocated(set%columns) .and. .not. of_extremes) then
@@ -266,7 +262,7 @@ contains
                name = trim(link_of_point(set, i))//'.'//name
             ! The first word of a ratio comes before the name of the drive.
             if (request%drive > 0) name = name//'.'//trim(columns_of_rows(forms(form(i))%first)%word)//'.' &
-               //trim(t%drives(drive_number(set, set%rows(i)%part, request%drive)))
+               //trim(t%drives(ratio_drive(set, i)))
          end associate
          n = n + 1
          t%columns(n)%row_column_t = columns_of_rows(j)
@@ -384,26 +380,4 @@ contains
 
       table_width = 1 + size(table%drives) + size(table%columns)
    end function table_width
-
-   !> Counts the drives of its mechanism before a drive that drive the same coordinate.
-   pure integer function same_before(set, i) result(count_before)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: i               !< number of the drive in the set
-
-      associate (n => set%drives(i)%number, drives => set%parts(set%drives(i)%part)%drives)
-         count_before = count(drives(:n - 1)%kind == drives(n)%kind .and. drives(:n - 1)%subject == drives(n)%subject &
-            .and. drives(:n - 1)%second == drives(n)%second)
-      end associate
-   end function same_before
-
-   !> Names the link of the point of a row.
-   pure function link_of_point(set, i) result(name)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: i               !< number of the row in the set
-      character(label_length) :: name
-
-      associate (own => set%parts(set%rows(i)%part), k => set%rows(i)%number)
-         name = own%links(own%points(own%requests(k)%subject)%link)%name
-      end associate
-   end function link_of_point
 end module csv

@@ -4,8 +4,7 @@
 module drawing
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_point, request_pole, has_guide, instant_count, &
-      plane_origin, is_listed_alone
+   use mechanism, only: mechanism_t, request_pole, has_guide, has_path, instant_count, plane_origin
    use plane_vectors, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
@@ -149,9 +148,8 @@ contains
       d%outlines = outlines_of(m)
       allocate (d%own(0), d%curves(0))
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
-            cycle
-         if (size(d%curves) < max_curves) d%curves = [d%curves, m%requests(i)%subject]
+         if (size(d%curves) < max_curves .and. has_path(m%requests(i)) .and. .not. is_fixed(m, m%requests(i))) &
+            d%curves = [d%curves, m%requests(i)%subject]
       end do
       d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
       allocate (d%guides(count(has_guide(m%pairs%kind))))

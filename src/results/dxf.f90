@@ -2,13 +2,13 @@
 !> paths of points through the instants of the deck; JOINTS and LINKS have the first instant.
 module dxf
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_point, is_listed_alone, has_guide
+   use mechanism, only: mechanism_t, has_path, has_guide
    use motion, only: motion_t
    use points, only: row_t, is_fixed
    use plane_vectors, only: direction
    use scales, only: characteristic_length
-   use separations, only: motions_apart, closes
-   use set_motion, only: set_motion_t, find_row_in_set
+   use separations, only: closes
+   use set_motion, only: set_motion_t, find_row_in_set, apart_from
    use drawing, only: drawing_t, point_place, moved
    use number_format, only: whole, rounded
    use text_output, only: output_t, put
@@ -33,25 +33,21 @@ module dxf
 contains
 
    !> Begins the paths of the points that PRINT cards ask for, without those of the ground.
-   subroutine new_paths(m, motions, paths)
+   subroutine new_paths(m, paths)
       type(mechanism_t), intent(in) :: m     !< the set
-      type(set_motion_t), intent(in) :: motions   !< its motion
       type(point_path_t), allocatable, intent(out) :: paths(:)   !< (any number)
-      integer :: i, count, instants
+      integer :: i, instants
+      integer, allocatable :: list(:)
 
       instants = m%steps + 1
       if (m%steps < 0) instants = size(m%at)
-      count = 0
-      allocate (paths(size(m%requests)))
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
-            cycle
-         count = count + 1
-         paths(count)%request = i
-         allocate (paths(count)%places(2, instants), paths(count)%known(instants))
+      list = pack([(i, i=1, size(m%requests))], has_path(m%requests) .and. &
+         .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
+      allocate (paths(size(list)))
+      do i = 1, size(list)
+         paths(i)%request = list(i)
+         allocate (paths(i)%places(2, instants), paths(i)%known(instants))
       end do
-      paths = paths(:count)
-      if (count > 0) allocate (paths(1)%first(motions%count))
    end subroutine new_paths
 
    !> Adds an instant to paths. After the last one `is_closed` is known.
@@ -74,7 +70,7 @@ contains
          if (k == 0 .or. k + 1 < size(one%known)) return
          one%is_closed = all(one%known)
          do i = 1, motions%count
-            apart = motions_apart(motions%parts(i), one%first(i), motions%motions(i))
+            apart = apart_from(motions, i, one%first(i))
             one%is_closed = one%is_closed .and. closes(apart(:2))
          end do
       end associate

@@ -11,8 +11,8 @@ module extremes_table
    use separations, only: closes
    use columns, only: columns_of_rows, forms, table_of, table_turning, cell_none, cell_unbounded, of_angle
    use table, only: format_t, number_text
-   use independent, only: set_t, request_of, first_drive
-   use set_members, only: row_subject, drive_title
+   use independent, only: set_t, first_drive
+   use set_members, only: requests_of, row_subject, drive_title
    use names, only: more
    use listing_layout, only: layout_t, line_length, table_row_length, angle_unit, column_name, end_of_column
    use listing_tables, only: listing_state_t, write_times, write_heads, time_text, drive_text, mask_words
@@ -45,32 +45,27 @@ contains
       type(extremes_t), intent(in) :: extremes
       type(dwell_t), intent(in) :: dwells(:)   !< (any number)
       type(listing_state_t) :: table
-      type(request_t) :: request
       type(coordinate_t), allocatable :: own(:)      ! the coordinates of a row
       integer :: q, c, k, part, drive, links_table
+      type(request_t) :: requests(size(set%rows))
       logical :: moves, goes_on(size(extremes%tracks))
       character(:), allocatable :: driven, line
 
       call write_times(o, l, ' '//phrase(text_extremes, set%polish), [set%t0, set%t1], table)
       moves = .false.
       goes_on = .false.
+      requests = requests_of(set)
       ! Links of which only angles are asked for have no columns of places.
-      links_table = table_turning
-      do c = 1, size(extremes%tracks)
-         associate (list => extremes%tracks(c)%coordinates)
-            if (any(forms(list%form)%kind == request_link .and. list%column < 3)) links_table = request_link
-         end associate
-      end do
+      links_table = merge(request_link, table_turning, any([(requests(extremes%asked(q))%kind == request_link .and. &
+         any(requests(extremes%asked(q))%sought(:2, :)), q=1, size(extremes%asked))]))
 
       do q = 1, size(extremes%asked)
          part = set%rows(extremes%asked(q))%part
          own = pack(extremes%tracks(part)%coordinates, extremes%tracks(part)%coordinates%request == extremes%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
-         request = request_of(set, extremes%asked(q))
-
          call write_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
-            request%kind == request_link), table)
+            requests(extremes%asked(q))%kind == request_link), table)
          ! A drive that is not in the line over the table has no name in it.
          drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0
@@ -87,7 +82,7 @@ contains
       end do
 
       ! Numbers that are not sought may move.
-      if (.not. moves .and. all([(all(request_sought(extremes%asked(q))), q=1, size(extremes%asked))])) &
+      if (.not. moves .and. all([(all(requests(extremes%asked(q))%sought), q=1, size(extremes%asked))])) &
          call put(o, ' '//phrase(text_at_rest, set%polish))
       if (table%masked) call put(o, mask_words(set))
       call write_gaps(extremes%open, text_may_be_missed)
@@ -110,16 +105,6 @@ contains
       end do
 
    contains
-
-      !> Tells which numbers of a row are sought.
-      function request_sought(i) result(sought)
-         integer, intent(in) :: i            !< its number among the requests of the set
-         logical :: sought(3, 0:2)
-         type(request_t) :: one
-
-         one = request_of(set, i)
-         sought = one%sought
-      end function request_sought
 
       !> Writes the rows of a link, point or pair.
       subroutine write_subject(name)

@@ -2,7 +2,7 @@
 !> the position.
 module labels
    use kinds, only: wp, label_length
-   use mechanism, only: has_guide, request_point, is_listed_alone
+   use mechanism, only: has_guide, has_path
    use drawing, only: point_place, moved
    use shapes, only: color_of
    use canvas, only: canvas_t, label_t, to_pixels, place_name
@@ -56,8 +56,7 @@ contains
       open = open .and. .not. canvas%mechanism%links(canvas%mechanism%points%link)%hidden
       open = open .and. canvas%snapshot%known(canvas%mechanism%points%link)
       printed = .false.
-      printed(pack(canvas%mechanism%requests%subject, canvas%mechanism%requests%kind == request_point &
-         .and. .not. is_listed_alone(canvas%mechanism%requests))) = .true.
+      printed(pack(canvas%mechanism%requests%subject, has_path(canvas%mechanism%requests))) = .true.
       do i = 1, size(canvas%mechanism%points)
          if (open(i)) p(:, i) = to_pixels(canvas, point_place(canvas%mechanism, canvas%snapshot, i))
       end do

@@ -3,30 +3,30 @@
 !>
 !> Diagnostics in words: three stars before a diagnostic that concerns the results, three dashes before other remarks.
 module listing
-   use kinds, only: wp
+   use kinds, only: wp, label_length
    use plane_vectors, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_t, shown_links, remark_title_long, remark_rest, remark_turns, &
+   use mechanism, only: settings_t, mechanism_t, remark_t, remark_title_long, remark_rest, remark_turns, &
       remark_more, request_link
-   use names, only: drive_name, listed, more
+   use names, only: drive_length, listed, more
    use motion
    use structure, only: structure_report_t
    use following, only: certificate_counts_t
    use independent, only: set_t
+   use set_members, only: link_names, name_in, name_of_drive
    use set_motion, only: set_motion_t, is_flagged
    use columns, only: table_of
    use points, only: row_t
    use rows, only: finished_row_t, word_worst, word_rss
    use listing_layout, only: layout_t, new_layout, write_folded, angle_unit, choose_time_digits
    use table, only: format_t, unit_of, number_text
-   use listing_tables, only: listing_state_t, no_table, write_instant, write_heads, write_row, mask_words
+   use listing_tables, only: listing_state_t, no_table, lines_a_head, write_times, write_heads, write_row, mask_words
    use text_output, only: output_t, put, add
    use number_format, only: whole, rounded
    use phrases
    implicit none
    private
    public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, write_waiting
-   public :: words_of_flag
-   public :: limit_words, at_limit, full_turn_words, measure, value_digits, write_diagnostics, remark_text
+   public :: words_of_flag, at_limit, full_turn_words, measure, value_digits, write_diagnostics, remark_text
 
    !> The reason why a motion is not complete, by its mark.
    type(phrase_t), parameter :: flag_words(flag_none:flag_stroke) = &
@@ -168,8 +168,8 @@ contains
       call write_marks()
       if (table%masked) call put(o, mask_words(motions))
       do c = 1, motions%count
-         if (allocated(motions%motions(c)%diagnostics)) call write_diagnostics(o, motions, c, &
-            motions%motions(c)%diagnostics)
+         if (allocated(motions%motions(c)%diagnostics)) &
+            call write_diagnostics(o, motions, motions%motions(c)%diagnostics)
       end do
 
    contains
@@ -178,7 +178,9 @@ contains
       subroutine begin_instant()
          call write_waiting(o, motions%polish, table)
          if (any(limits < huge(1.0_wp) .and. .not. is_explained)) table%explained = step
-         call write_instant(o, l, motions%motions(1)%t, step, table)
+         ! Heads that are far above do not hold any more.
+         if (table%lines >= lines_a_head) table%kind = no_table
+         call write_times(o, l, l%before_instant//whole(step), [motions%motions(1)%t], table)
          begun = .true.
       end subroutine begin_instant
 
@@ -190,22 +192,22 @@ contains
 
          lines = ''
          do c = 1, motions%count
-            associate (q => motions%motions(c), m => motions%parts(c))
+            associate (q => motions%motions(c))
                if (q%mark == flag_none .or. is_explained(c)) cycle
                line = words_of_flag(q%mark, q%singularity, motions%polish)
                if (q%mark == flag_inconsistent) then
                   k = 0
                   if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
-                  if (k > 0) call write_folded(o, ' *** ', words_of(m, q%diagnostics(k)))
+                  if (k > 0) call write_folded(o, ' *** ', words_of(motions, q%diagnostics(k)))
                   ! A tolerance is no cure for a surplus drive.
                   table%surplus = table%surplus .or. k > 0
                   if (.not. (table%surplus .or. motions%closing > 0.0_wp)) &
                      line = line//': '//phrase(text_give_closing, motions%polish)
                else if (limits(c) < huge(1.0_wp)) then
-                  line = phrase(text_beyond, motions%polish)//' '//time(m, limits(c))
+                  line = phrase(text_beyond, motions%polish)//' '//time(motions, limits(c))
                else if (q%mark == flag_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
-                  text = links(m, q%singular_links)
+                  text = links(motions, q%singular_links)
                   if (q%singular_links%in_line) text = text//' '//phrase(text_in_line, motions%polish)
                   line = line(:k - 1)//', '//text//line(k:)
                end if
@@ -284,7 +286,7 @@ contains
       end if
 
       do i = 1, size(diagnostics)
-         call write_diagnostics(o, set, diagnostics(i)%part, diagnostics(i:i))
+         call write_diagnostics(o, set, diagnostics(i:i))
       end do
       associate (c => certificate_counts)
          call put(o, ' '//phrase(text_continuation, set%polish)//':  '//phrase(text_certified, set%polish)//' ' &
@@ -322,98 +324,104 @@ contains
    end function remark_text
 
    !> Writes a line for each diagnostic that no mark explains.
-   subroutine write_diagnostics(o, set, part, list)
+   subroutine write_diagnostics(o, set, list)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set
-      integer, intent(in) :: part            !< number of their independent mechanism
       type(diagnostic_t), intent(in) :: list(:)
       integer :: i
 
       do i = 1, size(list)
          if (all(list(i)%kind /= [diagnostic_beyond, diagnostic_surplus])) &
             call write_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), &
-               words_of(set%parts(part), list(i)))
+               words_of(set, list(i)))
       end do
    end subroutine write_diagnostics
 
    !> Gives the links of a limit in words: LINKS A, B AT THE LIMIT, COLLINEAR.
-   function at_limit(m, diagnostic) result(text)
-      type(mechanism_t), intent(in) :: m
+   function at_limit(set, diagnostic) result(text)
+      class(set_t), intent(in) :: set
       type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
 
       if (diagnostic%pair > 0) then
-         text = phrase(text_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': ' &
-            //phrase(merge(text_out_of_stroke, text_length_0, diagnostic%other), m%polish)
+         text = phrase(text_cylinder, set%polish)//' '//trim(name_in(set, diagnostic))//': ' &
+            //phrase(merge(text_out_of_stroke, text_length_0, diagnostic%other), set%polish)
          return
       end if
-      text = links(m, diagnostic)//' '//phrase(text_at_limit, m%polish)
-      if (diagnostic%in_line) text = text//', '//phrase(text_in_line, m%polish)
+      text = links(set, diagnostic)//' '//phrase(text_at_limit, set%polish)
+      if (diagnostic%in_line) text = text//', '//phrase(text_in_line, set%polish)
    end function at_limit
 
    !> Gives the sentence of a diagnostic; '' for a kind that has none.
-   function words_of(m, diagnostic) result(text)
-      type(mechanism_t), intent(in) :: m
+   function words_of(set, diagnostic) result(text)
+      class(set_t), intent(in) :: set
       type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
+      character(drive_length) :: drives(size(diagnostic%links))
       integer :: k
 
       text = ''
       select case (diagnostic%kind)
       case (diagnostic_inconsistent)
-         text = owner()//': '//phrase(text_closure_error_of, m%polish)//' '//measure(m, diagnostic, error_digits)
+         text = owner()//': '//phrase(text_closure_error_of, set%polish)//' '//measure(set, diagnostic, error_digits)
       case (diagnostic_limit)
-         text = phrase(text_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))//' = ' &
-            //measure(m, diagnostic, value_digits)
-         if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(m, diagnostic)
+         text = phrase(text_drive, set%polish)//' '//name_of_drive(set, diagnostic%part, diagnostic%drive)//' = ' &
+            //measure(set, diagnostic, value_digits)
+         if (diagnostic%links(1) + diagnostic%pair > 0) text = text//', '//at_limit(set, diagnostic)
       case (diagnostic_stroke)
-         text = phrase(text_cylinder, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)//': '
+         text = phrase(text_cylinder, set%polish)//' '//trim(name_in(set, diagnostic))//': '
          if (diagnostic%value > 0.0_wp) &
-            text = text//phrase(text_length, m%polish)//' '//measure(m, diagnostic, value_digits)
-         if (.not. diagnostic%value > 0.0_wp) text = text//phrase(text_below_0, m%polish)
+            text = text//phrase(text_length, set%polish)//' '//measure(set, diagnostic, value_digits)
+         if (.not. diagnostic%value > 0.0_wp) text = text//phrase(text_below_0, set%polish)
 
       case (diagnostic_far_estimate)
-         text = links(m, diagnostic)//': '//phrase(text_off_by, m%polish)//' '//measure(m, diagnostic, error_digits)
+         text = links(set, diagnostic)//': '//phrase(text_off_by, set%polish)//' ' &
+            //measure(set, diagnostic, error_digits)
       case (diagnostic_second)
-         text = links(m, diagnostic)//': '//phrase(text_second, m%polish)
+         text = links(set, diagnostic)//': '//phrase(text_second, set%polish)
       case (diagnostic_incomplete)
-         text = links(m, diagnostic)//': '//phrase(text_incomplete, m%polish)
+         text = links(set, diagnostic)//': '//phrase(text_incomplete, set%polish)
       case (diagnostic_begins)
-         text = phrase(text_begins, m%polish)
+         text = phrase(text_begins, set%polish)
 
       case (diagnostic_redundant)
-         text = phrase(text_redundant, m%polish)//': '//owner()
-         if (diagnostic%equations > 1) text = phrase(text_redundant_many, m%polish)//': ' &
-            //whole(diagnostic%equations)//' '//phrase(text_of_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+         text = phrase(text_redundant, set%polish)//': '//owner()
+         if (diagnostic%equations > 1) text = phrase(text_redundant_many, set%polish)//': ' &
+            //whole(diagnostic%equations)//' '//phrase(text_of_pair, set%polish)//' ' &
+            //trim(name_in(set, diagnostic))
       case (diagnostic_change)
          text = place()//phrase(merge(merge(text_returns_other, text_returns, diagnostic%other), &
             merge(text_here, merge(text_other, text_smoothly, diagnostic%other), diagnostic%here), &
-            diagnostic%returns), m%polish)
+            diagnostic%returns), set%polish)
       case (diagnostic_dead_end)
-         text = place()//phrase(text_not_found, m%polish)
+         text = place()//phrase(text_not_found, set%polish)
 
       case (diagnostic_unused)
          text = 'BRANCH '
-         if (diagnostic%links(1) > 0) text = text//trim(m%links(diagnostic%links(1))%name)//' '
-         text = text//phrase(text_branch_from, m%polish)//' '//time(m, diagnostic%t)//': ' &
-            //phrase(text_no_change, m%polish)
+         if (diagnostic%links(1) > 0) &
+            text = text//listed(link_names(set, diagnostic%part, diagnostic%links(:1)), set%polish)//' '
+         text = text//phrase(text_branch_from, set%polish)//' '//time(set, diagnostic%t)//': ' &
+            //phrase(text_no_change, set%polish)
       case (diagnostic_long)
-         text = phrase(text_way, m%polish)//' '//time(m, diagnostic%t)//' '//phrase(text_too_long, m%polish)
+         text = phrase(text_way, set%polish)//' '//time(set, diagnostic%t)//' '//phrase(text_too_long, set%polish)
       case (diagnostic_close)
-         text = phrase(text_blocked, m%polish)//' '//time(m, diagnostic%t)//': '//phrase(text_close, m%polish)
+         text = phrase(text_blocked, set%polish)//' '//time(set, diagnostic%t)//': '//phrase(text_close, set%polish)
       case (diagnostic_method)
-         text = phrase(text_method, m%polish)
-         if (diagnostic%other) text = phrase(text_elsewhere, m%polish)//': '//text
+         text = phrase(text_method, set%polish)
+         if (diagnostic%other) text = phrase(text_elsewhere, set%polish)//': '//text
 
       case (diagnostic_surplus)
-         text = phrase(text_surplus, m%polish)//' '//listed([(drive_name(m, m%drives(diagnostic%links(k))), &
-            k=1, count(diagnostic%links > 0))], m%polish)//more(diagnostic%more, m%polish)
+         do k = 1, count(diagnostic%links > 0)
+            drives(k) = name_of_drive(set, diagnostic%part, diagnostic%links(k))
+         end do
+         text = phrase(text_surplus, set%polish)//' '//listed(drives(:k - 1), set%polish) &
+            //more(diagnostic%more, set%polish)
       case (diagnostic_turned)
-         text = 'LINE '//trim(m%measures(diagnostic%measure)%name)//' '//phrase(text_turned_by, m%polish)//' ' &
-            //measure(m, diagnostic, error_digits)//' '//phrase(text_in_step, m%polish)//' '//time(m, diagnostic%t) &
-            //': '//phrase(text_turned_far, m%polish)
+         text = 'LINE '//trim(name_in(set, diagnostic))//' ' &
+            //phrase(text_turned_by, set%polish)//' '//measure(set, diagnostic, error_digits)//' ' &
+            //phrase(text_in_step, set%polish)//' '//time(set, diagnostic%t)//': '//phrase(text_turned_far, set%polish)
       case (diagnostic_mobile)
-         text = links(m, diagnostic)//' '//phrase(text_mobile, m%polish)
+         text = links(set, diagnostic)//' '//phrase(text_mobile, set%polish)
       end select
 
    contains
@@ -422,8 +430,8 @@ contains
       function place() result(text)
          character(:), allocatable :: text
 
-         text = phrase(merge(text_singular_at, text_change, diagnostic%returns), m%polish)//' '//time(m, diagnostic%t) &
-            //', '//links(m, diagnostic)//': '
+         text = phrase(merge(text_singular_at, text_change, diagnostic%returns), set%polish)//' ' &
+            //time(set, diagnostic%t)//', '//links(set, diagnostic)//': '
       end function place
 
       !> Gives the owner of an equation: PAIR A, or DRIVE ANGLE B.
@@ -432,25 +440,12 @@ contains
 
          text = ''
          if (diagnostic%pair > 0) then
-            text = phrase(text_pair, m%polish)//' '//trim(m%pairs(diagnostic%pair)%name)
+            text = phrase(text_pair, set%polish)//' '//trim(name_in(set, diagnostic))
          else if (diagnostic%drive > 0) then
-            text = phrase(text_drive, m%polish)//' '//trim(drive_name(m, m%drives(diagnostic%drive)))
+            text = phrase(text_drive, set%polish)//' '//name_of_drive(set, diagnostic%part, diagnostic%drive)
          end if
       end function owner
    end function words_of
-
-   !> Gives the value of a drive at a limit of its range, with the links of the limit.
-   function limit_words(set, part, diagnostic) result(text)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: part            !< number of the independent mechanism
-      type(diagnostic_t), intent(in) :: diagnostic
-      character(:), allocatable :: text
-
-      associate (m => set%parts(part))
-         text = measure(m, diagnostic, value_digits)
-         if (diagnostic%links(1) + diagnostic%pair > 0) text = text//'   '//at_limit(m, diagnostic)
-      end associate
-   end function limit_words
 
    !> Gives the words for a full turn: TURNS FULLY, CLOSES AFTER 1 TURN.
    function full_turn_words(turns, polish) result(text)
@@ -462,16 +457,16 @@ contains
    end function full_turn_words
 
    !> Gives the links of a diagnostic: LINKS A, B AND 3 MORE.
-   function links(m, diagnostic) result(text)
-      type(mechanism_t), intent(in) :: m
+   function links(set, diagnostic) result(text)
+      class(set_t), intent(in) :: set
       type(diagnostic_t), intent(in) :: diagnostic
       character(:), allocatable :: text
-      integer, allocatable :: shown(:)
+      character(label_length), allocatable :: names(:)
 
-      shown = shown_links(m, pack(diagnostic%links, diagnostic%links > 0))
-      text = phrase(merge(text_link, text_links, size(shown) == 1), m%polish)
-      if (size(shown) > 0) text = text//' '//listed(m%links(shown)%name, m%polish)
-      text = text//more(diagnostic%more, m%polish)
+      names = link_names(set, diagnostic%part, pack(diagnostic%links, diagnostic%links > 0))
+      text = phrase(merge(text_link, text_links, size(names) == 1), set%polish)
+      if (size(names) > 0) text = text//' '//listed(names, set%polish)
+      text = text//more(diagnostic%more, set%polish)
    end function links
 
    !> Gives the value of a diagnostic with its unit.

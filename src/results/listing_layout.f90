@@ -10,11 +10,11 @@ module listing_layout
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, last_form, table_turning, last_table, &
       last_dimension, quantities, of_drives => drives, is_ratio, usual_size, cell_none, last_cell, of_length, &
       of_angle, cell_words
-   use independent, only: set_t, request_of
-   use set_members, only: requests_of, row_form, row_subject, drive_of, drive_number, drive_title
+   use independent, only: set_t
+   use set_members, only: requests_of, row_form, row_subject, ratio_drive, drive_of, drive_title, sizes_of
    use drives, only: growing_sizes
    use names, only: more
-   use scales, only: characteristic_length, characteristic_rate, latest_time, is_length
+   use scales, only: latest_time, is_length
    use number_format, only: numeral_length
    use text_output, only: output_t, put
    use table, only: format_t, choose_digits, power_text, unit_of, digits_after_first, order_margin
@@ -23,7 +23,7 @@ module listing_layout
    private
    public :: layout_t, head_drive_t, new_layout, digits_t
    public :: row_title, line_length, name_length, table_row_length, end_of_column, column_name, column_unit, &
-      angle_unit, choose_time_digits, write_folded
+      column_format, column_word, line_starts,       angle_unit, choose_time_digits, write_folded
 
    !> The largest number of characters of a line.
    integer, parameter :: line_length = 120
@@ -74,9 +74,13 @@ contains
    function new_layout(set) result(l)
       class(set_t), intent(in) :: set          !< only its deck counts
       type(layout_t) :: l
+      type(request_t), allocatable :: requests(:)
 
+      requests = requests_of(set)
       l%polish = set%polish
-      l%words = words_of_cells(set%polish)
+      l%words = cell_words%english
+      if (set%polish) l%words = cell_words%polish
+      l%words = adjustr(l%words)
       ! The effect of a tolerance has four digits.
       if (set%largest_tolerance > 0.0_wp) &
          l%more_decimals = max(0, 3 - digits_after_first - floor(log10(set%largest_tolerance)))
@@ -90,7 +94,7 @@ contains
       !> the largest part.
       subroutine choose_own_digits()
          type(format_t) :: largest(of_length:of_angle, 0:2)
-         real(wp) :: length, rate, angle
+         real(wp) :: sizes(2), angle   ! the characteristic length and rate
          integer :: c, k, i
          logical :: mixed
 
@@ -98,20 +102,19 @@ contains
          if (set%degrees) angle = degree
          allocate (l%own(set%count))
          do c = 1, set%count
-            length = characteristic_length(set%parts(c))
-            rate = characteristic_rate(set%parts(c), length)
+            sizes = sizes_of(set, c)
             associate (f => l%own(c)%format)
                do k = 0, 2
                   f(:, k) = [format_t(), format_t(is_angle=.true., unit=angle)]
-                  call choose_digits(log10(length) + k*log10(rate), l%more_decimals, f(of_length, k))
-                  call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
+                  call choose_digits(log10(sizes(1)) + k*log10(sizes(2)), l%more_decimals, f(of_length, k))
+                  call choose_digits(k*log10(sizes(2)) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
                      f(of_angle, k))
                end do
 
-               if (all(set%parts(c)%requests%drive == 0)) cycle
+               if (.not. any(requests%drive > 0 .and. set%rows%part == c)) cycle
                do i = of_angle + 1, last_dimension
                   do k = 0, 1
-                     call choose_digits(log10(usual_size(i, k, length, rate, set%degrees)), 0, f(i, k))
+                     call choose_digits(log10(usual_size(i, k, sizes(1), sizes(2), set%degrees)), 0, f(i, k))
                   end do
                end do
             end associate
@@ -135,10 +138,8 @@ contains
 
       !> Chooses the table of links and the columns of tables with rows of two forms; then writes the lines over rows.
       subroutine lay_out_tables()
-         type(request_t), allocatable :: requests(:)
          integer :: i, k
 
-         requests = requests_of(set)
          if (any(requests%angle_alone) .and. .not. any(requests%kind == request_link .and. requests%every > 0 .and. &
             .not. requests%angle_alone)) l%links_table = table_turning
 
@@ -206,13 +207,22 @@ contains
       class(set_t), intent(in) :: set
       integer, intent(in) :: i               !< number of the row in the set
       character(:), allocatable :: name
-      type(request_t) :: request
+      integer :: drive
 
-      request = request_of(set, i)
       name = trim(row_subject(set, i))
-      if (request%drive > 0) name = name//' '//phrase(text_by, set%polish)//' ' &
-         //drive_title(set, drive_number(set, set%rows(i)%part, request%drive))
+      drive = ratio_drive(set, i)
+      if (drive > 0) name = name//' '//phrase(text_by, set%polish)//' '//drive_title(set, drive)
    end function row_title
+
+   !> Gives the digits of a column of a row.
+   pure type(format_t) function column_format(l, set, i, column)
+      type(layout_t), intent(in) :: l
+      class(set_t), intent(in) :: set
+      integer, intent(in) :: i               !< number of the row in the set
+      class(row_column_t), intent(in) :: column
+
+      column_format = l%own(set%rows(i)%part)%format(column%dimension, column%order)
+   end function column_format
 
    !> Writes the lines over rows in tables of one kind: names, powers of ten if there are any, units.
    subroutine write_table_heads(l, digits, kind)
@@ -330,6 +340,25 @@ contains
 
       angle_unit = merge('DEG', 'RAD', settings%degrees)
    end function angle_unit
+
+   !> Finds the first column of each line of a table that is wider than a line (lines + 1): each line begins with column
+   !> 1. At last the number of columns and one more.
+   pure function line_starts(before, widths) result(starts)
+      integer, intent(in) :: before          !< characters of a line before its other columns
+      integer, intent(in) :: widths(:)       !< (columns) characters; 0: it is not in the table
+      integer, allocatable :: starts(:)
+      integer :: used, i
+
+      allocate (starts(0))
+      used = line_length
+      do i = 2, size(widths)
+         used = used + widths(i)
+         if (used <= line_length .or. widths(i) == 0) cycle
+         starts = [starts, i]
+         used = before + widths(i)
+      end do
+      starts = [starts, size(widths) + 1]
+   end function line_starts
 
    !> Writes a sentence in one line, or in several if it is long. A line ends before three blanks; if there are none,
    !> after a colon in its second half; if there is none, before a blank.

@@ -6,14 +6,14 @@ module listing_tables
    use columns, only: columns_of_rows, forms, kinds_of_rows, is_ratio, cell_of, cell_number, cell_spare
    use points, only: row_t
    use text_output, only: output_t, put
-   use number_format, only: whole, write_fixed, numeral_length
+   use number_format, only: write_fixed, numeral_length
    use masked_numbers, only: nothing_known, unknown_digit
    use table, only: format_t, write_cell, write_number, number_text
    use listing_layout
    use phrases, only: phrase, text_by, text_unknown, text_unclosed
    implicit none
    private
-   public :: listing_state_t, no_table, write_instant, write_times, write_heads, write_row, time_text, drive_text, &
+   public :: listing_state_t, no_table, lines_a_head, write_times, write_heads, write_row, time_text, drive_text, &
       law_error, mask_words
 
    !> Between two times, or the values of a drive at these.
@@ -37,19 +37,6 @@ module listing_tables
    end type listing_state_t
 
 contains
-
-   !> Writes the line over the tables of an instant: the time and the values of the drives. Heads that are far above do
-   !> not hold any more.
-   subroutine write_instant(o, l, t, step, table)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      real(wp), intent(in) :: t              !< the time, in the deck's unit
-      integer, intent(in) :: step            !< the number of the instant, from 0
-      type(listing_state_t), intent(inout) :: table
-
-      if (table%lines >= lines_a_head) table%kind = no_table
-      call write_times(o, l, l%before_instant//whole(step), [t], table)
-   end subroutine write_instant
 
    !> Writes a blank line, and a line with times and the values of the drives then; if they are many they go on in
    !> further lines. The lines have a fixed length: text that grows would cost as much as a table.

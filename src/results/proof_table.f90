@@ -1,10 +1,11 @@
 !> The results of card PROVE in the listing: a line for each printed instant, with the steps to it since the one before;
 !> why instants are not proved; and the counts.
 module proof_table
-   use kinds, only: wp, label_length
-   use mechanism, only: instant, shown_links
+   use kinds, only: wp
+   use mechanism, only: instant
    use motion, only: flag_none
    use independent, only: set_t
+   use set_members, only: link_names
    use proofs, only: proofs_t, reason_t
    use names, only: listed
    use listing, only: words_of_flag
@@ -116,16 +117,4 @@ contains
       write (field, '(i0, a, sp, i0.2)') digit, '.E', max(-999, min(power, 999))
       text = trim(field)
    end function rounded_up
-
-   !> Names links, without the blocks of slots.
-   pure function link_names(set, part, links) result(names)
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: part            !< number of the independent mechanism
-      integer, intent(in) :: links(:)        !< numbers of the links there
-      character(label_length), allocatable :: names(:)
-
-      associate (own => set%parts(part))
-         names = own%links(shown_links(own, links))%name
-      end associate
-   end function link_names
 end module proof_table

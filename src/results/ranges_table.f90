@@ -1,9 +1,9 @@
 !> The answer to the card RANGE in the listing: the ends of the range of each drive.
 module ranges_table
    use independent, only: set_t
-   use set_members, only: drive_number, drive_title
+   use set_members, only: name_of_drive
    use ranges, only: range_t, lower_end, upper_end
-   use listing, only: limit_words, full_turn_words
+   use listing, only: at_limit, full_turn_words, measure, value_digits
    use listing_layout, only: write_folded
    use text_output, only: output_t, put
    use number_format, only: whole
@@ -30,14 +30,16 @@ contains
       if (size(list) == 0) call put(o, '   '//phrase(text_none, set%polish))
       do i = 1, size(list)
          associate (r => list(i))
-            words = drive_title(set, drive_number(set, r%part, r%drive))
+            words = name_of_drive(set, r%part, r%drive)
             if (r%is_of_branch) words = words//'   '//phrase(text_range_of_branch, set%polish)
             call put(o, ' '//words)
             if (r%is_all) then
                call put(o, '   '//full_turn_words(r%turns, set%polish))
             else
                do side = lower_end, upper_end
-                  words = limit_words(set, r%part, r%limit(side))
+                  words = measure(set, r%limit(side), value_digits)
+                  if (r%limit(side)%links(1) + r%limit(side)%pair > 0) &
+                     words = words//'   '//at_limit(set, r%limit(side))
                   ! Without links or a pair at the limit rounding is too coarse to follow the motion farther.
                   if (r%has_limit(side) .and. r%limit(side)%links(1) + r%limit(side)%pair == 0) &
                      words = words//'   '//phrase(text_close, set%polish)

@@ -47,7 +47,7 @@ contains
       integer, intent(in) :: cell            !< its contents: cell_none, ...
       real(wp), intent(in) :: value          !< in the deck's units and rad
       real(wp), intent(in) :: error          !< the rounding error of `value`
-      character(numeral_length), intent(in) :: words(cell_none:)   !< of `words_of_cells`
+      character(numeral_length), intent(in) :: words(cell_none:)   !< as in `layout_t`
       character(numeral_length), intent(out) :: field   !< the cell
       logical, intent(inout) :: masked       !< becomes true if a digit or a word is masked
 
@@ -105,7 +105,7 @@ contains
       type(format_t), intent(in) :: format   !< of the column
       logical, intent(in) :: by_size         !< each number has the digits and the power of ten for its own size
       type(cell_t), intent(in) :: cell
-      character(numeral_length), intent(in) :: words(cell_none:)   !< of `words_of_cells`
+      character(numeral_length), intent(in) :: words(cell_none:)   !< as in `layout_t`
       character(:), allocatable :: text
       character(:), allocatable :: exponent
       type(format_t) :: own

@@ -9,9 +9,9 @@ module variant_rows
    use motion, only: flag_none
    use drives, only: drive_motion
    use independent, only: set_t, request_of, first_drive
-   use set_members, only: drive_of, drive_number, drive_title
+   use set_members, only: drive_of, drive_number, drive_title, name_of_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
-   use listing_layout, only: layout_t, angle_unit, column_name, column_unit, row_title
+   use listing_layout, only: layout_t, angle_unit, column_name, column_unit, column_format, row_title
    use csv, only: marks, table_t, table_column_t, new_table, drive_columns, dotted
    use extremes, only: coordinate_t, strokes_t, least, greatest, outward, strokes_of
    use extremes_table, only: extreme_words, ratio_format
@@ -154,12 +154,12 @@ contains
 
          s%extremes = new_table(set, .true.)
          do i = 1, size(s%extremes%columns)
-            associate (column => s%extremes%columns(i), part => set%rows(s%extremes%columns(i)%request)%part)
+            associate (column => s%extremes%columns(i))
                request = request_of(set, column%request)
                word = column_name(l, column%row_column_t)
                c = summary_column_t(printed=.true., unit=column_unit(l, column%row_column_t), &
                   above=row_title(set, column%request), &
-                  format=l%own(part)%format(column%dimension, column%order))
+                  format=column_format(l, set, column%request, column))
 
                do which = least, greatest
                   c%name = trim(column%name)//'.'//endings(which)
@@ -224,7 +224,7 @@ contains
          row%cells(n + 1) = cell_t(cell_number, row%limit%t)
          if (row%limit%drive > 0) then
             row%cells(n + 2) = cell_t(cell_word, &
-               word=drive_title(set, drive_number(set, row%limit%part, row%limit%drive)))
+               word=name_of_drive(set, row%limit%part, row%limit%drive))
             row%cells(n + 3) = cell_t(cell_number, row%limit%value)
             if (row%limit%is_angle .and. set%degrees) row%cells(n + 3)%value = in_degrees(row%limit%value)
          end if

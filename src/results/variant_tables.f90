@@ -5,7 +5,7 @@ module variant_tables
    use independent, only: set_t
    use motion, only: flag_none
    use listing, only: words_of_flag
-   use listing_layout, only: layout_t, line_length, write_folded
+   use listing_layout, only: layout_t, line_length, line_starts, write_folded
    use table, only: cell_text, add_cell, add_name, power_text, unit_of, right
    use listing, only: write_diagnostics
    use listing_tables, only: mask_words
@@ -91,7 +91,7 @@ contains
       character(len(summary%columns%above)) :: heads(4)
 
       call put(o, '')
-      starts = line_starts(summary)
+      starts = line_starts(variant_number_length, [(width(summary%columns(i)), i=1, size(summary%columns))])
       do n = 1, size(starts) - 1
          do k = 1, size(heads)
             line = ''
@@ -119,7 +119,7 @@ contains
       integer :: n, i
       character(:), allocatable :: line
 
-      starts = line_starts(summary)
+      starts = line_starts(variant_number_length, [(width(summary%columns(i)), i=1, size(summary%columns))])
       do n = 1, size(starts) - 1
          line = right(whole(row%number), variant_number_length)
          do i = starts(n), starts(n + 1) - 1
@@ -131,7 +131,7 @@ contains
       end do
       if (row%rejected /= '') call write_folded(o, ' *** ', row%rejected)
       if (row%limit%kind /= 0) then
-         call write_diagnostics(o, set, row%limit%part, [row%limit])
+         call write_diagnostics(o, set, [row%limit])
       else if (row%mark /= flag_none) then
          call put(o, ' *** '//words_of_flag(row%mark, row%singularity, set%polish))
       end if
@@ -149,29 +149,12 @@ contains
       call put(o, '')
    end subroutine write_variants_end
 
-   !> Finds the first column of each line (lines + 1), after column 1 with which all begin; at last the number of
-   !> columns and one more.
-   pure function line_starts(summary) result(starts)
-      type(summary_t), intent(in) :: summary
-      integer, allocatable :: starts(:)
-      integer :: used, i
-
-      allocate (starts(0))
-      used = line_length
-      do i = 2, size(summary%columns)
-         if (.not. summary%columns(i)%printed) cycle
-         used = used + width(summary%columns(i))
-         if (used <= line_length) cycle
-         starts = [starts, i]
-         used = variant_number_length + width(summary%columns(i))
-      end do
-      starts = [starts, size(summary%columns) + 1]
-   end function line_starts
-
-   !> Counts the characters of a column in the listing.
+   !> Counts the characters of a column in the listing; 0 if it is not there.
    pure integer function width(column)
       type(summary_column_t), intent(in) :: column
 
+      width = 0
+      if (.not. column%printed) return
       width = max(least_width, len_trim(column%above) + 2, len_trim(column%below) + 2, len_trim(column%unit) + 2)
       if (column%by_size) width = max(width, least_width + exponent_length)
    end function width

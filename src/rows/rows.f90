@@ -3,13 +3,12 @@
 module rows
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use motion, only: motion_t, new_motion
    use columns, only: columns_of_rows, forms, kinds_of_rows, row_turning, is_ratio, usual_size
-   use points, only: row_t, find_row, is_due, is_listed
+   use points, only: row_t, find_row, is_printed
    use assemblies, only: assemblies_t
    use error_estimate, only: estimate_of, row_error
    use sensitivities, only: has_tolerances
-   use set_motion, only: set_motion_t
+   use set_motion, only: set_motion_t, find_row_of_position
    use number_format, only: whole
    use mechanism, only: tolerance_t
    implicit none
@@ -47,6 +46,7 @@ contains
       integer, intent(in) :: step            !< the number of the instant, from 0
       logical, intent(in) :: all_of_them     !< also those that are not printed at this instant
       type(finished_row_t), allocatable, intent(inout) :: rows(:)   !< (requests of the set)
+      logical :: is_here
       integer :: i
 
       if (asserts) call assert(step >= 0, 'find_rows: number of an instant')
@@ -54,8 +54,9 @@ contains
       do i = 1, size(rows)
          associate (row => rows(i), c => motions%rows(i)%part, n => motions%rows(i)%number)
             associate (m => motions%parts(c), request => motions%parts(c)%requests(n), errors => motions%errors(c))
-               row%due = is_due(motions, request, step)
-               row%listed = is_listed(motions, request, step)
+               is_here = is_printed(motions, request, step)
+               row%due = is_here .or. request%in_columns
+               row%listed = is_here .or. request%listed
                if (.not. (row%listed .or. row%due .or. all_of_them)) cycle
                row%part = c
                call find_row(m, motions%motions(c), request, row%row_t)
@@ -106,7 +107,6 @@ contains
       integer, intent(in) :: i               !< its number among the requests of the set
       integer, intent(in) :: step            !< the number of the instant, from 0
       type(assemblies_t), allocatable, intent(in) :: assemblies(:)   !< (parts) as `find_rows`
-      type(motion_t) :: q
       integer :: k
 
       allocate (row%others(0))
@@ -126,13 +126,9 @@ contains
          end if
 
          if (.not. allocated(assemblies) .or. step > 0) return
-         q = new_motion(size(motions%parts(c)%links))
-         q%known = 0
-         q%origin = motions%motions(c)%origin
          do k = 1, size(assemblies(c)%list)
-            q%position = assemblies(c)%list(k)%position
             row%others = [row%others, other_row_t('ASSEMBLY '//whole(k))]
-            call find_row(motions%parts(c), q, motions%parts(c)%requests(n), row%others(size(row%others))%row)
+            call find_row_of_position(motions, i, assemblies(c)%list(k)%position, row%others(size(row%others))%row)
          end do
       end associate
 

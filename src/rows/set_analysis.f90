@@ -207,7 +207,12 @@ contains
       end if
       if (.not. set%now%has_begun) set%now%first = set%now%motions(:size(set%now%first))
       set%now%has_begun = .true.
-      if (size(set%list) > 1) call count_worst_motion(set)
+      if (size(set%list) == 1) return
+      call count_worst_motion(set)
+      do c = 1, size(set%list)
+         set%now%motions(c)%singular_links%part = c
+         if (allocated(set%now%motions(c)%diagnostics)) set%now%motions(c)%diagnostics%part = c
+      end do
    end subroutine keep_instant
 
    !> Keeps the angles of measures that go on from instant to instant. Reports the first LINE that turns far, once.
@@ -277,6 +282,8 @@ contains
       type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
       real(wp), intent(out) :: error(3, 0:2, size(list))   !< in the deck's units and rad; 0 if nothing is estimated
       real(wp), intent(out) :: amplification   !< the factor by which roundings grow; 0 if nothing is estimated
+      type(motion_t) :: q
+      logical :: is_found
       integer :: i
 
       if (asserts) then
@@ -286,37 +293,27 @@ contains
       end if
       error = 0.0_wp
       amplification = 0.0_wp
-      if (set%is_in_lane .and. .not. abs(t - set%now%motions(1)%t) > 0.0_wp) then
-         do i = 1, size(list)
-            call find_row_in_set(set%now, list(i), rows(i))
-         end do
-         amplification = set%amplification
-      else
-         call find_by_analysis()
-      end if
+      associate (c => set%now%rows(list(1))%part)
+         if (abs(t - set%now%motions(c)%t) > 0.0_wp) then
+            q = new_motion(size(set%now%parts(c)%links))
+            if (allocated(set%now%motions(c)%turned)) q%turned = turned_near(c)
+            call evaluate_at(set%list(c), t, q, is_found)
+            rows%known = -1
+            if (.not. is_found) return
+            if (allocated(q%turned)) call keep_turns(set%now%parts(c), q)
+            call take(c, q)
+         else if (set%is_in_lane) then
+            do i = 1, size(list)
+               call find_row_in_set(set%now, list(i), rows(i))
+            end do
+            amplification = set%amplification
+         else
+            call restore_instant(set%list(c))
+            call take(c, set%now%motions(c))
+         end if
+      end associate
 
    contains
-
-      !> Finds the rows by the analysis at the time.
-      subroutine find_by_analysis()
-         type(motion_t) :: q
-         logical :: is_found
-
-         associate (c => set%now%rows(list(1))%part)
-            if (abs(t - set%now%motions(c)%t) > 0.0_wp) then
-               q = new_motion(size(set%now%parts(c)%links))
-               if (allocated(set%now%motions(c)%turned)) q%turned = turned_near(c)
-               call evaluate_at(set%list(c), t, q, is_found)
-               rows%known = -1
-               if (.not. is_found) return
-               if (allocated(q%turned)) call keep_turns(set%now%parts(c), q)
-               call take(c, q)
-            else
-               call restore_instant(set%list(c))
-               call take(c, set%now%motions(c))
-            end if
-         end associate
-      end subroutine find_by_analysis
 
       !> Gives the angles of measures at the instant of TIME before `t`.
       function turned_near(part) result(turned)

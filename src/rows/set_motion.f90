@@ -4,7 +4,8 @@ module set_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, wanted_links
    use motion, only: motion_t, new_motion, flag_none
-   use independent, only: set_t, divide, request_of
+   use independent, only: set_t, divide
+   use set_members, only: requests_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: structure_report_t
    use blocks, only: blocks_t, geometry_t, chain_t, largest_known
@@ -12,12 +13,13 @@ module set_motion
    use block_solver, only: solve_explicit
    use link_motion, only: new_chain, move_links
    use points, only: row_t, find_row
+   use separations, only: motions_apart
    use error_estimate, only: error_estimate_t
    use sensitivities, only: sensitivities_t
    use motion_proof, only: motion_proof_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, is_flagged, has_words, find_row_in_set
+   public :: set_motion_t, new_set_motion, is_flagged, has_words, find_row_in_set, find_row_of_position, apart_from
 
    !> The motion of a set.
    type, extends(set_t) :: set_motion_t
@@ -36,6 +38,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: motions
       type(structure_report_t), intent(inout) :: structure_report   !< of the set, which it gives up if that is divided
+      type(request_t), allocatable :: requests(:)
       integer :: c
 
       if (allocated(structure_report%set)) then
@@ -56,16 +59,12 @@ contains
             structure_report%structures(c)%geometry)
       end do
 
-      if (allocated(motions%columns)) motions%columns = pack(motions%columns, &
-         [(has_row(request_of(motions, motions%columns(c)%request)), c=1, size(motions%columns))])
+      ! `leave_out_unmoved` takes all rows from a request for a ratio.
+      if (.not. allocated(motions%columns)) return
+      requests = requests_of(motions)
+      motions%columns = pack(motions%columns, requests(motions%columns%request)%drive == 0 .or. &
+         requests(motions%columns%request)%in_columns)
    end subroutine new_set_motion
-
-   !> Tells whether a request has a row anywhere: `leave_out_unmoved` takes all rows from a request for a ratio.
-   pure logical function has_row(request)
-      type(request_t), intent(in) :: request
-
-      has_row = request%drive == 0 .or. request%in_columns
-   end function has_row
 
    !> Takes the rows from requests for ratios that the drive cannot move. The test is at positions at which no loop
    !> closes, and the unknowns that depend on the drive have arbitrary rates: a drive that moves something there can
@@ -166,5 +165,32 @@ contains
          call find_row(motions%parts(c), motions%motions(c), motions%parts(c)%requests(motions%rows(i)%number), row)
       end associate
    end subroutine find_row_in_set
+
+   !> Finds the row of a request at another position of its mechanism, without velocities.
+   pure subroutine find_row_of_position(motions, i, position, row)
+      type(set_motion_t), intent(in) :: motions
+      integer, intent(in) :: i               !< its number among the requests of the set
+      real(wp), intent(in) :: position(:, :)   !< (3, links): x and y (length) from the motion's origin, phi (rad)
+      type(row_t), intent(inout) :: row
+      type(motion_t) :: q
+
+      associate (c => motions%rows(i)%part)
+         q = new_motion(size(position, 2))
+         q%known = 0
+         q%origin = motions%motions(c)%origin
+         q%position = position
+         call find_row(motions%parts(c), q, motions%parts(c)%requests(motions%rows(i)%number), row)
+      end associate
+   end subroutine find_row_of_position
+
+   !> Finds how far the last motion of an independent mechanism is from another one, as `motions_apart` gives it.
+   pure function apart_from(motions, part, other) result(apart)
+      type(set_motion_t), intent(in) :: motions
+      integer, intent(in) :: part            !< its number
+      type(motion_t), intent(in) :: other
+      real(wp) :: apart(3)
+
+      apart = motions_apart(motions%parts(part), other, motions%motions(part))
+   end function apart_from
 end module set_motion
 

@@ -153,7 +153,7 @@ contains
             was_flagged(k) = .true.
             call put(o, ' *** OUT OF STROKE')
          end if
-         call write_diagnostics(o, whole, 1, diagnostics)
+         call write_diagnostics(o, whole, diagnostics)
       end do
       ! All of these motions are followed from their first instant on.
       tally%followed = instant_count(m) - 1
