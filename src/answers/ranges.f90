@@ -5,7 +5,7 @@ module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
    use plane_vectors, only: pi
-   use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
+   use mechanism, only: mechanism_t, request_t, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change, diagnostic_close
    use separations, only: motions_apart, closes
    use drives, only: drive_motion
@@ -74,7 +74,7 @@ contains
       held = m
       held%method = method_newton
       held%tolerance = 0.0_wp
-      held%requests = [(request_t(request_link, i), i=1, size(m%links))]
+      held%requests = [(request_t(subject=i), i=1, size(m%links))]
       if (allocated(held%branch_requests)) deallocate (held%branch_requests)
       do i = 1, size(m%drives)
          f = drive_motion(m%drives(i), t)

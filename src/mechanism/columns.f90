@@ -194,11 +194,12 @@ contains
    end function form_of
 
    !> Finds the kind of the table in which a row is.
-   pure integer function table_of(kind, form) result(table)
+   pure integer function table_of(kind, form, links_table) result(table)
       integer, intent(in) :: kind            !< of the row: request_link, ...
       integer, intent(in) :: form            !< of the row: row_link, ...
+      integer, intent(in) :: links_table     !< the kind of the tables of links
 
-      table = kind
+      table = merge(links_table, kind, kind == request_link)
       if (kind == request_ratio) table = kind + form - row_ratio
    end function table_of
 

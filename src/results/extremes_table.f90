@@ -64,8 +64,7 @@ contains
          own = pack(extremes%tracks(part)%coordinates, extremes%tracks(part)%coordinates%request == extremes%asked(q))
          if (.not. any([((varies(own(c), k), c=1, size(own)), k=0, 2)])) cycle
          moves = .true.
-         call write_heads(o, l, part, merge(links_table, table_of(forms(own(1)%form)%kind, own(1)%form), &
-            requests(extremes%asked(q))%kind == request_link), table)
+         call write_heads(o, l, part, table_of(forms(own(1)%form)%kind, own(1)%form, links_table), table)
          ! A drive that is not in the line over the table has no name in it.
          drive = first_drive(set, extremes%asked(q))
          if (drive > size(l%drives)) drive = 0

@@ -5,8 +5,7 @@
 module listing
    use kinds, only: wp, label_length
    use plane_vectors, only: degree
-   use mechanism, only: settings_t, mechanism_t, remark_t, remark_title_long, remark_rest, remark_turns, &
-      remark_more, request_link
+   use mechanism, only: settings_t, mechanism_t, remark_t, remark_title_long, remark_rest, remark_turns, remark_more
    use names, only: drive_length, listed, more
    use motion
    use structure, only: structure_report_t
@@ -143,8 +142,7 @@ contains
             if (.not. row%listed) cycle
             if (is_explained(row%part) .and. row%known < 0) cycle
             if (.not. begun) call begin_instant()
-            call write_heads(o, l, row%part, &
-               merge(l%links_table, table_of(row%kind, row%form), row%kind == request_link), table)
+            call write_heads(o, l, row%part, table_of(row%kind, row%form, l%links_table), table)
             call write_row(o, l, d, row, row%shown, row%doubt, 0, table)
             if (.not. allocated(row%others)) cycle
             ! The effect of tolerances, with more decimals: the worst case, and the root of the sum of squares.

@@ -3,7 +3,7 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line, request_t
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, measure_line, request_t
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
@@ -117,8 +117,7 @@ contains
          associate (own => set%now%parts(c))
             if (.not. allocated(own%measures)) cycle
             set%has_turns = set%has_turns .or. any(own%measures%continues)
-            if (any(own%measures%continues) .and. &
-                any(own%requests%extremes .and. own%requests%kind == request_measure)) &
+            if (any(own%measures%continues) .and. any(own%requests%extremes)) &
                allocate (set%paths(c)%turned(size(own%measures), 0:max(0, set%now%steps)))
          end associate
       end do
