@@ -397,7 +397,7 @@ contains
          if (size(list) > 0 .and. .not. following%convergence%keeps_signs) &
             step%dead_end = pack(list, list%kind == diagnostic_dead_end)
          following%convergence%keeps_signs = .false.
-         ! Close to a dead point it may only look like a change point: no card is used up there, and no motion forgotten.
+         ! Close to a dead point it may only look like a change point: no card is used up, and no motion forgotten.
          following%branch_requests = before
          following%history%filled = filled
       end if
