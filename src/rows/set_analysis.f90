@@ -3,7 +3,7 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, measure_line, request_t
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line, request_t
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
