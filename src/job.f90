@@ -11,7 +11,7 @@ module job
    use processes, only: processor_count, end_process
    use command_line
    use outputs, only: open_outputs, open_table, close_outputs, is_over
-   use shares, only: run_shares, next_part
+   use job_chunks, only: run_chunks, next_part
    use writers, only: writers_t, break_off
    use motion_run, only: run_motion
    use variant_runs, only: run_variants, are_together
@@ -74,7 +74,7 @@ contains
          if (any([(are_together(sets(i), any(sets(i)%requests%every > 0 .or. sets(i)%requests%drive > 0), o), &
             i=1, size(sets))])) o%share%unit = lane_count
          processes = process_count(sets, o)
-         if (processes > 1) call run_shares(o, processes, status, message)
+         if (processes > 1) call run_chunks(o, processes, status, message)
          do while (next_part(o))
             call run_sets(sets, structure_report, o)
          end do

@@ -6,7 +6,7 @@ module motion_run
    use command_line, only: out_listing
    use system_calls, only: signal_received
    use outputs, only: is_over
-   use shares, only: write_in_turn
+   use job_chunks, only: write_in_turn
    use writers, only: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off
    use answers, only: answers_t, new_answers, update_answers
    use dwells, only: find_dwells

@@ -9,10 +9,10 @@ module outputs
    use command_line, only: options_t, out_shared, out_table, out_last
    implicit none
    private
-   public :: outputs_t, share_of_job_t, open_outputs, open_table, close_outputs, is_over
+   public :: outputs_t, job_chunk_t, open_outputs, open_table, close_outputs, is_over
 
    !> The part of a job in several processes that this process computes; `shares` divides the job.
-   type :: share_of_job_t
+   type :: job_chunk_t
       character(:), allocatable :: kind         !< SETS or VARIANTS
       integer :: first = 1, last = 0            !< all of them
       integer :: length = huge(1)               !< so many of them are a part
@@ -26,13 +26,13 @@ module outputs
       integer :: look = 0                       !< it is looked for the turn where an output holds so much
       integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
       integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
-   end type share_of_job_t
+   end type job_chunk_t
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
       type(output_t) :: files(out_last)                     !< up to `out_shared` of all sets, then of the set at hand
       type(failure_t), allocatable :: failure               !< of the last file that could not be opened or written
-      type(share_of_job_t) :: share
+      type(job_chunk_t) :: share
       !> The sets that this process computes now; where the deck has VARY cards, numbers of variants, counted through
       !> all sets.
       integer :: own_first = 1, own_last = 0

@@ -11,7 +11,7 @@ module variant_runs
    use deck_variants, only: variation_t
    use command_line, only: out_listing, out_csv, out_log, out_summary
    use outputs, only: outputs_t, is_over
-   use shares, only: write_in_turn
+   use job_chunks, only: write_in_turn
    use writers, only: writers_t, break_off
    use motion_run, only: run_motion
    use listing, only: layout_t, new_layout
@@ -24,7 +24,7 @@ module variant_runs
    use lane_state, only: lanes_t
    use phrases, only: text_broken_variant
    use set_motion, only: new_set_motion
-   use set_analysis, only: set_analysis_t, analyze_set, renew_set_analysis
+   use set_analysis, only: set_analysis_t, analyze_set, reuse_set_analysis
    use kinds, only: wp
    implicit none
    private
@@ -119,7 +119,7 @@ contains
          run%is_over = row%rejected /= ''
          if (run%is_over) return
          ! A variant with the structure of the one before takes over what that has made.
-         call renew_set_analysis(run%m, run%s, is_done)
+         call reuse_set_analysis(run%m, run%s, is_done)
          if (.not. is_done) then
             call check_variant(run%m, structure_report, row)
             run%is_over = row%rejected /= ''

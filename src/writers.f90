@@ -26,7 +26,7 @@ module writers
    use analysis, only: redundancy_error
    use phrases, only: phrase_t, phrase
    use number_format, only: whole
-   use following, only: certificate_counts_t
+   use continuation, only: certificate_counts_t
    use motion, only: diagnostic_t, diagnostic_unused
    implicit none
    private

@@ -14,14 +14,14 @@ module column_search
    use instant_centres, only: points_coincide
    use set_analysis, only: set_analysis_t, rows_at, errors_unasked, errors_in_doubt
    use nodes, only: node_t, sample_t, joint_margin, extreme_t
-   use zero_search, only: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
+   use zero_search, only: column_t, on_curve, find_zero, find_acceleration_extreme, differ_in_sign, noise_part
    use extremes, only: extremes_t, track_t, coordinate_t, add_interval, equal_part, offer, value_at_t, badly_known, &
       greatest, least, outward
    implicit none
    private
    public :: find_node, find_next, add_node, search_waiting
 
-   !> The step of the stencil at a zero, in steps of TIME. If it is too long, `find_turn` shortens it.
+   !> The step of the stencil at a zero, in steps of TIME. If it is too long, `find_acceleration_extreme` shortens it.
    real(wp), parameter :: stencil_step = 1.0_wp/256.0_wp
    !> In short steps of TIME the stencil may be longer: until a link moves by this, in rad or lengths.
    real(wp), parameter :: stencil_motion = 5.0e-4_wp
@@ -459,7 +459,7 @@ contains
             if (differ_in_sign(jerk(1), jerk(2)) .and. .not. has_kink(i) .and. (abs(jerk(2) - jerk(1)) > noise(i) &
                .or. maxval(path%f(2)) - minval(path%f(2)) &
                > 2.0_wp*max(equal_part*one%size_of(2), column%noise(2)))) then
-               call find_turn(set, column, path(1), path(3), found)
+               call find_acceleration_extreme(set, column, path(1), path(3), found)
                found%error = max(found%error, path(1)%error, path(3)%error)
                call accept_extreme(2)
             end if

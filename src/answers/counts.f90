@@ -11,7 +11,7 @@ module counts
    type :: counts_t
       integer :: solved = 0, flagged = 0            !< instants
       integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
-      integer :: mark = flag_none, singularity = 0  !< of the first flagged instant
+      integer :: flag = flag_none, singularity = 0  !< of the first flagged instant
       real(wp) :: t = 0.0_wp                        !< its time
       type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
    end type counts_t
@@ -31,8 +31,8 @@ contains
       counts%flagged = counts%flagged + 1
       do c = 1, set%now%count
          associate (q => set%now%motions(c))
-            if (counts%mark == flag_none .and. q%mark /= flag_none) then
-               counts%mark = q%mark
+            if (counts%flag == flag_none .and. q%flag /= flag_none) then
+               counts%flag = q%flag
                counts%singularity = q%singularity
                counts%t = q%t
             end if

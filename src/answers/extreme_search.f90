@@ -17,7 +17,7 @@ module extreme_search
    use set_motion, only: apart_from
    use set_analysis, only: set_analysis_t, errors_in_doubt, errors_always
    use nodes, only: node_t, extreme_t, times_between, joint_margin
-   use extremes, only: extremes_t, end_t, offer, badly_known, add_interval, coordinate_t, greatest, least
+   use extremes, only: extremes_t, piece_end_t, offer, badly_known, add_interval, coordinate_t, greatest, least
    use column_search, only: find_node, find_next, add_node, search_waiting
    use columns, only: is_ratio
    implicit none
@@ -113,7 +113,7 @@ contains
             call settle_ratios(track%coordinates)
          end if
          if (.not. known) call add_interval(extremes%gaps, extremes%way, t, t, 0.0_wp)
-         track%last = end_t(t, .not. known, q%singularity == singular_change)
+         track%last = piece_end_t(t, .not. known, q%singularity == singular_change)
       end associate
 
    contains
@@ -121,7 +121,7 @@ contains
       !> Searches between the last instant of mechanism `part` and instant number `k`, at `t`.
       subroutine search_step()
          real(wp), allocatable :: ends(:), times(:)
-         type(end_t) :: from, to
+         type(piece_end_t) :: from, to
          logical :: is_limit
          integer :: i
 
@@ -132,10 +132,10 @@ contains
             times = times_between(track%joints, track%longest, extremes%run, t1, t)
             from = track%last
             do i = 1, size(ends)
-               to = end_t(ends(i), i < size(ends) .or. is_limit .or. .not. known, &
+               to = piece_end_t(ends(i), i < size(ends) .or. is_limit .or. .not. known, &
                   i < size(ends) .or. (set%now%motions(part)%singularity == singular_change .and. .not. is_limit))
                call search_piece(times, from, to)
-               from = end_t(ends(i), .true., .true.)
+               from = piece_end_t(ends(i), .true., .true.)
             end do
             if (abs(t - from%t) > 0.0_wp) call add_interval(extremes%gaps, extremes%way, from%t, t, 0.0_wp)
          end associate
@@ -173,7 +173,7 @@ contains
       !> Searches a piece of a step, with nodes at the times that are inside.
       subroutine search_piece(times, from, to)
          real(wp), intent(in) :: times(:)    !< (any number) of nodes, in the run's order
-         type(end_t), intent(in) :: from, to   !< the ends of the piece, in the run's order
+         type(piece_end_t), intent(in) :: from, to   !< the ends of the piece, in the run's order
          real(wp) :: low, high, near(places)
          integer :: i
 
@@ -212,7 +212,7 @@ contains
       !> Offers the one-sided limits at an end of a piece as extremes, by the motion at times near the end. Of the times
       !> that were tried those count from which the limits are known best.
       subroutine accept_limits(at, other, near)
-         type(end_t), intent(in) :: at
+         type(piece_end_t), intent(in) :: at
          real(wp), intent(in) :: other       !< time of the other end of the piece
          real(wp), intent(out) :: near(places)   !< the times that count, the nearest first
          type(node_t) :: nodes(places)

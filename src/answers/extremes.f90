@@ -16,8 +16,9 @@ module extremes
    use zero_search, only: noise_part
    implicit none
    private
-   public :: extremes_t, coordinate_t, track_t, end_t, uncovered_interval_t, value_at_t, least, greatest, outward, &
-      new_extremes, offer, add_interval, is_cyclic, is_covered, varies, strokes_t, strokes_of, badly_known, equal_part
+   public :: extremes_t, coordinate_t, track_t, piece_end_t, uncovered_interval_t, value_at_t, least, greatest, &
+      outward, new_extremes, offer, add_interval, is_cyclic, is_covered, varies, strokes_t, strokes_of, badly_known, &
+      equal_part
 
    !> Values closer than this, in characteristic lengths or rad and rates, count as equal, and the earlier one is
    !> printed: errors below a table's last digit may be as large.
@@ -65,10 +66,10 @@ module extremes
    end type coordinate_t
 
    !> An end of a piece of a step. `is_open`: not all of the motion exists there.
-   type :: end_t
+   type :: piece_end_t
       real(wp) :: t = 0.0_wp
       logical :: is_open = .false., is_change = .false.
-   end type end_t
+   end type piece_end_t
 
    !> The coordinates of one independent mechanism along the run.
    type :: track_t
@@ -80,7 +81,7 @@ module extremes
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
       !> The largest difference of the last motion from the first: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
-      type(end_t) :: last                              !< the last instant
+      type(piece_end_t) :: last                              !< the last instant
       logical :: is_lost = .false.                     !< of some row nothing is known there
       !> The first node is the last one up to which this piece is searched; so many are `filled`, and the next one is
       !> put after these. Between three nodes a number has an extreme only if it `turns`.

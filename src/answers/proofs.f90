@@ -3,7 +3,7 @@
 module proofs
    use kinds, only: wp
    use motion, only: flag_none
-   use following, only: branch_crossed
+   use continuation, only: branch_crossed
    use motion_proof, only: holds
    use set_analysis, only: set_analysis_t
    implicit none
@@ -11,26 +11,26 @@ module proofs
    public :: proofs_t, reason_t, record_proof
 
    !> The proof of a printed instant, and of the steps to it from the last one.
-   type :: line_t
+   type :: proof_row_t
       integer :: step = 0                        !< number of the instant
       logical :: is_proved = .true.
       integer :: parts = 0                       !< into which the steps were divided
       real(wp) :: tube = 0.0_wp                  !< largest radius, in rad and units of the blocks
       real(wp) :: bounds(0:2) = 0.0_wp           !< of errors, in the characteristic length and rate
-   end type line_t
+   end type proof_row_t
 
    !> Why an instant is not proved.
    type :: reason_t
       integer :: step = 0                        !< number of the instant
       integer :: part = 1                        !< the independent mechanism
-      integer :: mark = flag_none, singularity = 0   !< of its motion
+      integer :: flag = flag_none, singularity = 0   !< of its motion
       logical :: is_crossed = .false.            !< a change point may be in the step
       integer :: too_many = 0                    !< parts into which the step is divided, if these are too many
       integer, allocatable :: links(:)           !< whose position is not proved
    end type reason_t
 
    type :: proofs_t
-      type(line_t), allocatable :: lines(:)      !< with room for further ones
+      type(proof_row_t), allocatable :: lines(:)      !< with room for further ones
       integer :: count = 0                       !< of finished lines; the next one is in the making
       type(reason_t), allocatable :: reasons(:)  !< the first ones
       integer :: instants = 0, proved = 0        !< in all
@@ -64,7 +64,7 @@ contains
                line%is_proved = .false.
                if (size(proofs%reasons) == max_reasons) cycle
                associate (q => set%now%motions(c))
-                  reason = reason_t(k, c, q%mark, q%singularity, set%list(c)%branch%kind == branch_crossed, &
+                  reason = reason_t(k, c, q%flag, q%singularity, set%list(c)%branch%kind == branch_crossed, &
                      proof%too_many)
                end associate
                if (allocated(proof%failed)) reason%links = proof%failed

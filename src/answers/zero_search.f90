@@ -9,7 +9,7 @@ module zero_search
    use nodes, only: sample_t
    implicit none
    private
-   public :: column_t, on_curve, find_zero, find_turn, differ_in_sign, noise_part
+   public :: column_t, on_curve, find_zero, find_acceleration_extreme, differ_in_sign, noise_part
 
    !> Smaller derivatives, in characteristic ones or the largest near them, are zeros that rounding has moved.
    real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
@@ -203,14 +203,14 @@ contains
       ! The slope from the zero to the last value that is more than noise, unless the slope near the zero is less.
       if (.not. (abs(clear(2)) > above_noise*column%noise(order) .and. abs(clear(1) - t) > 0.0_wp)) slope = 0.0_wp
       if (abs(slope) > 0.0_wp) slope = min(abs(slope), abs(clear(2)/(clear(1) - t)))
-      call settle(set, column, order, [before%t, after%t], t, slope, 1.0_wp, column%noise(order), width, zero)
+      call finish_zero(set, column, order, [before%t, after%t], t, slope, 1.0_wp, column%noise(order), width, zero)
    end subroutine find_zero
 
    !> Finds the extreme of the acceleration of a column between two times at which the third derivative of its
    !> polynomial has different signs. It is the extreme of the polynomial through accelerations at five times near it.
    !> If the fourth difference counts, the times are too far apart; if rounding counts, they are too near. If the
    !> extreme is not found or is at an end, turn%known is -1.
-   subroutine find_turn(set, column, before, after, turn)
+   subroutine find_acceleration_extreme(set, column, before, after, turn)
       type(set_analysis_t), intent(inout) :: set
       type(column_t), intent(in) :: column
       type(sample_t), intent(in) :: before, after   !< at the ends of the interval
@@ -296,13 +296,13 @@ contains
             place = first
             width = max(width, left)
          end if
-         call settle(set, column, 2, [before%t, after%t], place, bend, best_step, best_noise, width, turn)
+         call finish_zero(set, column, 2, [before%t, after%t], place, bend, best_step, best_noise, width, turn)
       end associate
-   end subroutine find_turn
+   end subroutine find_acceleration_extreme
 
    !> Finds a column at the time of a zero, and the error of that time: the error of the derivative, or of its
    !> difference, over the slope, and the width of the bracket.
-   subroutine settle(set, column, order, ends, t, slope, step, noise, width, zero)
+   subroutine finish_zero(set, column, order, ends, t, slope, step, noise, width, zero)
       type(set_analysis_t), intent(inout) :: set
       type(column_t), intent(in) :: column
       integer, intent(in) :: order           !< the derivative whose error counts
@@ -326,7 +326,7 @@ contains
             + (open/step + rounding_part*noise)/slope
          if (zero%t_error <= well_known_time*max(abs(set%now%t0), abs(set%now%t1))) exit
       end do
-   end subroutine settle
+   end subroutine finish_zero
 
    !> Tells whether a value of a derivative of a column is no new extreme.
    pure logical function is_inside(column, k, value, open)

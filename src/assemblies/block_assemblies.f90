@@ -4,7 +4,7 @@ module block_assemblies
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use plane_vectors, only: pi, wrap_angle
-   use convergence, only: convergence_t, is_solved, ended_inconsistent
+   use convergence, only: solve_report_t, is_solved, ended_inconsistent
    use blocks, only: blocks_t, geometry_t, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_block
@@ -65,7 +65,7 @@ contains
       integer, intent(in) :: largest_group   !< unknowns of a group at most, up to `max_group`
       type(path_start_t), allocatable, intent(inout) :: start   !< of the paths: see `follow_paths`
       type(block_positions_t), intent(inout) :: found   !< of the searches before; then also of this one
-      type(convergence_t) :: c
+      type(solve_report_t) :: c
       type(block_form_t) :: f
       type(ends_t) :: ends
       real(dp) :: level
@@ -123,7 +123,7 @@ contains
       !> Adds the position of the block at a solution, if it is real and new.
       subroutine add_position(ending)
          type(path_end_t), intent(in) :: ending   !< the solution
-         type(convergence_t) :: c
+         type(solve_report_t) :: c
          real(wp) :: place(size(f%turns)), residual
          logical :: is_real
          integer :: k

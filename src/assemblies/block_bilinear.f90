@@ -45,13 +45,13 @@ module block_bilinear
    end type projection_t
 
    !> The equations of a system before the elimination.
-   type :: draft_t
+   type :: bilinear_builder_t
       integer :: linear = 0, bilinear = 0             !< how many there are of each kind
       complex(wp), allocatable :: a(:, :)             !< (0:n, linear): sum over k of a_k x_k = 0
       complex(wp), allocatable :: c(:, :, :)          !< (0:n, 0:n, bilinear)
       real(wp), allocatable :: size_of(:)             !< (bilinear) of the terms of each: see projection_t
       type(projection_t), allocatable :: projections(:)
-   end type draft_t
+   end type bilinear_builder_t
 
 contains
 
@@ -62,7 +62,7 @@ contains
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s      !< with the values of earlier blocks and drives; the known parts change
       type(block_form_t), intent(out) :: form
-      type(draft_t) :: d
+      type(bilinear_builder_t) :: d
       integer :: m
 
       call find_known_parts(b, x, i, s)
@@ -96,7 +96,7 @@ contains
       integer, intent(in) :: loop            !< the number of the loop
       type(state_t), intent(in) :: s
       type(block_form_t), intent(in) :: form
-      type(draft_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft
       complex(wp) :: ratio
       integer :: less
 
@@ -124,7 +124,7 @@ contains
       integer, intent(in) :: loop            !< the number of the loop
       integer, intent(in) :: n               !< unknowns of the block
       type(state_t), intent(in) :: s
-      type(draft_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft
       type(projection_t) :: one
 
       allocate (one%l(n + 1))
@@ -206,7 +206,7 @@ contains
    !> that turn together are one linear equation: the components of a closed loop, or a driven slide and its guide. The
    !> others are bilinear.
    subroutine add_projections(draft)
-      type(draft_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft
       logical :: is_done(size(draft%projections))
       real(wp) :: turn, ratio
       integer :: j, k, m
@@ -246,7 +246,7 @@ contains
    !> Adds w w' = 1 and z w' = z' w for all unknowns, and puts 1 for w w' in the other equations.
    subroutine add_pairs(form, draft)
       type(block_form_t), intent(in) :: form
-      type(draft_t), intent(inout) :: draft
+      type(bilinear_builder_t), intent(inout) :: draft
       integer :: k, j
 
       do k = 1, size(form%turns)
@@ -273,7 +273,7 @@ contains
    !> than unknowns, combinations are taken.
    subroutine reduce(form, draft, level)
       type(block_form_t), intent(inout) :: form
-      type(draft_t), intent(in) :: draft
+      type(bilinear_builder_t), intent(in) :: draft
       real(wp), intent(in) :: level          !< a smaller part of the terms is rounding: the equation follows
       complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :), left(:)
       real(wp) :: size_of

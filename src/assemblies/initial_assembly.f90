@@ -9,14 +9,14 @@ module initial_assembly
    use kinds, only: wp
    use plane_vectors, only: wrap_angle
    use cylinders, only: cylinder_length
-   use convergence, only: convergence_t, nothing_gathered, is_solved, gather, ended_elsewhere
+   use convergence, only: solve_report_t, nothing_gathered, is_solved, gather, ended_elsewhere
    use motion, only: motion_t, new_motion
    use blocks, only: blocks_t, geometry_t, largest_known, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of, add_turns
    use block_solver, only: workspace_t, solve_blocks, solve_block
    use link_motion, only: move_links
    use levenberg_marquardt, only: levenberg_marquardt_solve, find_closure_error
-   use initial_estimate, only: guess_t, choice_t
+   use initial_estimate, only: guess_t, first_choice_t
    use block_assemblies, only: block_positions_t, find_positions
    implicit none
    private
@@ -32,7 +32,7 @@ module initial_assembly
       real(wp) :: beyond = no_distance                  !< the distance of positions not looked for, at least
       logical :: are_all = .true.                       !< no nearer one can be missing
       integer :: chosen = 0                             !< the number of the position in use; 0: none
-      type(convergence_t) :: ending                     !< how the search for a position ended
+      type(solve_report_t) :: ending                     !< how the search for a position ended
    end type candidates_t
 
    !> Unknowns of a group of which all positions are enumerated, at most: eight in both groups, 70 paths.
@@ -59,9 +59,9 @@ contains
       type(guess_t), intent(inout) :: guess
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s      !< with the values of the drives; then the first motion
-      type(convergence_t), intent(out) :: convergence   !< how the search ended
+      type(solve_report_t), intent(out) :: convergence   !< how the search ended
       type(candidates_t), dimension(size(b%list)) :: found, by_deck
-      type(convergence_t) :: rest
+      type(solve_report_t) :: rest
       real(wp) :: implied(3, size(guess%links, 2)), turn(0:b%orientations), nearest
       logical :: is_complete, is_implied(size(implied, 2))
       integer :: places(2, size(implied, 2)), k, i
@@ -72,7 +72,7 @@ contains
          if (.not. b%list(b%needed(k))%explicit) call add_turns(b, x, b%needed(k), s)
       end do
       guess%values(:) = s%u%value
-      guess%choice = choice_t()
+      guess%choice = first_choice_t()
 
       call solve_blocks(b, x, b%needed, w, s, convergence)
       rest = nothing_gathered

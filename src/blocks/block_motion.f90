@@ -7,13 +7,12 @@ module block_motion
    use scales, only: is_length
    use motion, only: motion_t, new_motion
    use drive_path, only: drive_path_t
-   use convergence, only: convergence_t
+   use convergence, only: solve_report_t
    use blocks, only: blocks_t, geometry_t, blocks_that_give, largest_known, own_unknowns
    use block_numbers, only: evaluate_geometry
    use block_state, only: state_t, unknown_t, set_drive_values
    use block_solver, only: workspace_t, solve_block, solve_explicit
-   use link_motion, only: new_chain, assign_chain, move_links, flag_links, &
-      missing_nothing, missing_rates, missing_all
+   use link_motion, only: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
    public :: select_solved_blocks, assign_geometry, assign_path, get_ratios, flag_singular_links, get_driven_links
@@ -99,7 +98,7 @@ contains
       type(motion_t), intent(inout) :: found
       type(motion_t) :: unit
       type(state_t) :: s
-      type(convergence_t) :: c
+      type(solve_report_t) :: c
       integer :: missing(0:b%unknowns), j, k
       logical :: has_rates, finite
 

@@ -12,17 +12,17 @@
 module block_solver
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
+   use block_matrix, only: matrix_layout_t, solve_first, solve_again, pivot_range, inverse_norm, spread_by_inverse, &
       entries_of, work_length, nearby_t, solve_nearby, stay_near, sparse_factors_t, release
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
-   use convergence, only: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, &
+   use convergence, only: solve_report_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, &
       ended_limit, ended_diverged, ended_inconsistent, is_solved, record_closure_error, inconsistent_level, &
       rounding_level, contradict
    use plane_vectors, only: length_of
    use blocks, only: blocks_t, geometry_t, block_t, block_numbers_t, equation_row_t, block_loop_t, body_vector_t, &
       slide_t, known_to, loop_projection
    use block_state, only: state_t, jacobian_t, set_direction
-   use singular_position, only: settle
+   use singular_position, only: refine_singular_position
    use block_equations, only: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
    implicit none
    private
@@ -88,19 +88,16 @@ contains
       integer, intent(in), contiguous :: list(:)           !< (any number) numbers of blocks, in solving order
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
-      type(convergence_t), intent(out) :: convergence      !< how the worst block ended
+      type(solve_report_t), intent(out) :: convergence      !< how the worst block ended
       real(wp) :: ratio
       integer :: k
 
-      if (asserts) then
-         call assert(all(list >= 1 .and. list <= size(b%list)), 'solve_blocks: numbers of blocks')
-         call assert(ubound(s%u, 1) == b%unknowns, 'solve_blocks: a state of these blocks')
-      end if
+      if (asserts) call assert(all(list >= 1 .and. list <= size(b%list)), 'solve_blocks: numbers of blocks')
       convergence = nothing_gathered
       k = 0
       do while (k < size(list) .and. is_solved(convergence))
          call solve_next(b, x, list, .true., w, s, k, ratio, convergence)
-         if (is_solved(convergence) .and. s%is_singular(list(k))) call settle(b, x, list(k), s)
+         if (is_solved(convergence) .and. s%is_singular(list(k))) call refine_singular_position(b, x, list(k), s)
       end do
    end subroutine solve_blocks
 
@@ -113,7 +110,7 @@ contains
       logical, intent(in) :: moves                         !< its values are solved for
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                    !< with the drives; its values are the initial guess
-      type(convergence_t), intent(out) :: convergence      !< how the block ended
+      type(solve_report_t), intent(out) :: convergence      !< how the block ended
       real(wp) :: ratio
       integer :: k
 
@@ -133,7 +130,7 @@ contains
       type(state_t), intent(inout) :: s
       integer, intent(inout) :: k                          !< the place in the list of the block solved last
       real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
-      type(convergence_t), intent(inout) :: convergence    !< how all have ended
+      type(solve_report_t), intent(inout) :: convergence    !< how all have ended
 
       call solve_list(b, x, size(list), list, moves, b%list, x%blocks, b%unknown, b%loops, x%loops, b%body_vectors, &
          x%d, b%slides, x%e, b%rows, x%rows, s%drive_value, s%excursion, s%u, s%own, s%guide, s%loop, s%jacobian, &
@@ -188,7 +185,7 @@ contains
       type(scratch_t), intent(inout) :: scratch
       integer, intent(inout) :: k                          !< the place in the list of the block solved last
       real(wp), intent(out) :: ratio                       !< the Kantorovich ratio of the block solved last
-      type(convergence_t), intent(inout) :: convergence    !< how all have ended
+      type(solve_report_t), intent(inout) :: convergence    !< how all have ended
       integer :: i
 
       ratio = 0.0_wp
@@ -250,7 +247,7 @@ contains
       type(jacobian_t), intent(inout) :: jacobian          !< stays if it has no inverse, but for the sign
       logical, intent(inout) :: is_singular                !< stays if there is no position
       real(wp), intent(out) :: ratio                       !< Kantorovich ratio
-      type(convergence_t), intent(inout) :: convergence    !< how the blocks so far have ended
+      type(solve_report_t), intent(inout) :: convergence    !< how the blocks so far have ended
       real(wp) :: before, size_of, own_size, cosine, residual, step, change, least, bound
       integer :: rows, n, info, ended, iteration, iterations, side, sign_of, k
       logical :: is_closed, is_right, singular
@@ -392,7 +389,7 @@ contains
          convergence%determinant = 0
          return
       end if
-      if (moves .and. .not. singular) call judge()
+      if (moves .and. .not. singular) call certify_root()
       is_singular = singular
       jacobian%sign_of = sign_of
       convergence%determinant = convergence%determinant*sign_of
@@ -420,7 +417,7 @@ contains
       !> Let B be |J^-1|, h the residual that rounding leaves, L the Lipschitz constant. The position is known to B h,
       !> the Jacobian to L B h, the velocities to B times that. Newton and Kantorovich: there is one root only if B L
       !> change is below 1/2.
-      subroutine judge()
+      subroutine certify_root()
          real(wp) :: largest, inverse
          logical :: suspicious
 
@@ -452,12 +449,12 @@ contains
          singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_velocity_error
          if (singular) singular = is_beyond_linear(b, x, i, n, unknowns, now, a, &
             scratch%pivots, scratch%work, scratch%sparse)
-      end subroutine judge
+      end subroutine certify_root
    end subroutine solve_arrays
 
    !> Solves for another right-hand side from the factors.
    subroutine solve_next_side(shape, a, pivots, work, near, sparse, right_side)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)                         !< the factors
       integer, intent(in) :: pivots(*)                     !< (n) of the factors
       real(wp), intent(inout) :: work(*)                   !< scratch

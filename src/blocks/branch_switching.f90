@@ -12,7 +12,7 @@ module branch_switching
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: solve_report_t, is_solved
    use drive_path, only: drive_path_t, time_at_part
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, set_values, values_of, largest_drive_rate
@@ -22,7 +22,7 @@ module branch_switching
    use block_diagnostics, only: links_of
    implicit none
    private
-   public :: pass, switch_branch, is_short_and_right, branch_requests_t, new_branch_requests, decide
+   public :: pass, switch_branch, is_smooth_passage, branch_requests_t, new_branch_requests, decide
 
    !> A determinant that changes its sign over a substep this short, in rad and lengths, may indicate a change point. It
    !> does if the prediction was right to so small a part of the substep. Circuits that pass each other at the distance
@@ -126,7 +126,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                      !< the motion found last
       type(branch_requests_t), intent(inout) :: requests
-      type(convergence_t), intent(inout) :: convergence      !< of that motion
+      type(solve_report_t), intent(inout) :: convergence      !< of that motion
       type(diagnostic_t), allocatable, intent(out) :: list(:)   !< one for each change point
       type(diagnostic_t) :: r
       logical :: crossed(size(b%list)), passed
@@ -135,7 +135,7 @@ contains
       allocate (list(0))
       crossed = s%crossed
       ! A prediction that leaps too far is not solved at all.
-      passed = any(crossed) .and. is_short_and_right(b, x, history, s, convergence%change)
+      passed = any(crossed) .and. is_smooth_passage(b, x, history, s, convergence%change)
       do k = 1, size(b%moving)
          if (.not. passed) exit
          associate (i => b%moving(k), before => history%t(0), t => s%t)
@@ -160,7 +160,7 @@ contains
    !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of the change of the drives, if this is more
    !> than the predicted change. A longer substep has to be right to a part that is smaller as its square; this
    !> distinguishes the same circuits.
-   pure logical function is_short_and_right(b, x, history, s, correction) result(is)
+   pure logical function is_smooth_passage(b, x, history, s, correction) result(is)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(history_t), intent(in) :: history
@@ -181,7 +181,7 @@ contains
       right = right_part*(short_substep/max(short_substep, s%change))**2*s%change &
          + merge(minval(rounded, mask=crosses), maxval(rounded), any(crosses))
       is = correction <= min(right, wrong_part*s%change)
-   end function is_short_and_right
+   end function is_smooth_passage
 
    !> Puts a block on its other branch, close to a change point or dead point, and then all that builds on it. On that
    !> branch the determinant has the other sign. The motions before are no guide from there.
@@ -192,7 +192,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s                      !< the motion found last; then the one on that branch
       integer, intent(in) :: i                               !< the number of the block
-      type(convergence_t), intent(inout) :: convergence      !< how the solution there ended
+      type(solve_report_t), intent(inout) :: convergence      !< how the solution there ended
       logical, intent(out) :: found                          !< it is on that branch
       type(svd_t) :: v
       real(wp), dimension(b%list(i)%shape%n) :: direction, here

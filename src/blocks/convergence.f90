@@ -5,7 +5,7 @@ module convergence
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
-   public :: convergence_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
+   public :: solve_report_t, nothing_gathered, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
       record_closure_error, contradict
 
@@ -48,7 +48,7 @@ module convergence
    end type closure_error_t
 
    !> How a position was solved for.
-   type :: convergence_t
+   type :: solve_report_t
       integer :: ended = ended_limit           !< ended_converged, ...
       integer :: iterations = 0                !< in all
       real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
@@ -63,24 +63,24 @@ module convergence
       logical :: singular = .false.            !< a position was found, and its Jacobian has no inverse
       type(closure_error_t) :: open            !< the equation that is open the most
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
-   end type convergence_t
+   end type solve_report_t
 
    !> A record in which nothing is gathered yet.
-   type(convergence_t), parameter :: nothing_gathered = convergence_t(ended=ended_converged, determinant=1)
+   type(solve_report_t), parameter :: nothing_gathered = solve_report_t(ended=ended_converged, determinant=1)
 
 contains
 
    !> Tells whether a position was found.
    pure logical function is_solved(convergence)
-      type(convergence_t), intent(in) :: convergence
+      type(solve_report_t), intent(in) :: convergence
 
       is_solved = convergence%ended == ended_converged .or. convergence%ended == ended_stalled
    end function is_solved
 
    !> Adds a record to the record of the whole: the largest of each count, the worst of each ending.
    pure subroutine gather(one, convergence)
-      type(convergence_t), intent(in) :: one                !< of a block
-      type(convergence_t), intent(inout) :: convergence     !< of all blocks so far
+      type(solve_report_t), intent(in) :: one                !< of a block
+      type(solve_report_t), intent(inout) :: convergence     !< of all blocks so far
 
       if (one%ended /= ended_converged) convergence%ended = one%ended
       convergence%iterations = max(convergence%iterations, one%iterations)
@@ -94,7 +94,7 @@ contains
 
    !> Gives the word for how an iteration ended.
    pure function ending(convergence) result(word)
-      type(convergence_t), intent(in) :: convergence
+      type(solve_report_t), intent(in) :: convergence
       character(9) :: word
       character(9), parameter :: words(8) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
          'OPEN', 'UNSOUGHT', 'ELSEWHERE']
@@ -109,7 +109,7 @@ contains
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i                              !< the number of the block
       real(wp), intent(in) :: residuals(*)                  !< (rows of the block) unit of the loop or rad
-      type(convergence_t), intent(inout) :: convergence     !< convergence%open is set
+      type(solve_report_t), intent(inout) :: convergence     !< convergence%open is set
       real(wp), dimension(b%list(i)%first_loop:b%list(i)%last_loop) :: opening, level
       real(wp) :: largest
       integer :: m

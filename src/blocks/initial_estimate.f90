@@ -18,7 +18,7 @@ module initial_estimate
    use blocks, only: blocks_t, geometry_t
    implicit none
    private
-   public :: guess_t, choice_t, assign_guess
+   public :: guess_t, first_choice_t, assign_guess
 
    !> Angles from the places are taken if their largest closure error is below this part of the characteristic length,
    real(wp), parameter :: closed_part = 0.1_wp
@@ -39,16 +39,16 @@ module initial_estimate
    integer, parameter :: max_sweeps = 20, samples = 36
 
    !> How the position of a block at the first instant was chosen.
-   type :: choice_t
+   type :: first_choice_t
       logical :: is_close = .false.              !< another one is about as near
       logical :: is_incomplete = .false.         !< a nearer one may not have been found
-   end type choice_t
+   end type first_choice_t
 
    !> Where the first position is searched for.
    type :: guess_t
       real(wp), allocatable :: values(:)         !< (0:unknowns) from the deck's positions, rad or unit of the loop
       real(wp), allocatable :: links(:, :)       !< (3, links) places from the chain's origin, angles of the deck
-      type(choice_t), allocatable :: choice(:)   !< (blocks)
+      type(first_choice_t), allocatable :: choice(:)   !< (blocks)
       type(kept_start_t), allocatable :: starts(:)   !< (blocks) from which the paths to all positions begin
    end type guess_t
 
@@ -64,7 +64,7 @@ contains
 
       if (.not. allocated(guess%values)) allocate (guess%values(0:b%unknowns), guess%links(3, size(m%links)), &
          guess%choice(size(b%list)), guess%starts(size(b%list)))
-      guess%choice = choice_t()
+      guess%choice = first_choice_t()
       do i = 1, size(m%links)
          guess%links(:, i) = m%links(i)%position - [x%chain%origin, 0.0_wp]
       end do

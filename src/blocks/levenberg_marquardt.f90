@@ -3,8 +3,8 @@
 !> is the block's closure error.
 module levenberg_marquardt
    use kinds, only: wp
-   use block_matrix, only: shape_t, work_length, solve_first
-   use convergence, only: convergence_t, record_closure_error
+   use block_matrix, only: matrix_layout_t, work_length, solve_first
+   use convergence, only: solve_report_t, record_closure_error
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense
@@ -74,8 +74,8 @@ contains
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s      !< with the values of the least sum
-      type(convergence_t), intent(inout) :: convergence   !< convergence%open is set
-      type(convergence_t) :: one
+      type(solve_report_t), intent(inout) :: convergence   !< convergence%open is set
+      type(solve_report_t) :: one
       logical :: own(0:b%list(i)%shape%rows)
       real(wp) :: best(b%list(i)%shape%n), r(b%list(i)%shape%rows)
       integer :: k, m
@@ -125,13 +125,13 @@ contains
       integer, intent(in) :: i               !< the number of the block
       real(wp), intent(in) :: weights(:)     !< (rows) factors of the residuals
       type(state_t), intent(inout) :: s      !< with the values from which it begins; then those found
-      type(shape_t) :: damped                     ! the Jacobian with a row more for each unknown
+      type(matrix_layout_t) :: damped                     ! the Jacobian with a row more for each unknown
       real(wp) :: values(b%list(i)%shape%n), r(size(weights)), jacobian(size(weights), size(values)), &
          d(size(r) + size(values)), a(size(d), size(values)), damping, square, step, largest
       real(wp), allocatable :: work(:)
       integer :: pivots(size(values)), iteration, k, info
 
-      damped = shape_t(rows=size(d), n=size(values))
+      damped = matrix_layout_t(rows=size(d), n=size(values))
       allocate (work(work_length(damped)))
       damping = first_damping
       call assemble_dense(b, x, i, s, jacobian, r)

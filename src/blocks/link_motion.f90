@@ -9,13 +9,12 @@ module link_motion
    use plane_vectors, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t, has_guide
    use motion, only: motion_t, flag_none, flag_not_converged, flag_singular
-   use blocks, only: blocks_t, geometry_t, chain_t, chain_link_t
+   use blocks, only: blocks_t, geometry_t, link_order_t, link_step_t
    use block_state, only: unknown_t, state_t
    use spanning_tree, only: axes_t, guide, link_offset_t, point_offset, spanning_tree_t
    implicit none
    private
-   public :: new_chain, assign_chain, move_links, flag_links, &
-      missing_nothing, missing_rates, missing_all
+   public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, missing_all
 
    !> The worst last: nothing is missing of an unknown, its derivatives are, its value is as well.
    integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2
@@ -29,7 +28,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       logical, intent(in) :: wanted(:)       !< (links) the motion of the link is asked for
-      type(chain_t) :: c
+      type(link_order_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
       integer :: i
@@ -54,7 +53,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(chain_t), intent(inout) :: chain   !< as `new_chain` makes it
+      type(link_order_t), intent(inout) :: chain   !< as `new_chain` makes it
       integer :: i
 
       do i = 1, size(chain%links)
@@ -86,7 +85,7 @@ contains
 
    !> Finds the motion of the first links of a chain.
    pure subroutine move_links(chain, n, s, q, finite)
-      type(chain_t), intent(in) :: chain
+      type(link_order_t), intent(in) :: chain
       integer, intent(in) :: n               !< how many links: chain%wanted, or all
       type(state_t), intent(in) :: s
       type(motion_t), intent(inout) :: q     !< of all links, in the deck's units; x and y from the chain's origin
@@ -102,7 +101,7 @@ contains
    pure subroutine move_chain(n, links, grounds, ground, ground_positions, unknowns, length, positions, velocities, &
       accelerations, finite)
       integer, intent(in) :: n                              !< how many links are moved
-      type(chain_link_t), intent(in) :: links(n)            !< parents before their children
+      type(link_step_t), intent(in) :: links(n)            !< parents before their children
       integer, intent(in) :: grounds                        !< how many ground links there are
       integer, intent(in) :: ground(*)                      !< (ground links) their numbers
       real(wp), intent(in) :: ground_positions(3, *)        !< (3, ground links) x, y, phi, in the deck's unit and rad
@@ -173,7 +172,7 @@ contains
    !> Finds how much of each link of a motion is known, and why no more, from the unknowns by which it and its parents
    !> move. Links that are not wanted count as known.
    subroutine flag_links(chain, missing, found)
-      type(chain_t), intent(in) :: chain
+      type(link_order_t), intent(in) :: chain
       integer, intent(in) :: missing(0:)     !< (0:unknowns) missing_nothing, ...
       type(motion_t), intent(inout) :: found
       integer :: of_link(0:size(found%position, 2)), k
@@ -187,7 +186,7 @@ contains
       end do
       associate (links => of_link(1:))
          found%link_known = merge(2, merge(0, -1, links == missing_rates), links == missing_nothing)
-         found%link_mark = merge(flag_none, merge(flag_singular, flag_not_converged, links == missing_rates), &
+         found%link_flag = merge(flag_none, merge(flag_singular, flag_not_converged, links == missing_rates), &
             links == missing_nothing)
       end associate
    end subroutine flag_links

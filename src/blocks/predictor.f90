@@ -18,10 +18,10 @@ module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
    use drive_path, only: drive_path_t
-   use convergence, only: convergence_t
+   use convergence, only: solve_report_t
    use blocks, only: blocks_t, geometry_t, own_unknowns
-   use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, &
-      set_direction, set_values, largest_drive_rate
+   use block_state, only: unknown_t, state_t, jacobian_t, set_drive_values, set_direction, set_values, &
+      largest_drive_rate
    use block_solver, only: solve_explicit
    use block_rank, only: jacobian_of, relative_sign
    implicit none
@@ -120,7 +120,7 @@ contains
       integer, intent(in), contiguous :: list(:)        !< (any number) numbers of the blocks that are solved
       type(history_t), intent(in) :: history
       type(state_t), intent(inout) :: s                 !< the motion
-      type(convergence_t), intent(inout) :: convergence !< how the blocks ended
+      type(solve_report_t), intent(inout) :: convergence !< how the blocks ended
       logical :: crosses
       integer :: k
 

@@ -17,12 +17,11 @@ module singular_position
    use blocks, only: blocks_t, geometry_t, blocks_below, own_unknowns
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
-   use block_rank, only: svd_t, decomposed, residual_of, curvature_of, &
-      difference_step, gauss_newton_step, try_to_move
+   use block_rank, only: svd_t, decomposed, residual_of, curvature_of, difference_step, gauss_newton_step, try_to_move
    use convergence, only: rounding_level
    implicit none
    private
-   public :: settle, block_singularity
+   public :: refine_singular_position, block_singularity
 
    !> Larger blocks are not examined: twenty decompositions take a second for these.
    integer, parameter :: max_examined_rows = 300
@@ -51,7 +50,7 @@ contains
 
    !> Moves a block from a singular position to the place at which its Jacobian has no inverse, or to the root of its
    !> equations near this place. If neither is a position, the block stays.
-   subroutine settle(b, x, i, s)
+   subroutine refine_singular_position(b, x, i, s)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
@@ -96,7 +95,7 @@ contains
          call gauss_newton_step(b, x, i, s, before)
          y = values_of(b, i, s)
       end subroutine go_to
-   end subroutine settle
+   end subroutine refine_singular_position
 
    !> Gives the largest rate and acceleration (rad, lengths) of the drives that move a block, itself or through blocks
    !> below it. The rate is 0 if they rest, or if only rounding tells them from the turning point of a motion with their
@@ -139,12 +138,12 @@ contains
       speed = merge(driving(1), sqrt(driving(2)), driving(1) > 0.0_wp)
       if (speed <= 0.0_wp) return
       aside = s
-      call judge(b, x, i, speed, aside, agrees, crosses)
+      call classify_singularity(b, x, i, speed, aside, agrees, crosses)
       if (agrees .and. .not. crosses) return
       aside = s
       call try_to_move(b, x, i, aside, moves)
       if (any(moves)) then
-         call judge(b, x, i, speed, aside, agrees_aside, crosses)
+         call classify_singularity(b, x, i, speed, aside, agrees_aside, crosses)
          if (agrees_aside .eqv. agrees) return
       end if
       found = merge(singular_change, singular_dead, agrees)
@@ -152,7 +151,7 @@ contains
 
    !> Judges the velocities of a block whose Jacobian has no inverse. With several null vectors it is not examined
    !> whether branches cross: they are taken to.
-   subroutine judge(b, x, i, speed, s, agrees, crosses)
+   subroutine classify_singularity(b, x, i, speed, s, agrees, crosses)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       integer, intent(in) :: i               !< the number of the block
@@ -190,5 +189,5 @@ contains
       c = [q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)]
       crosses = maxval(abs(c)) > agreement_part*x%blocks(i)%lipschitz .and. &
          c(1)**2 - 4.0_wp*c(0)*c(2) > agreement_part*maxval(abs(c))**2
-   end subroutine judge
+   end subroutine classify_singularity
 end module singular_position

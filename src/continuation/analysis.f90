@@ -36,20 +36,20 @@ module analysis
       flag_overflow, flag_inconsistent, singular_unclear, singular_change, diagnostic_t, diagnostic_inconsistent, &
       diagnostic_limit, diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, &
       diagnostic_dead_end, diagnostic_stroke
-   use convergence, only: convergence_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
+   use convergence, only: solve_report_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_motion, only: assign_geometry, get_ratios, get_driven_links
    use link_motion, only: move_links
    use dense_method, only: dense_t, make_dense, solve_all_links
    use block_diagnostics, only: near_limit_part, start_diagnostics, limit_diagnostic, get_link_flags, change_diagnostics
    use change_point_passage, only: leave, follow, go_by_value, solve_regular_blocks
    use strokes, only: find_length_limit, flag_strokes
-   use following, only: following_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, step_rests, &
-      follow_structure, begin_motion, measure_closure_error, continue_to, accept_substep, revert, place_t, &
-      record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, certificate_counts_t, branch_none, &
-      branch_first, branch_same, branch_crossed
+   use continuation, only: continuation_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, &
+      step_rests, follow_structure, begin_motion, measure_closure_error, continue_to, accept_substep, revert, &
+      continuation_state_t, record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, &
+      certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
-   public :: analysis_t, make_analysis, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant, &
+   public :: analysis_t, make_analysis, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant, &
       redundancy_error
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
@@ -63,7 +63,7 @@ module analysis
    end enum
 
    !> The motion that is followed, and what is known of the instants so far.
-   type, extends(following_t) :: analysis_t
+   type, extends(continuation_t) :: analysis_t
       integer :: phase = not_begun
       logical, allocatable :: singular(:)                  !< (blocks) the block is, if the motion stands on a position
       real(wp) :: last = 0.0_wp                            !< time of the last instant, but for those beyond a limit
@@ -76,7 +76,7 @@ module analysis
       !> The motion followed is at a time that is no instant (`evaluate_at`); its place and iterations at the last
       !> instant.
       logical :: is_left = .false.
-      type(place_t) :: left
+      type(continuation_state_t) :: left
       integer :: left_iterations = 0
    end type analysis_t
 
@@ -99,28 +99,28 @@ contains
       type(structure_t), intent(inout) :: structure        !< of the mechanism: blocks and geometry are taken over
 
       if (m%method == method_newton) then
-         call follow_structure(analysis%following_t, m, structure)
+         call follow_structure(analysis%continuation_t, m, structure)
       else
-         call follow_structure(analysis%following_t, for_blocks(m), structure)
+         call follow_structure(analysis%continuation_t, for_blocks(m), structure)
          allocate (analysis%dense)
          call make_dense(analysis%dense, m)
       end if
    end subroutine analyze_structure
 
    !> Makes an analysis by METHOD NEWTON ready for a variant with the same structure; of no use if that does not fit.
-   subroutine renew_analysis(analysis, m, is_done)
+   subroutine reuse_analysis(analysis, m, is_done)
       type(analysis_t), intent(inout) :: analysis          !< of another variant
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: is_done                      !< the structure fits
-      type(following_t) :: kept
+      type(continuation_t) :: kept
 
-      call move_memory(analysis%following_t, kept)
+      call move_memory(analysis%continuation_t, kept)
       analysis = analysis_t()
-      call move_memory(kept, analysis%following_t)
+      call move_memory(kept, analysis%continuation_t)
       is_done = analysis%blocks%solvable
       if (is_done) call assign_geometry(m, analysis%blocks, analysis%geometry, analysis%path, is_done)
-      if (is_done) call begin_motion(analysis%following_t, m)
-   end subroutine renew_analysis
+      if (is_done) call begin_motion(analysis%continuation_t, m)
+   end subroutine reuse_analysis
 
    !> Solves for an instant. Links that no request needs may be left out.
    subroutine advance(analysis, t, found)
@@ -173,7 +173,7 @@ contains
       else if (allocated(analysis%singular)) then
          call leave_position(analysis, t, step, list)
       else
-         call follow(analysis%following_t, t, step, list)
+         call follow(analysis%continuation_t, t, step, list)
       end if
    end subroutine reach
 
@@ -188,12 +188,12 @@ contains
 
       if (allocated(analysis%singular)) then
          near = time_beside(analysis%path, analysis%last, t, start_offset)
-         call continue_to(analysis%following_t, near, step)
+         call continue_to(analysis%continuation_t, near, step)
          if (step%ending >= step_there .and. &
             .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
-            call accept_substep(analysis%following_t, near)
+            call accept_substep(analysis%continuation_t, near)
       end if
-      call follow(analysis%following_t, t, step, list)
+      call follow(analysis%continuation_t, t, step, list)
    end subroutine begin
 
    !> Follows the motion from a singular position. Back in time it is as it was, unless a BRANCH card asks for another.
@@ -205,7 +205,7 @@ contains
       type(diagnostic_t), allocatable :: returns(:)
 
       if ((analysis%t - analysis%last)*(t - analysis%last) < 0.0_wp) then
-         call leave(analysis%following_t, analysis%last, t, pack(analysis%blocks%moving, &
+         call leave(analysis%continuation_t, analysis%last, t, pack(analysis%blocks%moving, &
             analysis%singular(analysis%blocks%moving)), returns)
          step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
          if (size(step%dead_end) > 0) then
@@ -213,7 +213,7 @@ contains
             return
          end if
       end if
-      call follow(analysis%following_t, t, step, list)
+      call follow(analysis%continuation_t, t, step, list)
       if (allocated(returns) .and. step%ending >= step_there .and. .not. (allocated(list) .or. passed_of(step) > 0 &
          .or. analysis%convergence%singular)) call move_alloc(returns, list)
    end subroutine leave_position
@@ -225,8 +225,8 @@ contains
       real(wp), intent(in) :: t                            !< time until which no drive moves
       type(step_record_t), intent(inout) :: step
 
-      if (analysis%is_left) call restore(analysis%following_t, analysis%left)
-      call solve_regular_blocks(analysis%following_t, t)
+      if (analysis%is_left) call restore(analysis%continuation_t, analysis%left)
+      call solve_regular_blocks(analysis%continuation_t, t)
       step%ending = step_rests
    end subroutine rest
 
@@ -243,7 +243,7 @@ contains
       is_found = .false.
       if (.not. analysis%follows .or. limit_before(analysis%limits, t) > 0) return
       if (.not. analysis%is_left) then
-         call record_checkpoint(analysis%following_t, analysis%left)
+         call record_checkpoint(analysis%continuation_t, analysis%left)
          analysis%left_iterations = analysis%iterations
          analysis%is_left = .true.
       end if
@@ -255,9 +255,9 @@ contains
          is_found = found%known == 2 .and. is_solved(analysis%convergence)
       end if
       if (.not. is_found) then
-         call revert(analysis%following_t, step)
+         call revert(analysis%continuation_t, step)
       else if (step%tries > 1) then
-         call accept_substep(analysis%following_t, t)
+         call accept_substep(analysis%continuation_t, t)
       end if
    end subroutine evaluate_at
 
@@ -266,7 +266,7 @@ contains
       type(analysis_t), intent(inout) :: analysis
 
       if (.not. analysis%is_left) return
-      call restore(analysis%following_t, analysis%left)
+      call restore(analysis%continuation_t, analysis%left)
       analysis%iterations = analysis%left_iterations
       analysis%is_left = .false.
    end subroutine restore_instant
@@ -283,7 +283,7 @@ contains
       was = min(analysis%phase, on_motion)
       had_missed = analysis%has_missed
       if (analysis%convergence%singular .and. step%ending == step_there) then
-         call go_by_value(analysis%following_t, found%t, step, list)
+         call go_by_value(analysis%continuation_t, found%t, step, list)
          if (analysis%convergence%singular .and. analysis%follows .and. .not. allocated(list)) then
             list = change_diagnostics(analysis%blocks, analysis%geometry, analysis%state, found%t)
             if (size(list) > 0) step%ending = step_stands
@@ -291,7 +291,7 @@ contains
       end if
 
       call accept_motion(analysis, found)
-      if (step%ending == step_stands .and. found%mark == flag_singular) found%singularity = singular_change
+      if (step%ending == step_stands .and. found%flag == flag_singular) found%singularity = singular_change
       analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       crosses = passed_of(step) > 0
       if (crosses) call add_diagnostics(step%passed, found)
@@ -316,9 +316,9 @@ contains
       if (allocated(analysis%dense)) goes_on = .not. any(analysis%state%is_singular(analysis%blocks%needed))
       if (allocated(analysis%singular)) deallocate (analysis%singular)
       if (goes_on) then
-         call accept_substep(analysis%following_t, found%t)
+         call accept_substep(analysis%continuation_t, found%t)
       else
-         call revert(analysis%following_t, step)
+         call revert(analysis%continuation_t, step)
          if (any(analysis%state%is_singular(analysis%blocks%needed))) analysis%singular = analysis%state%is_singular
       end if
       if (analysis%follows) then
@@ -383,7 +383,7 @@ contains
          ! A drive is one of these equations: not even links that only drives move have a position.
          call cut(found, -1, flag_inconsistent)
          ! Measured at the instant itself, not at the end of the last substep.
-         if (step%tries > 1) call measure_closure_error(analysis%following_t, t)
+         if (step%tries > 1) call measure_closure_error(analysis%continuation_t, t)
          analysis%max_closure_error = max(analysis%max_closure_error, analysis%convergence%open%value)
       else
          call cut(found, -1, flag_not_converged)
@@ -410,7 +410,7 @@ contains
             analysis%convergence%open%pair > 0) &
             list = [diagnostic_t(kind=diagnostic_stroke, pair=analysis%convergence%open%pair)]
          if (analysis%follows .and. size(analysis%geometry%cylinders) > 0) &
-            call find_length_limit(analysis%following_t, t, list)
+            call find_length_limit(analysis%continuation_t, t, list)
          if (size(list) == 0 .and. analysis%follows .and. step%ending == step_blocked) &
             list = [diagnostic_t(kind=diagnostic_close, t=analysis%t)]
       end if
@@ -424,7 +424,7 @@ contains
       if (analysis%follows .and. .not. inconsistent .and. abs(t - analysis%place%t) > 0.0_wp) &
          analysis%limits(merge(2, 1, t > analysis%place%t)) = limit_t(.true., &
          merge(analysis%t + near_limit_part*(t - analysis%place%t), t, step%ending == step_blocked), list)
-      call revert(analysis%following_t, step)
+      call revert(analysis%continuation_t, step)
       if (analysis%follows) analysis%phase = lost
       if (allocated(analysis%singular)) deallocate (analysis%singular)
    end subroutine stop_at
@@ -438,7 +438,7 @@ contains
 
       call cut(found, -1, flag_not_converged)
       call get_driven_links(analysis%blocks, analysis%geometry, analysis%path, t, analysis%work, analysis%state, found)
-      analysis%convergence = convergence_t(ended=ended_unsought)
+      analysis%convergence = solve_report_t(ended=ended_unsought)
       analysis%branch = branch_t()
       side = limit_before(analysis%limits, t)
       associate (told => analysis%limits(side)%diagnostics)
@@ -482,7 +482,7 @@ contains
          if (analysis%convergence%singular) call cut(found, 0, flag_singular)
          if (analysis%convergence%rates_open) call cut(found, 0, flag_inconsistent)
          ! If rates contradict one another, no link has any.
-         if (found%mark == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
+         if (found%flag == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
             allocated(analysis%dense), found)
       end if
       if (finite) return
@@ -495,28 +495,28 @@ contains
          if (last >= known_of(found, link)) cycle
          if (.not. allocated(found%link_known)) then
             allocate (found%link_known(size(found%position, 2)), source=found%known)
-            allocate (found%link_mark(size(found%position, 2)), source=found%mark)
+            allocate (found%link_flag(size(found%position, 2)), source=found%flag)
          end if
          found%link_known(link) = last
-         found%link_mark(link) = flag_overflow
-         if (last < found%known) found%mark = flag_overflow
+         found%link_flag(link) = flag_overflow
+         if (last < found%known) found%flag = flag_overflow
          found%known = min(found%known, last)
       end do
    end subroutine accept_motion
 
    !> Keeps only the first derivatives of all links.
-   pure subroutine cut(found, known, mark)
+   pure subroutine cut(found, known, flag)
       type(motion_t), intent(inout) :: found
       integer, intent(in) :: known                         !< the last derivative that is known; -1: no position
-      integer, intent(in) :: mark                          !< the reason: flag_singular, ...
+      integer, intent(in) :: flag                          !< the reason: flag_singular, ...
 
       call forget_links(found)
-      if (found%mark /= flag_none) then
+      if (found%flag /= flag_none) then
          found%singularity = singular_unclear
          found%singular_links = diagnostic_t()
       end if
       found%known = known
-      found%mark = mark
+      found%flag = flag
    end subroutine cut
 
    !> Gives the largest closure error of redundant equations so far, in characteristic lengths or rad; -1: there are
@@ -540,7 +540,7 @@ contains
 
    !> Moves the structure, and all that has been allocated for it, from one mechanism to another.
    subroutine move_memory(old, new)
-      type(following_t), intent(inout) :: old, new
+      type(continuation_t), intent(inout) :: old, new
 
       call move_alloc(old%blocks, new%blocks)
       call move_alloc(old%geometry, new%geometry)

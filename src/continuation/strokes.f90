@@ -9,7 +9,7 @@ module strokes
    use drawn_lengths, only: rounded => same_place_tolerance
    use cylinders, only: cylinder_t, cylinder_length, is_out_of_stroke
    use block_diagnostics, only: near_limit_part
-   use following, only: following_t, lengths_followed
+   use continuation, only: continuation_t, lengths_followed
    implicit none
    private
    public :: find_length_limit, flag_strokes
@@ -17,18 +17,18 @@ module strokes
 contains
 
    !> Puts the limit at which the length of a cylinder comes to its bound into the list, if the motion is that near.
-   subroutine find_length_limit(following, t, list)
-      type(following_t), intent(in) :: following
+   subroutine find_length_limit(continuation, t, list)
+      type(continuation_t), intent(in) :: continuation
       real(wp), intent(in) :: t                            !< time to which it goes
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(diagnostic_t) :: limit
-      real(wp) :: lengths(0:2, size(following%geometry%cylinders)), f(3), way, left, nearest
+      real(wp) :: lengths(0:2, size(continuation%geometry%cylinders)), f(3), way, left, nearest
       integer :: d, k, side
 
-      lengths = lengths_followed(following)
-      nearest = near_limit_part*abs(t - following%place%t)
-      do k = 1, size(following%geometry%cylinders)
-         associate (bounds => following%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
+      lengths = lengths_followed(continuation)
+      nearest = near_limit_part*abs(t - continuation%place%t)
+      do k = 1, size(continuation%geometry%cylinders)
+         associate (bounds => continuation%geometry%cylinders(k)%bounds, length => lengths(0, k), rate => lengths(1, k))
             if (abs(rate) <= rounded*maxval(abs(lengths(1, :)))) cycle   ! another drive holds it
             do side = 1, 2
                if (bounds(side) >= huge(1.0_wp)) cycle
@@ -36,23 +36,23 @@ contains
                if (merge(length <= bounds(1), length >= bounds(2), side == 1)) way = 0.0_wp   ! as it begins
                if (abs(way) > nearest*abs(rate)) cycle
                left = way/rate
-               if (left*sign(1.0_wp, t - following%t) < 0.0_wp) cycle
+               if (left*sign(1.0_wp, t - continuation%t) < 0.0_wp) cycle
                nearest = abs(left)
-               limit = diagnostic_t(kind=diagnostic_limit, pair=following%geometry%cylinders(k)%pair, &
-                  t=following%t + left, value=bounds(side), other=bounds(side) > 0.0_wp)
+               limit = diagnostic_t(kind=diagnostic_limit, pair=continuation%geometry%cylinders(k)%pair, &
+                  t=continuation%t + left, value=bounds(side), other=bounds(side) > 0.0_wp)
             end do
          end associate
       end do
       if (limit%pair == 0) return
-      do d = 1, size(following%path%laws)
-         f = drive_at(following%path, d, limit%t)
+      do d = 1, size(continuation%path%laws)
+         f = drive_at(continuation%path, d, limit%t)
          if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
          limit%drive = d
          if (abs(f(2)) > 0.0_wp) exit
       end do
-      associate (law => following%path%laws(limit%drive))
+      associate (law => continuation%path%laws(limit%drive))
          limit%is_angle = .not. is_length(law)
-         f = drive_at(following%path, limit%drive, limit%t)
+         f = drive_at(continuation%path, limit%drive, limit%t)
          if (law%kind /= drive_slide .or. law%subject /= limit%pair) limit%value = f(1)
       end associate
       list = [limit]
@@ -64,12 +64,12 @@ contains
       type(motion_t), intent(inout) :: found
       integer :: k
 
-      if (found%known < 2 .or. found%mark /= flag_none) return
+      if (found%known < 2 .or. found%flag /= flag_none) return
       do k = 1, size(cylinders)
          associate (one => cylinders(k), length => cylinder_length(cylinders(k), found%position(:, cylinders(k)%i), &
             found%position(:, cylinders(k)%j)))
             if (.not. is_out_of_stroke(one%stroke, length)) cycle
-            found%mark = flag_stroke
+            found%flag = flag_stroke
             call add_diagnostics([diagnostic_t(kind=diagnostic_stroke, pair=one%pair, value=length)], found)
          end associate
       end do

@@ -10,8 +10,8 @@ module dense_method
    use mechanism, only: mechanism_t, method_matrix, own_predictor
    use motion, only: motion_t, new_motion
    use linear_solver, only: factors_t, new_factors, solve_factored => solve
-   use block_matrix, only: shape_t, pivot_range
-   use convergence, only: convergence_t, is_solved, ended_elsewhere
+   use block_matrix, only: matrix_layout_t, pivot_range
+   use convergence, only: solve_report_t, is_solved, ended_elsewhere
    use drive_path, only: drive_path_t
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
@@ -75,8 +75,8 @@ contains
       type(motion_t), intent(inout) :: found      !< at the time found%t, in the deck's units
       !> How the last try ended; the first one if all failed. Iterations are those of all tries. If it is singular, only
       !> links that only drives move have velocities.
-      type(convergence_t), intent(out) :: convergence
-      type(convergence_t) :: first
+      type(solve_report_t), intent(out) :: convergence
+      type(solve_report_t) :: first
       real(wp), dimension(3, size(found%position, 2)) :: there, start
       type(motion_t) :: before
       type(state_t) :: latest
@@ -107,7 +107,7 @@ contains
          call solve_position(dense%system, dense%drive_values(1, :), dense%tolerance, dense%method == method_matrix, &
             dense%configuration, dense%factors, convergence)
          if (is_solved(convergence) .and. .not. convergence%singular) then
-            call pivot_range(shape_t(dense%system%n, dense%system%n), dense%factors%a, dense%factors%pivots, &
+            call pivot_range(matrix_layout_t(dense%system%n, dense%system%n), dense%factors%a, dense%factors%pivots, &
                least, largest, convergence%determinant)
             convergence%min_pivot = least/max(largest, least)
          end if

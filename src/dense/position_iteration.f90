@@ -16,7 +16,7 @@
 module position_iteration
    use kinds, only: wp
    use linear_solver, only: factors_t, factor, solve
-   use convergence, only: convergence_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged, &
+   use convergence, only: solve_report_t, is_solved, ended_converged, ended_stalled, ended_singular, ended_diverged, &
       rounding_level
    use block_solver, only: angle_limit
    use predictor, only: largest_predicted_change
@@ -52,7 +52,7 @@ contains
       logical, intent(in) :: is_matrix       !< by the iteration of 1987
       type(configuration_t), intent(inout) :: configuration   !< the initial guess, then the last iterate
       type(factors_t), intent(inout) :: factors   !< with room for n equations
-      type(convergence_t), intent(out) :: convergence   !< how the iteration ended
+      type(solve_report_t), intent(out) :: convergence   !< how the iteration ended
       real(wp) :: r(system%n), start(size(configuration%q, 2)), before, highest
       logical :: stays
       integer :: info

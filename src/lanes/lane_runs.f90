@@ -40,7 +40,7 @@ module lane_runs
       type(set_analysis_t) :: s
       integer :: at = -1                    !< the number of the last instant solved
       integer :: last = -1                  !< the number of the last instant of the set
-      integer :: patience = first_patience  !< instants that the ordinary analysis solves, before a lane is tried again
+      integer :: retry_after = first_patience  !< instants of the ordinary analysis before a lane is tried again
       logical :: in_simd_lane = .false.     !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
@@ -54,7 +54,7 @@ contains
       call new_answers(run%s, .false., run%asked)
       run%at = -1
       run%last = instant_count(run%m) - 1
-      run%patience = first_patience
+      run%retry_after = first_patience
       run%is_over = .false.
       run%in_simd_lane = .false.
       run%counts = counts_t()
@@ -143,7 +143,7 @@ contains
       logical :: is_refused, counts
 
       is_refused = check%refused(i) > 0.5_wp
-      if (is_refused) run%patience = 2*run%patience
+      if (is_refused) run%retry_after = 2*run%retry_after
       counts = .not. is_refused
       if (run%asked%wants_extremes) then
          counts = counts .and. check%correction(i) <= fine_prediction .and. run%at + 1 < run%m%steps
@@ -158,7 +158,7 @@ contains
 
       call give_back(run, lanes, i)
       run%in_simd_lane = .false.
-      call advance_run(run, run%at + merge(run%patience, 1, is_refused))
+      call advance_run(run, run%at + merge(run%retry_after, 1, is_refused))
       call keep_lane(lanes, i)
       t = lanes%t(i, lanes%slot(0))
    end subroutine look_at_step
@@ -184,8 +184,8 @@ contains
       do while (.not. (run%is_over .or. run%in_simd_lane) .and. signal_received() == 0)
          call load_run(run, lanes, i, run%in_simd_lane)
          if (run%in_simd_lane) return
-         if (run%at >= 2) run%patience = 2*run%patience
-         call advance_run(run, run%at + run%patience)
+         if (run%at >= 2) run%retry_after = 2*run%retry_after
+         call advance_run(run, run%at + run%retry_after)
       end do
    end subroutine hand_to_lane
 
@@ -200,7 +200,7 @@ contains
 
       is_done = .false.
       if (run%at < 2 .or. run%at >= run%m%steps .or. size(run%s%list) > 1 .or. run%m%method /= method_newton) return
-      if (run%s%now%motions(1)%known < 2 .or. run%s%now%motions(1)%mark /= flag_none) return
+      if (run%s%now%motions(1)%known < 2 .or. run%s%now%motions(1)%flag /= flag_none) return
       step = instant(run%m, run%at + 1) - instant(run%m, run%at)
       associate (a => run%s%list(1))
          call restore_instant(a)
@@ -208,10 +208,10 @@ contains
          call judge_step(a%drives, (1.0_wp + step_margin)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
-         if (.not. is_covered(a%following_t)) return
+         if (.not. is_covered(a%continuation_t)) return
          if (.not. has_equal_steps(a%history, step)) return
-         if (.not. allocated(lanes%moving)) call make_lanes(lanes, a%following_t)
-         call load_lane(lanes, i, a%following_t, is_done)
+         if (.not. allocated(lanes%moving)) call make_lanes(lanes, a%continuation_t)
+         call load_lane(lanes, i, a%continuation_t, is_done)
          lanes%excursion(i) = away
       end associate
    end subroutine load_run
@@ -270,7 +270,7 @@ contains
 
       associate (a => run%s%list(1))
          call restore_instant(a)
-         call unload_lane(lanes, i, a%following_t)
+         call unload_lane(lanes, i, a%continuation_t)
          run%s%is_in_lane = .false.
          a%t = a%history%t(0)
       end associate

@@ -8,7 +8,7 @@ module lane_state
    use mechanism, only: own_predictor
    use drive_path, only: drive_path_t
    use blocks, only: blocks_t
-   use following, only: following_t
+   use continuation, only: continuation_t
    use lane_sines, only: lane_count
    use lane_elimination, only: max_order
    implicit none
@@ -58,31 +58,31 @@ contains
 
    !> Tells whether the lanes can take over from a mechanism. Its blocks have at most `max_order` unknowns, as many as
    !> equations, and it follows three motions at equal steps.
-   pure logical function is_covered(following)
-      type(following_t), intent(in) :: following
+   pure logical function is_covered(continuation)
+      type(continuation_t), intent(in) :: continuation
       integer :: k
 
-      is_covered = digits(1.0_wp) == 53 .and. following%blocks%redundant == 0 &
-         .and. size(following%history%predicted) > 0
+      is_covered = digits(1.0_wp) == 53 .and. continuation%blocks%redundant == 0 &
+         .and. size(continuation%history%predicted) > 0
       if (.not. is_covered) return
-      is_covered = following%history%filled == 3 .and. following%history%order == own_predictor &
-         .and. .not. following%geometry%tolerance > 0.0_wp
-      do k = 1, size(following%blocks%moving)
-         associate (shape => following%blocks%list(following%blocks%moving(k))%shape)
+      is_covered = continuation%history%filled == 3 .and. continuation%history%order == own_predictor &
+         .and. .not. continuation%geometry%tolerance > 0.0_wp
+      do k = 1, size(continuation%blocks%moving)
+         associate (shape => continuation%blocks%list(continuation%blocks%moving(k))%shape)
             is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
          end associate
       end do
    end function is_covered
 
    !> Makes lanes for mechanisms of one structure.
-   subroutine make_lanes(lanes, following)
+   subroutine make_lanes(lanes, continuation)
       type(lanes_t), intent(out) :: lanes
-      type(following_t), intent(in) :: following   !< one of the mechanisms
+      type(continuation_t), intent(in) :: continuation   !< one of the mechanisms
 
-      lanes%blocks = following%blocks
-      lanes%moving = following%blocks%moving
-      lanes%predicted = following%history%predicted
-      associate (b => lanes%blocks, drives => size(following%path%laws))
+      lanes%blocks = continuation%blocks
+      lanes%moving = continuation%blocks%moving
+      lanes%predicted = continuation%history%predicted
+      associate (b => lanes%blocks, drives => size(continuation%path%laws))
          allocate (lanes%polynomial(lane_count, 3, drives), lanes%unit(lane_count, drives))
          allocate (lanes%drive(lane_count, 0:2, 0:drives), source=0.0_wp)
          allocate (lanes%block(size(b%list)))
@@ -100,30 +100,30 @@ contains
 
    !> Fills a lane with the mechanism and the motions of a variant. What follows from the time step is the caller's. If
    !> the variant's numbers put other body vectors or slides into the equations, the lane stays as it was.
-   subroutine load_lane(lanes, lane, following, is_alike)
+   subroutine load_lane(lanes, lane, continuation, is_alike)
       type(lanes_t), intent(inout) :: lanes
       integer, intent(in) :: lane            !< the number of the lane
-      type(following_t), intent(in) :: following   !< a variant of the mechanism for which the lanes were made
+      type(continuation_t), intent(in) :: continuation   !< a variant of the mechanism for which the lanes were made
       logical, intent(out) :: is_alike       !< the equations have the lanes' body vectors and slides
       integer :: i, k
 
-      associate (a => lanes%blocks%equations, b => following%blocks%equations)
+      associate (a => lanes%blocks%equations, b => continuation%blocks%equations)
          ! Equations that cannot be solved have no vectors.
          is_alike = a%count == b%count
          if (is_alike) is_alike = all(a%has_vector .eqv. b%has_vector) .and. all(a%counts .eqv. b%counts)
       end associate
       if (.not. is_alike) return
 
-      lanes%path(lane) = following%path
+      lanes%path(lane) = continuation%path
       lanes%is_polynomial = .true.
-      do i = 1, size(following%path%laws)
-         associate (law => following%path%laws(i))
+      do i = 1, size(continuation%path%laws)
+         associate (law => continuation%path%laws(i))
             lanes%polynomial(lane, :, i) = law%polynomial
             if (allocated(law%terms)) lanes%is_polynomial = lanes%is_polynomial .and. size(law%terms) == 0
          end associate
-         lanes%unit(lane, i) = following%path%unit(i)
+         lanes%unit(lane, i) = continuation%path%unit(i)
       end do
-      associate (x => following%geometry, u => following%state%u)
+      associate (x => continuation%geometry, u => continuation%state%u)
          lanes%block%lipschitz(lane) = x%blocks%lipschitz
          lanes%block%coarse(lane) = max(1.0_wp, x%blocks%coarse)
          lanes%block%has_right_sides = lanes%block%has_right_sides .or. x%blocks%has_right_sides
@@ -147,42 +147,42 @@ contains
       ! Of motions before the latest there are no values.
       do k = 0, 2
          associate (slot => lanes%slot(k))
-            lanes%t(lane, slot) = following%history%t(k)
+            lanes%t(lane, slot) = continuation%history%t(k)
             do i = 1, size(lanes%predicted)
-               associate (past => following%history%past(lanes%predicted(i)))
+               associate (past => continuation%history%past(lanes%predicted(i)))
                   lanes%past(lane, :, slot, lanes%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
                end associate
             end do
          end associate
       end do
-      lanes%block%sign_of(lane) = following%history%jacobian%sign_of
-      lanes%block%pivot(lane, lanes%slot(0)) = following%history%jacobian%pivot
-      lanes%block%inverse(lane, lanes%slot(0)) = following%history%jacobian%inverse
+      lanes%block%sign_of(lane) = continuation%history%jacobian%sign_of
+      lanes%block%pivot(lane, lanes%slot(0)) = continuation%history%jacobian%pivot
+      lanes%block%inverse(lane, lanes%slot(0)) = continuation%history%jacobian%inverse
    end subroutine load_lane
 
    !> Gives a mechanism the last three motions of a lane, as the ones that it follows.
-   subroutine unload_lane(lanes, lane, following)
+   subroutine unload_lane(lanes, lane, continuation)
       type(lanes_t), intent(in) :: lanes
       integer, intent(in) :: lane            !< the number of the lane
-      type(following_t), intent(inout) :: following
+      type(continuation_t), intent(inout) :: continuation
       integer :: k, i, u
 
       do k = 0, 2
          associate (slot => lanes%slot(k))
-            following%history%t(k) = lanes%t(lane, slot)
+            continuation%history%t(k) = lanes%t(lane, slot)
             do i = 1, size(lanes%predicted)
                u = lanes%predicted(i)
-               if (k == 0) following%history%past(u)%value = lanes%past(lane, 1, slot, u)
-               following%history%past(u)%rate(k) = lanes%past(lane, 2, slot, u)
-               following%history%past(u)%acceleration(k) = lanes%past(lane, 3, slot, u)
+               if (k == 0) continuation%history%past(u)%value = lanes%past(lane, 1, slot, u)
+               continuation%history%past(u)%rate(k) = lanes%past(lane, 2, slot, u)
+               continuation%history%past(u)%acceleration(k) = lanes%past(lane, 3, slot, u)
             end do
          end associate
       end do
-      following%history%filled = 3
+      continuation%history%filled = 3
       associate (slot => lanes%slot(0))
-         following%history%jacobian%sign_of = nint(lanes%block%sign_of(lane))
-         following%history%jacobian%pivot = lanes%block%pivot(lane, slot)
-         following%history%jacobian%inverse = lanes%block%inverse(lane, slot)
+         continuation%history%jacobian%sign_of = nint(lanes%block%sign_of(lane))
+         continuation%history%jacobian%pivot = lanes%block%pivot(lane, slot)
+         continuation%history%jacobian%inverse = lanes%block%inverse(lane, slot)
       end associate
    end subroutine unload_lane
 end module lane_state

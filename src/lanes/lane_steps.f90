@@ -1,4 +1,4 @@
-!> One instant in all lanes: predicted, solved and certified as `block_solver` and `following` do it. These look more
+!> One instant in all lanes: predicted, solved and certified as `block_solver` and `continuation` do it. These look more
 !> closely at some steps: a long substep, small pivots, a determinant of another sign, a Kantorovich ratio above the
 !> largest, more than a few iterations, numbers out of range. Lanes do not: such a lane is refused, and the analysis
 !> from which it came solves the instant. No lane depends on another.
@@ -7,7 +7,7 @@ module lane_steps
    use predictor, only: largest_predicted_change, rate_weight, acceleration_weight
    use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
-   use following, only: largest_correction
+   use continuation, only: largest_correction
    use drive_path, only: drive_at
    use lane_sines, only: lane_count, max_angle
    use lane_elimination, only: max_order, make_room, correct, substitute, judge_factors
@@ -133,7 +133,7 @@ contains
             call turn(u <= lanes%blocks%orientations, d(1, k), v(1, k), start(1, k), lanes%u(u), change)
          end associate
       end do
-      call judge(n, a, exchanged, change, lanes%slot(0), lanes%slot(depth - 1), lanes%block(i), check)
+      call certify_lanes(n, a, exchanged, change, lanes%slot(0), lanes%slot(depth - 1), lanes%block(i), check)
       call lane_accelerations(lanes, i, n, v)
       call substitute(a, exchanged, v)
       do k = 1, n
@@ -202,7 +202,7 @@ contains
 
    !> Refuses a lane if a pivot is too small compared with the largest, or if the determinant has another sign than
    !> before: as `block_solver` and the continuation refuse an instant. Adds the block to what is certified of the step.
-   pure subroutine judge(n, a, exchanged, change, before, next, block, check)
+   pure subroutine certify_lanes(n, a, exchanged, change, before, next, block, check)
       integer, intent(in) :: n                          !< unknowns of the block
       integer, intent(in) :: before                     !< the slot of the latest motion
       integer, intent(in) :: next                       !< the slot of the motion that is judged
@@ -225,7 +225,7 @@ contains
          check%amplification(l) = max(check%amplification(l), &
             block%lipschitz(l)*max(block%inverse(l, next), block%inverse(l, before))**2)
       end do
-   end subroutine judge
+   end subroutine certify_lanes
 
    !> Makes the motions found last the latest of their lanes.
    subroutine accept_lanes(lanes, t)

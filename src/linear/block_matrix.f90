@@ -8,14 +8,15 @@ module block_matrix
    use klu, only: pattern_t, sparse_factors_t, klu_serves, factor, solve, determinant_sign, release
    implicit none
    private
-   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
+   public :: matrix_layout_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, &
+      work_length
    public :: spread_by_inverse, nearby_t, stay_near, solve_nearby, sparse_factors_t, release
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
-   type :: shape_t
+   type :: matrix_layout_t
       integer :: rows = 0, n = 0, pattern = 0, entries = 0
-   end type shape_t
+   end type matrix_layout_t
 
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
@@ -48,7 +49,7 @@ contains
 
    !> Counts the numbers that the matrix takes.
    elemental integer function entries_of(shape)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
 
       entries_of = shape%entries
       if (shape%pattern == 0) entries_of = shape%rows*shape%n
@@ -56,7 +57,7 @@ contains
 
    !> Counts the numbers that the workspace of `solve_first` takes.
    elemental integer function work_length(shape)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
 
       work_length = merge(4*shape%n, shape%n*(panel + 4) + shape%rows, shape%rows == shape%n)
    end function work_length
@@ -64,7 +65,7 @@ contains
    !> Factors a matrix and solves its equations, in the sense of least squares if rows are more than unknowns. A sparse
    !> matrix has its factors in `sparse` until `release`.
    subroutine solve_first(shape, a, pivots, work, right, info, patterns, sparse)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(inout) :: a(*)        !< (entries_of) the matrix; a dense one becomes its factors
       real(wp), intent(inout) :: work(*)     !< (work_length) kept for the calls that follow
       real(wp), intent(inout) :: right(*)    !< (rows) the right-hand side; its first n become the solution
@@ -97,7 +98,7 @@ contains
 
    !> Solves the equations for another right-hand side, from the factors.
    subroutine solve_again(shape, a, pivots, work, right, sparse)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
@@ -129,7 +130,7 @@ contains
    !> Finds the smallest and the largest pivot from the factors, and the sign of the determinant. KLU may have chosen
    !> other pivots than LAPACK: of a sparse matrix, 0 and the largest entry are in their place.
    subroutine pivot_range(shape, a, pivots, least, largest, sign_of, sparse)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix; of a sparse one, its entries
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(out) :: least         !< the size of the smallest pivot
@@ -161,7 +162,7 @@ contains
    !> Gives |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DLACN2). If it is
    !> no finite number, the result is huge(norm).
    real(wp) function inverse_norm(shape, a, pivots, work, iwork, sparse) result(norm)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(inout) :: work(*)     !< (work_length) what the next `solve_again` needs stays
@@ -201,7 +202,7 @@ contains
 
    !> Finds |A^-1| times a vector, from the factors, column by column: how far errors of the right-hand side go.
    subroutine spread_by_inverse(shape, a, pivots, work, bounds, spread, sparse)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
       real(wp), intent(in) :: a(*)           !< (entries_of) the factors of a dense matrix
       integer, intent(in) :: pivots(*)       !< (n) as `solve_first` left them
       real(wp), intent(inout) :: work(*)     !< (work_length) as `solve_first` left it
@@ -222,7 +223,7 @@ contains
 
    !> Prepares the solution of a matrix near one that is factored. If the two differ too much, it is factored itself.
    pure subroutine stay_near(shape, a, pivots, change, near)
-      type(shape_t), intent(in) :: shape     !< with two rows and two unknowns; otherwise nothing is done
+      type(matrix_layout_t), intent(in) :: shape     !< with two rows and two unknowns; otherwise nothing is done
       real(wp), intent(in) :: a(*)           !< (4) the factors, by columns
       real(wp), intent(in) :: change         !< bound of its change in the maximum norm, added to earlier ones
       integer, intent(in) :: pivots(*)       !< (2) as `solve_first` left them

@@ -84,7 +84,7 @@ module motion
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
-      integer :: mark = flag_none                        !< why it is flagged
+      integer :: flag = flag_none                        !< why it is flagged
       integer :: singularity = singular_unclear          !< of flag_singular: one of singular_...
       type(diagnostic_t) :: singular_links               !< and its links, where they are known
       integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
@@ -95,7 +95,7 @@ module motion
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)
       !> (links) `known` and `mark` of each link, if they differ: those of the whole are then the worst. Not allocated:
       !> all links as the whole.
-      integer, allocatable :: link_known(:), link_mark(:)
+      integer, allocatable :: link_known(:), link_flag(:)
       !> (measures) From these values those that continue go on; not allocated: none does, or no instant is taken yet.
       type(turned_t), allocatable :: turned(:)
       !> (drives) Those by which ratios are asked for are allocated. Not allocated: none is known.
@@ -126,7 +126,7 @@ contains
       type(motion_t), intent(inout) :: q
 
       if (allocated(q%link_known)) deallocate (q%link_known)
-      if (allocated(q%link_mark)) deallocate (q%link_mark)
+      if (allocated(q%link_flag)) deallocate (q%link_flag)
    end subroutine forget_links
 
    !> Makes a diagnostic about links. Links for which it has no room are only counted.

@@ -27,7 +27,7 @@ module points
       character(4*label_length + 6) :: name = ''
       integer :: form = 0                   !< which columns it has
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
-      integer :: mark = flag_none           !< why the rest does not
+      integer :: flag = flag_none           !< why the rest does not
    end type row_t
 
    !> Two points that are closer, in characteristic lengths, coincide: roundings of their places may be all that is
@@ -82,11 +82,11 @@ contains
       row%kind = request%kind
       row%form = form_of(m, request)
       ! Mostly all is known of all links. Without an allocation, but for measures.
-      if (q%known < 2 .or. q%mark == flag_stroke .or. allocated(q%link_known)) then
+      if (q%known < 2 .or. q%flag == flag_stroke .or. allocated(q%link_known)) then
          if (request%kind == request_measure) then
-            call find_known(m, q, request_links(m, request), row%known, row%mark)
+            call find_known(m, q, request_links(m, request), row%known, row%flag)
          else
-            call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%mark)
+            call find_known(m, q, subject_links(m, request%kind, request%subject, request%second), row%known, row%flag)
          end if
       end if
 
@@ -153,11 +153,11 @@ contains
       row%form = form_of(m, request)
       row%name = trim(subject_name(m, request%kind, request%subject))//' BY '//drive_name(m, m%drives(request%drive))
       links = request_links(m, request)
-      call find_known(m, q, links, row%known, row%mark)
+      call find_known(m, q, links, row%known, row%flag)
       if (row%known < 0) return
 
       row%known = -1
-      row%mark = flag_singular
+      row%flag = flag_singular
       if (.not. allocated(q%by)) return
       associate (by => q%by(request%drive))
          if (.not. allocated(by%velocity)) return
@@ -168,7 +168,7 @@ contains
          unit%acceleration(:, links) = by%acceleration(:, links)
       end associate
       row%known = 2
-      row%mark = flag_none
+      row%flag = flag_none
       if (request%kind == request_pair) then
          s = motion_of_pair(m, unit, request%subject)
       else
@@ -187,20 +187,20 @@ contains
    end subroutine find_ratio
 
    !> Finds how much is known of a row: as much as of the link of which least is known.
-   pure subroutine find_known(m, q, links, known, mark)
+   pure subroutine find_known(m, q, links, known, flag)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: links(:)        !< their numbers
       integer, intent(inout) :: known        !< as in `motion_t`: what is known without them
-      integer, intent(inout) :: mark         !< why the rest is not
+      integer, intent(inout) :: flag         !< why the rest is not
       integer :: k
 
-      if (q%mark == flag_stroke) mark = q%mark
+      if (q%flag == flag_stroke) flag = q%flag
       do k = 1, size(links)
          if (m%links(links(k))%ground .or. known_of(q, links(k)) >= known) cycle
          known = known_of(q, links(k))
-         mark = q%mark
-         if (allocated(q%link_mark)) mark = q%link_mark(links(k))
+         flag = q%flag
+         if (allocated(q%link_flag)) flag = q%link_flag(links(k))
       end do
    end subroutine find_known
 

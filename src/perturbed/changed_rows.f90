@@ -13,7 +13,7 @@ module changed_rows
    use block_structure, only: structure_t, make_structure
    use drive_path, only: drive_path_t
    use block_motion, only: select_solved_blocks, assign_geometry, assign_path, get_ratios
-   use convergence, only: convergence_t, is_solved, ended_inconsistent
+   use convergence, only: solve_report_t, is_solved, ended_inconsistent
    use rounded_numbers, only: directions, own_directions
    use link_motion, only: move_links, flag_links, missing_nothing, missing_rates, missing_all
    implicit none
@@ -171,7 +171,7 @@ contains
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(base_position_t), intent(inout) :: place   !< place%q: the motion, at its time
-      type(convergence_t) :: c
+      type(solve_report_t) :: c
       integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite
 

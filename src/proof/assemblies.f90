@@ -10,7 +10,7 @@ module assemblies
    use motion, only: motion_t, new_motion
    use convergence, only: is_solved
    use block_state, only: set_drive_values
-   use following, only: following_t, begin_following, solve_at
+   use continuation, only: continuation_t, begin_continuation, solve_at
    use initial_assembly, only: places_of, squared_distances, is_nearer, same_place => same_assembly_tolerance
    use blocks, only: largest_known, own_unknowns
    use block_state, only: set_values
@@ -19,7 +19,7 @@ module assemblies
    use ball_numbers, only: new_ball_numbers
    use balls, only: ball_t
    use link_bounds, only: bound_links
-   use position_proof, only: placed_t, new_placed, prove_position
+   use position_proof, only: proved_position_t, new_placed, prove_position
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
@@ -66,12 +66,12 @@ contains
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
       real(wp), intent(in) :: t              !< time
       type(assemblies_t), intent(out) :: assemblies
-      type(following_t) :: f
+      type(continuation_t) :: f
       type(assembly_block_t) :: one
       integer :: i, k, places(2, size(m%links))
 
       allocate (assemblies%list(0), assemblies%blocks(0))
-      call begin_following(f, m)
+      call begin_continuation(f, m)
       if (.not. f%blocks%solvable) return
       call set_drive_values(f%path, t, f%state)
       places = places_of(f%blocks, f%geometry)
@@ -98,14 +98,14 @@ contains
       type(mechanism_t), intent(inout) :: m  !< one independent mechanism
       real(wp), intent(in) :: t              !< time
       type(assemblies_t), intent(out) :: assemblies
-      type(following_t) :: f
+      type(continuation_t) :: f
       type(motion_t) :: q
       real(wp) :: apart, nearest
       logical :: unused, is_found
       integer :: i
 
       call find_assemblies(m, t, assemblies)
-      call begin_following(f, m)
+      call begin_continuation(f, m)
       call solve_at(f, t)
       is_found = is_solved(f%convergence)
       if (is_found) then
@@ -152,19 +152,19 @@ contains
 
    !> Goes through all choices of a position for each block. `changed` has the number of the last choice that changed an
    !> unknown; `seen` has the number of the last choice before a block was solved.
-   subroutine search(m, following, assemblies)
+   subroutine search(m, continuation, assemblies)
       type(mechanism_t), intent(in) :: m
-      type(following_t), intent(inout) :: following
+      type(continuation_t), intent(inout) :: continuation
       type(assemblies_t), intent(inout) :: assemblies
-      type(block_positions_t) :: found(size(following%blocks%list))
+      type(block_positions_t) :: found(size(continuation%blocks%list))
       type(ball_numbers_t) :: p
-      type(placed_t) :: q
-      integer :: chosen(size(found)), seen(size(found)), changed(0:following%blocks%unknowns), choice, failed, i, k
+      type(proved_position_t) :: q
+      integer :: chosen(size(found)), seen(size(found)), changed(0:continuation%blocks%unknowns), choice, failed, i, k
       logical :: is_proved
 
-      p = new_ball_numbers(m, following%blocks, following%geometry)
-      q = new_placed(following%blocks, size(m%drives))
-      following%blocks%needed = [(k, k=1, size(found))]
+      p = new_ball_numbers(m, continuation%blocks, continuation%geometry)
+      q = new_placed(continuation%blocks, size(m%drives))
+      continuation%blocks%needed = [(k, k=1, size(found))]
       chosen = 0
       seen = -1
       changed = 0
@@ -175,16 +175,16 @@ contains
          if (i > size(found)) then
             assemblies%are_more = size(assemblies%list) == max_assemblies
             if (assemblies%are_more) exit
-            call prove_position(p, following%blocks, following%path, following%state, 0, q, failed)
+            call prove_position(p, continuation%blocks, continuation%path, continuation%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call record_assembly(m, following, found, chosen, is_proved, q, assemblies)
+            call record_assembly(m, continuation, found, chosen, is_proved, q, assemblies)
             i = i - 1
             cycle
          end if
 
-         if (chosen(i) == 0 .and. largest_known(following%blocks, i, changed) > seen(i)) then
-            call find_positions(following%blocks, following%geometry, i, following%work, following%state, max_group, &
-               following%guess%starts(i)%paths, found(i))
+         if (chosen(i) == 0 .and. largest_known(continuation%blocks, i, changed) > seen(i)) then
+            call find_positions(continuation%blocks, continuation%geometry, i, continuation%work, continuation%state, &
+               max_group, continuation%guess%starts(i)%paths, found(i))
             seen(i) = choice
          end if
          chosen(i) = chosen(i) + 1
@@ -193,9 +193,9 @@ contains
             i = i - 1
             cycle
          end if
-         call set_values(following%blocks, i, found(i)%x(:, chosen(i)), following%state)
+         call set_values(continuation%blocks, i, found(i)%x(:, chosen(i)), continuation%state)
          choice = choice + 1
-         changed(own_unknowns(following%blocks, i)) = choice
+         changed(own_unknowns(continuation%blocks, i)) = choice
          i = i + 1
       end do
       do k = 1, size(assemblies%blocks)
@@ -205,13 +205,13 @@ contains
 
    !> Puts an assembly among the others, the nearest first. If distances are equal they keep the order in which they
    !> were found. An assembly with a cylinder of negative length is only counted.
-   subroutine record_assembly(m, following, found, chosen, is_proved, proof, assemblies)
+   subroutine record_assembly(m, continuation, found, chosen, is_proved, proof, assemblies)
       type(mechanism_t), intent(in) :: m
-      type(following_t), intent(in) :: following   !< its state is the assembly
+      type(continuation_t), intent(in) :: continuation   !< its state is the assembly
       type(block_positions_t), intent(in) :: found(:)   !< (blocks)
       integer, intent(in) :: chosen(:)       !< (blocks) numbers of the positions of the assembly
       logical, intent(in) :: is_proved       !< the assembly is proved,
-      type(placed_t), intent(in) :: proof    !< and lies in these balls
+      type(proved_position_t), intent(in) :: proof    !< and lies in these balls
       type(assemblies_t), intent(inout) :: assemblies
       type(assembly_t) :: one
       type(motion_t) :: q
@@ -220,16 +220,17 @@ contains
       logical :: finite
       integer :: i, k
 
-      q = new_motion(size(following%guess%links, 2))
-      call move_links(following%geometry%chain, size(following%geometry%chain%links), following%state, q, finite)
+      q = new_motion(size(continuation%guess%links, 2))
+      call move_links(continuation%geometry%chain, size(continuation%geometry%chain%links), continuation%state, q, &
+         finite)
       one%is_proved = is_proved
       off = 0.0_wp
-      if (is_proved) call bound_links(m, following%geometry, proof%ball_state_t, q, links, off)
-      do i = 1, size(following%geometry%cylinders)
-         associate (c => following%geometry%cylinders(i))
+      if (is_proved) call bound_links(m, continuation%geometry, proof%ball_state_t, q, links, off)
+      do i = 1, size(continuation%geometry%cylinders)
+         associate (c => continuation%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))
             ! A length that may be 0 is kept, and nothing is proved of its sign.
-            zero = max(zero_length*following%geometry%span, &
+            zero = max(zero_length*continuation%geometry%span, &
                3.0_wp*off(1, 0) + off(2, 0)*(norm2(c%p) + norm2(c%q) + abs(length)))
             if (abs(length) <= zero) one%is_proved = .false.
             one%is_out = one%is_out .or. is_out_of_stroke(c%stroke, max(length, 0.0_wp))
@@ -239,7 +240,7 @@ contains
       end do
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
-      one%distance = sqrt(sum(squared_distances(one%position, following%guess%links, following%geometry%span)))
+      one%distance = sqrt(sum(squared_distances(one%position, continuation%guess%links, continuation%geometry%span)))
       k = count(.not. is_nearer(one%distance, assemblies%list%distance))
       assemblies%list = [assemblies%list(:k), one, assemblies%list(k + 1:)]
    end subroutine record_assembly

@@ -10,13 +10,13 @@ module motion_proof
    use motion, only: motion_t
    use drive_path, only: drive_path_t
    use blocks, only: blocks_t, geometry_t
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: solve_report_t, is_solved
    use block_state, only: state_t, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_blocks
    use balls, only: ball_t
    use ball_equations, only: ball_numbers_t, new_ball_state
    use ball_numbers, only: new_ball_numbers
-   use position_proof, only: placed_t, new_placed, prove_position, max_proved_unknowns
+   use position_proof, only: proved_position_t, new_placed, prove_position, max_proved_unknowns
    use tube_proof, only: tube_t, prove_tube
    use link_bounds, only: bound_links
    implicit none
@@ -40,7 +40,7 @@ module motion_proof
    type :: motion_prover_t
       logical :: has_begun = .false.              !< a position is proved
       type(ball_numbers_t) :: numbers
-      type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
+      type(proved_position_t) :: at(2)                     !< the last position that was proved, and the one at hand
       integer :: now = 1                          !< which of them is at hand
    end type motion_prover_t
 
@@ -122,7 +122,7 @@ contains
       type(geometry_t), intent(in) :: x
       type(drive_path_t), intent(in) :: path
       type(state_t), intent(in) :: s         !< at `to`
-      type(placed_t), intent(in) :: from, to   !< the proved positions
+      type(proved_position_t), intent(in) :: from, to   !< the proved positions
       type(step_proof_t), intent(out) :: proof
       type(tube_t) :: tube
       type(state_t), allocatable :: other               ! few steps need it
@@ -136,10 +136,10 @@ contains
 
       !> Proves a part of a step; if there is no tube about it, its two halves.
       recursive subroutine prove_part(from, to, shortest)
-         type(placed_t), intent(in) :: from, to   !< proved positions
+         type(proved_position_t), intent(in) :: from, to   !< proved positions
          real(wp), intent(in) :: shortest    !< time: a shorter part is not divided
-         type(placed_t), allocatable :: middle
-         type(convergence_t) :: c
+         type(proved_position_t), allocatable :: middle
+         type(solve_report_t) :: c
          integer :: failed
 
          proof%tries = proof%tries + 1

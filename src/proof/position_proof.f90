@@ -20,7 +20,7 @@ module position_proof
    use kinds, only: wp
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t, own_unknowns
-   use block_matrix, only: shape_t, entries_of, solve_first, solve_again, work_length
+   use block_matrix, only: matrix_layout_t, entries_of, solve_first, solve_again, work_length
    use block_state, only: state_t
    use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
@@ -29,7 +29,7 @@ module position_proof
    use ball_numbers, only: number_error
    implicit none
    private
-   public :: placed_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
+   public :: proved_position_t, block_work_t, new_placed, prove_position, contract, find_ball, subtract_product
 
    !> A block of more unknowns is not proved: its inverse takes n^3 products for each part of a step, and a step may
    !> have a thousand parts.
@@ -55,11 +55,11 @@ module position_proof
 
    !> A position that was found, and its proof, in the units of the blocks: the exact unknowns and drives lie in balls
    !> about the found ones.
-   type, extends(ball_state_t) :: placed_t
+   type, extends(ball_state_t) :: proved_position_t
       real(wp) :: t = 0.0_wp                      !< time
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at the midpoints of all unknowns
       real(wp) :: closure_error = 0.0_wp          !< bound, of redundant equations
-   end type placed_t
+   end type proved_position_t
 
 contains
 
@@ -67,7 +67,7 @@ contains
    pure function new_placed(b, drives) result(q)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: drives          !< number of drives
-      type(placed_t) :: q
+      type(proved_position_t) :: q
 
       q%ball_state_t = new_ball_state(b, drives)
       allocate (q%open(0:1, size(b%rows)), source=0.0_wp)
@@ -81,7 +81,7 @@ contains
       type(drive_path_t), intent(in) :: path
       type(state_t), intent(in) :: s
       integer, intent(in) :: order           !< 0: position; 2: velocities and accelerations as well
-      type(placed_t), intent(inout) :: placed   !< the proof
+      type(proved_position_t), intent(inout) :: placed   !< the proof
       integer, intent(out) :: failed         !< number of the block that is not proved; 0: all are proved
       type(bounds_t) :: law
       logical :: is_proved
@@ -115,7 +115,7 @@ contains
       integer, intent(in) :: i               !< number of the block
       integer, intent(in) :: order           !< 0: values; 2: derivatives as well
       type(state_t), intent(in) :: s
-      type(placed_t), intent(inout) :: placed   !< has earlier blocks, and now this one
+      type(proved_position_t), intent(inout) :: placed   !< has earlier blocks, and now this one
       logical, intent(out) :: is_proved      !< all that was wanted
       type(block_work_t) :: w
       type(unknown_t) :: exact
@@ -306,7 +306,7 @@ contains
       real(wp) :: x(max(n, rows)), enlarged
       integer :: pivots(n), k, i, info
 
-      associate (dense => shape_t(rows, n))
+      associate (dense => matrix_layout_t(rows, n))
          factors = jacobian
          allocate (work(work_length(dense)))
          do i = 1, rows

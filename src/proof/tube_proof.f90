@@ -21,7 +21,7 @@ module tube_proof
    use drive_path, only: drive_path_t
    use balls, only: ball_t, rounding, room
    use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, set_ball, set_radius, ball_accelerations
-   use position_proof, only: placed_t, block_work_t, contract, find_ball, subtract_product
+   use position_proof, only: proved_position_t, block_work_t, contract, find_ball, subtract_product
    use ball_numbers, only: number_error
    implicit none
    private
@@ -44,7 +44,7 @@ contains
       type(ball_numbers_t), intent(in) :: numbers
       type(blocks_t), intent(in) :: b
       type(drive_path_t), intent(in) :: path
-      type(placed_t), intent(in) :: from, to   !< proved positions
+      type(proved_position_t), intent(in) :: from, to   !< proved positions
       type(tube_t), intent(inout) :: tube
       logical :: unbounded(0:size(path%laws))
       type(ball_t) :: c(0:2)

@@ -119,7 +119,7 @@ contains
          associate (kind => kinds_of_rows(row%kind))
             do n = 0, kind%rows - 1
                place = 0
-               mark = marks(row%mark)
+               mark = marks(row%flag)
                is_unknown = .false.
                do j = forms(row%form)%first, forms(row%form)%last
                   associate (at => columns_of_rows(j)%at)

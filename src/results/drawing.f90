@@ -266,8 +266,8 @@ contains
          now%t = motions%motions(1)%t
          do c = motions%count, 1, -1
             associate (links => motions%cards(c)%of, q => motions%motions(c))
-               if (q%mark /= flag_none .and. is_own) then
-                  now%mark = q%mark
+               if (q%flag /= flag_none .and. is_own) then
+                  now%mark = q%flag
                   now%singularity = q%singularity
                end if
 

@@ -9,7 +9,7 @@ module listing
    use names, only: drive_length, listed, more
    use motion
    use structure, only: structure_report_t
-   use following, only: certificate_counts_t
+   use continuation, only: certificate_counts_t
    use independent, only: set_t
    use set_members, only: link_names, name_in, name_of_drive
    use set_motion, only: set_motion_t, is_flagged
@@ -27,7 +27,7 @@ module listing
    public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, write_waiting
    public :: words_of_flag, at_limit, full_turn_words, measure, value_digits, write_diagnostics, remark_text
 
-   !> The reason why a motion is not complete, by its mark.
+   !> The reason why a motion is not complete, by its flag.
    type(phrase_t), parameter :: flag_words(flag_none:flag_stroke) = &
       [phrase_t(), text_no_position, phrase_t(), text_overflow, text_contradiction, text_out_of_stroke]
    !> The reason for flag_singular, by the kind of the position.
@@ -131,7 +131,7 @@ contains
       limits = [(limit_before(motions%motions(c)), c=1, motions%count)]
       is_explained = .false.
       if (allocated(table%limits)) is_explained = limits < huge(1.0_wp) .and. .not. abs(limits - table%limits) > 0.0_wp
-      has_news = any([((motions%motions(c)%mark /= flag_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
+      has_news = any([((motions%motions(c)%flag /= flag_none .or. allocated(motions%motions(c)%diagnostics)) .and. &
          .not. is_explained(c), c=1, motions%count)])
       table%limits = limits
       begun = .false.
@@ -191,9 +191,9 @@ contains
          lines = ''
          do c = 1, motions%count
             associate (q => motions%motions(c))
-               if (q%mark == flag_none .or. is_explained(c)) cycle
-               line = words_of_flag(q%mark, q%singularity, motions%polish)
-               if (q%mark == flag_inconsistent) then
+               if (q%flag == flag_none .or. is_explained(c)) cycle
+               line = words_of_flag(q%flag, q%singularity, motions%polish)
+               if (q%flag == flag_inconsistent) then
                   k = 0
                   if (allocated(q%diagnostics)) k = findloc(q%diagnostics%kind, diagnostic_surplus, dim=1)
                   if (k > 0) call write_folded(o, ' *** ', words_of(motions, q%diagnostics(k)))
@@ -203,7 +203,7 @@ contains
                      line = line//': '//phrase(text_give_closing, motions%polish)
                else if (limits(c) < huge(1.0_wp)) then
                   line = phrase(text_beyond, motions%polish)//' '//time(motions, limits(c))
-               else if (q%mark == flag_singular .and. any(q%singular_links%links /= 0)) then
+               else if (q%flag == flag_singular .and. any(q%singular_links%links /= 0)) then
                   k = index(line, ':')
                   text = links(motions, q%singular_links)
                   if (q%singular_links%in_line) text = text//' '//phrase(text_in_line, motions%polish)
@@ -223,7 +223,7 @@ contains
       integer :: i
 
       time = huge(1.0_wp)
-      if (q%mark /= flag_not_converged .or. .not. allocated(q%diagnostics)) return
+      if (q%flag /= flag_not_converged .or. .not. allocated(q%diagnostics)) return
       do i = 1, size(q%diagnostics)
          if (any(q%diagnostics(i)%kind == [diagnostic_limit, diagnostic_beyond])) time = q%diagnostics(i)%t
       end do
@@ -247,14 +247,14 @@ contains
    end subroutine write_waiting
 
    !> Gives the reason why a motion is not complete in words.
-   pure function words_of_flag(mark, singularity, polish) result(words)
-      integer, intent(in) :: mark            !< flag_not_converged, ...
+   pure function words_of_flag(flag, singularity, polish) result(words)
+      integer, intent(in) :: flag            !< flag_not_converged, ...
       integer, intent(in) :: singularity     !< with flag_singular: singular_change, ...
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: words
 
-      words = phrase(flag_words(mark), polish)
-      if (mark == flag_singular) words = phrase(singular_words(singularity), polish)
+      words = phrase(flag_words(flag), polish)
+      if (flag == flag_singular) words = phrase(singular_words(singularity), polish)
    end function words_of_flag
 
    !> Writes the last lines of a set: the closure error of redundant equations, and the error that a closing tolerance
@@ -321,7 +321,7 @@ contains
          //whole(remark%column)//': '//text
    end function remark_text
 
-   !> Writes a line for each diagnostic that no mark explains.
+   !> Writes a line for each diagnostic that no flag explains.
    subroutine write_diagnostics(o, set, list)
       type(output_t), intent(inout) :: o
       class(set_t), intent(in) :: set

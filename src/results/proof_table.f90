@@ -75,8 +75,8 @@ contains
       class(set_t), intent(in) :: set          !< the set
       character(:), allocatable :: words
 
-      if (reason%mark /= flag_none) then
-         words = words_of_flag(reason%mark, reason%singularity, set%polish)
+      if (reason%flag /= flag_none) then
+         words = words_of_flag(reason%flag, reason%singularity, set%polish)
       else if (reason%is_crossed) then
          words = phrase(text_change_inside, set%polish)
       else

@@ -2,8 +2,8 @@
 module solver_log
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_words
-   use convergence, only: convergence_t, ending
-   use following, only: branch_t, branch_none, branch_crossed
+   use convergence, only: solve_report_t, ending
+   use continuation, only: branch_t, branch_none, branch_crossed
    use text_output, only: output_t, put
    use number_format, only: whole
    implicit none
@@ -28,7 +28,7 @@ contains
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step            !< number of the instant, from 0
       real(wp), intent(in) :: t              !< time
-      type(convergence_t), intent(in) :: convergence
+      type(solve_report_t), intent(in) :: convergence
       type(branch_t), intent(in) :: branch
       character(7), parameter :: branch_words(branch_none:branch_crossed) = ['NONE   ', 'FIRST  ', 'SAME   ', 'CROSSED']
       character(116) :: line

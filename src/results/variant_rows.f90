@@ -211,10 +211,10 @@ contains
       n = summary%numbers + 1
       call next(cell_t(cell_count, real(row%solved, wp)))
       call next(cell_t(cell_count, real(row%flagged, wp)))
-      if (row%mark /= flag_none) then
+      if (row%flag /= flag_none) then
          call next(cell_t(cell_number, row%t))
          call next(drive_cell(set, min(1, size(set%drives)), row%t))
-         call next(cell_t(cell_word, word=marks(row%mark)))
+         call next(cell_t(cell_word, word=marks(row%flag)))
       else
          n = n + 3
          if (row%rejected /= '') row%cells(n) = cell_t(cell_word, word=row%rejected(:4))

@@ -132,8 +132,8 @@ contains
       if (row%rejected /= '') call write_folded(o, ' *** ', row%rejected)
       if (row%limit%kind /= 0) then
          call write_diagnostics(o, set, [row%limit])
-      else if (row%mark /= flag_none) then
-         call put(o, ' *** '//words_of_flag(row%mark, row%singularity, set%polish))
+      else if (row%flag /= flag_none) then
+         call put(o, ' *** '//words_of_flag(row%flag, row%singularity, set%polish))
       end if
    end subroutine write_variant_row
 

@@ -7,7 +7,7 @@ module set_analysis
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
-   use following, only: certificate_counts_t, branch_none, branch_first
+   use continuation, only: certificate_counts_t, branch_none, branch_first
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of
    use significance_check, only: max_amplification, find_amplification
    use link_motion, only: move_links
@@ -19,11 +19,11 @@ module set_analysis
    use block_rank, only: surplus_drives
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, analyze_structure, renew_analysis, advance, evaluate_at, restore_instant
+   use analysis, only: analysis_t, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant
    use instant_centres, only: points_coincide
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, renew_set_analysis, advance_set, &
+   public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, reuse_set_analysis, advance_set, &
       accept_state, rows_at, sample_set, prove_set
    public :: errors_unasked, errors_in_doubt, errors_always
 
@@ -124,7 +124,7 @@ contains
    end subroutine begin_paths
 
    !> Makes the analysis of the variant before ready for the first instant of a variant, with its structure and memory.
-   subroutine renew_set_analysis(m, set, is_done)
+   subroutine reuse_set_analysis(m, set, is_done)
       type(mechanism_t), intent(in) :: m     !< the variant
       type(set_analysis_t), intent(inout) :: set   !< of the variant before, if there is one
       logical, intent(out) :: is_done        !< structure and findings are equal; otherwise `set` is of no use
@@ -147,7 +147,7 @@ contains
             own%measures = m%measures
             own%measures%length = characteristic_length(own)
          end if
-         call renew_analysis(set%list(1), own, is_done)
+         call reuse_analysis(set%list(1), own, is_done)
          if (.not. is_done) return
          set%now%motions(1) = new_motion(size(own%links))
          call make_estimator(set%estimators(1), own)
@@ -156,7 +156,7 @@ contains
       set%is_in_lane = .false.
       set%now%has_begun = .false.
       call begin_paths(set)
-   end subroutine renew_set_analysis
+   end subroutine reuse_set_analysis
 
    !> Solves an instant of a set.
    subroutine advance_set(set, t)
@@ -167,7 +167,7 @@ contains
       set%is_in_lane = .false.
       do c = 1, size(set%list)
          call advance(set%list(c), t, set%now%motions(c))
-         if (set%now%motions(c)%mark == flag_inconsistent) call report_surplus_drives(set, c)
+         if (set%now%motions(c)%flag == flag_inconsistent) call report_surplus_drives(set, c)
       end do
       call keep_instant(set)
    end subroutine advance_set

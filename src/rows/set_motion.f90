@@ -8,7 +8,7 @@ module set_motion
    use set_members, only: requests_of
    use columns, only: columns_of_rows, forms, of_length, of_angle
    use structure, only: structure_report_t
-   use blocks, only: blocks_t, geometry_t, chain_t, largest_known
+   use blocks, only: blocks_t, geometry_t, link_order_t, largest_known
    use block_state, only: state_t, new_state, set_direction
    use block_solver, only: solve_explicit
    use link_motion, only: new_chain, move_links
@@ -73,7 +73,7 @@ contains
       type(mechanism_t), intent(inout) :: m
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
-      type(chain_t) :: chain
+      type(link_order_t) :: chain
       type(state_t) :: state
       type(motion_t) :: q
       type(row_t) :: row
@@ -140,7 +140,7 @@ contains
    pure logical function is_flagged(motions)
       type(set_motion_t), intent(in) :: motions
 
-      is_flagged = any(motions%motions%mark /= flag_none)
+      is_flagged = any(motions%motions%flag /= flag_none)
    end function is_flagged
 
    !> Tells whether the instant has marks or diagnostics in addition to its numbers.
@@ -150,7 +150,7 @@ contains
 
       has_words = .false.
       do c = 1, motions%count
-         has_words = has_words .or. motions%motions(c)%mark /= flag_none .or. allocated(motions%motions(c)%diagnostics)
+         has_words = has_words .or. motions%motions(c)%flag /= flag_none .or. allocated(motions%motions(c)%diagnostics)
       end do
    end function has_words
 

@@ -17,13 +17,13 @@ module assur_groups
    use matching, only: incidence_t, match, overdetermined, find_blocks
    implicit none
    private
-   public :: closure_t, new_closure, group_t, groups_of
+   public :: closure_incidence_t, new_closure, group_t, groups_of
 
    !> The equations are two of each pair, in their order, and then one of each drive.
-   type :: closure_t
+   type :: closure_incidence_t
       type(incidence_t) :: incidence
       integer, allocatable :: link_of(:)             !< (unknowns)
-   end type closure_t
+   end type closure_incidence_t
 
    !> A component of a unit vector below this is zero.
    real(wp), parameter :: zero_component = 8.0_wp*epsilon(1.0_wp)
@@ -40,7 +40,7 @@ contains
    !> Makes the closure equations of a mechanism: time and memory are proportional to links, pairs and drives.
    function new_closure(m) result(c)
       type(mechanism_t), intent(in) :: m
-      type(closure_t) :: c
+      type(closure_incidence_t) :: c
       logical, parameter :: angle(3) = [.false., .false., .true.]
       integer :: moving(size(m%links)), n, i, k, axis    ! (links) number among the moving links, 0 for ground links
       integer, allocatable :: links(:)
@@ -147,7 +147,7 @@ contains
    !> group.
    function groups_of(m, closure) result(groups)
       type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: closure   !< of `m`; each unknown can have an equation in it
+      type(closure_incidence_t), intent(in) :: closure   !< of `m`; each unknown can have an equation in it
       type(group_t), allocatable :: groups(:)
       logical :: over(closure%incidence%equations)
       type(incidence_t) :: waits
@@ -212,7 +212,7 @@ contains
    !> equations wait for one another in a ring.
    function waiting(m, closure, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: closure
+      type(closure_incidence_t), intent(in) :: closure
       integer, intent(in) :: equation_of(:)  !< (unknowns) the equation that is matched with each
       logical, intent(in) :: over(:)         !< (equations) it is in the part with too many equations
       type(incidence_t) :: w

@@ -6,7 +6,7 @@ module block_structure
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use klu, only: pattern_t, order_columns
-   use block_matrix, only: shape_t, is_sparse_better
+   use block_matrix, only: matrix_layout_t, is_sparse_better
    use spanning_tree, only: spanning_tree_t, new_tree
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
@@ -319,7 +319,7 @@ contains
 
    !> Tells whether a square Jacobian of so many rows may be better sparse, if it has few entries.
    elemental logical function may_be_sparse(shape)
-      type(shape_t), intent(in) :: shape
+      type(matrix_layout_t), intent(in) :: shape
 
       may_be_sparse = shape%rows == shape%n .and. is_sparse_better(shape%n, 0)
    end function may_be_sparse

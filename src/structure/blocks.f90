@@ -13,13 +13,14 @@ module blocks
    use number_types, only: vector_t, row_numbers_t, loop_numbers_t
    use cylinders, only: cylinder_t
    use klu, only: pattern_t
-   use block_matrix, only: shape_t
+   use block_matrix, only: matrix_layout_t
    use spanning_tree, only: spanning_tree_t, link_offset_t
    use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
-      loop_projection, loop_angles, geometry_t, chain_t, chain_link_t, block_numbers_t, row_numbers_t, loop_numbers_t
+      loop_projection, loop_angles, geometry_t, link_order_t, link_step_t, block_numbers_t, row_numbers_t, &
+         loop_numbers_t
    public :: blocks_that_give, blocks_below, largest_known, known_to, own_unknowns
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
@@ -32,7 +33,7 @@ module blocks
       integer :: first = 1, last = 0              !< its unknowns: unknown(first:last) of the blocks
       integer :: first_row = 1, last_row = 0      !< its rows
       integer :: first_loop = 1, last_loop = 0    !< its vector loops
-      type(shape_t) :: shape                      !< of its Jacobian
+      type(matrix_layout_t) :: shape                      !< of its Jacobian
       logical :: explicit = .false.                 !< one equation that is linear with coefficient 1
    end type block_t
 
@@ -78,7 +79,7 @@ module blocks
    end type block_numbers_t
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
-   type :: chain_link_t
+   type :: link_step_t
       integer :: link = 0, parent = 0
       integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
@@ -87,17 +88,17 @@ module blocks
       logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
       real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
       type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
-   end type chain_link_t
+   end type link_step_t
 
    !> The links to be moved, the wanted ones first, parents before their children; and those that stay.
-   type :: chain_t
-      type(chain_link_t), allocatable :: links(:)
+   type :: link_order_t
+      type(link_step_t), allocatable :: links(:)
       integer, allocatable :: ground(:)                 !< numbers of the ground links
       integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
       real(wp) :: length = 1.0_wp                       !< the unit of slides in the deck's
-   end type chain_t
+   end type link_order_t
 
    !> What the numbers of the cards make of the blocks.
    type :: geometry_t
@@ -111,7 +112,7 @@ module blocks
       type(vector_t), allocatable :: d(:)         !< (body vectors) in the axes of the orientation, unit of the loop
       type(vector_t), allocatable :: e(:)         !< (slides) along the guide, with its sign in the loop
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
-      type(chain_t) :: chain                      !< of the links: those that are asked for, then the others
+      type(link_order_t) :: chain                      !< of the links: those that are asked for, then the others
       type(cylinder_t), allocatable :: cylinders(:)
    end type geometry_t
 

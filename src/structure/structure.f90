@@ -11,7 +11,7 @@ module structure
    use disjoint_sets, only: once
    use mechanism, only: mechanism_t, has_guide, is_hidden, joined_by, shown_links, method_newton
    use matching, only: match, overdetermined, underdetermined
-   use assur_groups, only: closure_t, new_closure, group_t, groups_of
+   use assur_groups, only: closure_incidence_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
    use block_structure, only: structure_t, make_structure
    implicit none
@@ -49,7 +49,7 @@ contains
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(structure_report_t) :: f
-      type(closure_t) :: c
+      type(closure_incidence_t) :: c
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
       integer :: k, parts

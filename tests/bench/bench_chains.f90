@@ -7,15 +7,15 @@ module bench_chains
    use fast_forms, only: spot_t, two_rods, put_link
    implicit none
    private
-   public :: chain_t, new_chain, move_chain, exact_chain
+   public :: link_order_t, new_chain, move_chain, exact_chain
 
    !> The number in the deck's title and, of a lattice, where its legs stand and its rods begin.
-   type :: chain_t
+   type :: link_order_t
       character(7) :: kind = ''
       integer :: n = 0
       integer :: legs = 0
       real(wp), allocatable :: place(:, :)   !< (3, legs and rods) x, y less the leg's own, angle
-   end type chain_t
+   end type link_order_t
 
 contains
 
@@ -23,7 +23,7 @@ contains
    function new_chain(kind, n) result(c)
       character(*), intent(in) :: kind
       integer, intent(in) :: n
-      type(chain_t) :: c
+      type(link_order_t) :: c
 
       c%kind = kind
       c%n = n
@@ -32,7 +32,7 @@ contains
 
    !> The motion (3, links) at `t`, link after link.
    pure subroutine move_chain(c, t, q, v, a)
-      type(chain_t), intent(in) :: c
+      type(link_order_t), intent(in) :: c
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: q(:, :), v(:, :), a(:, :)
 
@@ -137,7 +137,7 @@ contains
 
    !> The net moves without turning: no closed form is known of a general net, so this one is as cheap as any can be.
    pure subroutine move_lattice(c, phi, q, v, a)
-      type(chain_t), intent(in) :: c
+      type(link_order_t), intent(in) :: c
       real(wp), intent(in) :: phi
       real(wp), intent(inout) :: q(:, :), v(:, :), a(:, :)
       real(wp) :: x, y
@@ -159,7 +159,7 @@ contains
 
    !> The deck's net: u, w of joint (i, j) beyond the foot of its leg.
    subroutine place_lattice(c)
-      type(chain_t), intent(inout) :: c
+      type(link_order_t), intent(inout) :: c
       real(wp), allocatable :: rods(:, :)
       integer :: i, j, n, count
 
@@ -202,7 +202,7 @@ contains
 
    !> The motion (3, links) at `t` by what make_deck says of the whole chain, rounded once.
    subroutine exact_chain(c, t, q, v, a)
-      type(chain_t), intent(in) :: c
+      type(link_order_t), intent(in) :: c
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: q(:, :), v(:, :), a(:, :)
       integer :: i

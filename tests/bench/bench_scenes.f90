@@ -15,7 +15,7 @@ module bench_scenes
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
    use fast_forms, only: form, fast_four_bar, fast_yoke, fast_andrews, fast_jansen
-   use bench_chains, only: chain_t, new_chain, move_chain, exact_chain
+   use bench_chains, only: link_order_t, new_chain, move_chain, exact_chain
    implicit none
    private
    public :: scene_t, new_scene, chain_scene, move_fast, move_exactly, by_method
@@ -30,7 +30,7 @@ module bench_scenes
    type :: scene_t
       character(:), allocatable :: name
       type(mechanism_t) :: m
-      type(chain_t) :: chain
+      type(link_order_t) :: chain
       procedure(form), pointer, nopass :: fast => null()
       integer :: steps = steps_of_turn
       real(wp) :: t0 = 0.0_wp, step = 12.0_wp/steps_of_turn
@@ -152,8 +152,8 @@ contains
          if (mod(k, every) /= 0) cycle
          if (method == by_closed_form) call move_fast(s, instant_of(s, k), found)
          call move_exactly(s, instant_of(s, k), exact)
-         if (method == by_closed_form .or. found%mark == flag_none) call widen(s, found, exact, .true., g)
-         if (method /= by_closed_form .and. found%mark /= flag_none) g%flagged = g%flagged + 1
+         if (method == by_closed_form .or. found%flag == flag_none) call widen(s, found, exact, .true., g)
+         if (method /= by_closed_form .and. found%flag /= flag_none) g%flagged = g%flagged + 1
          if (g%flagged == 5 .and. g%instants == 0) exit
       end do
    end function error_of
@@ -174,9 +174,9 @@ contains
       do k = 0, steps
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)
-         if (one%mark /= flag_none) g%flagged = g%flagged + 1
-         if (two%mark /= flag_none) g%has_change_point = .true.
-         if (one%mark /= flag_none .or. two%mark /= flag_none) cycle
+         if (one%flag /= flag_none) g%flagged = g%flagged + 1
+         if (two%flag /= flag_none) g%has_change_point = .true.
+         if (one%flag /= flag_none .or. two%flag /= flag_none) cycle
          g%condition = max(g%condition, condition_of(dense%dense))
          call widen(s, one, two, .false., g)
       end do

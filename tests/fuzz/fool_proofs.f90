@@ -8,15 +8,15 @@ program fool_proofs
    use quad_jet, only: qp
    use arguments, only: number
    use dice, only: dice_t, new_dice, throw, chance, between
-   use following, only: following_t, begin_following
+   use continuation, only: continuation_t, begin_continuation
    use block_state, only: set_drive_values
    use mechanism, only: mechanism_t
-   use position_proof, only: placed_t, new_placed, prove_position
+   use position_proof, only: proved_position_t, new_placed, prove_position
    use ball_equations, only: ball_numbers_t
    use ball_numbers, only: new_ball_numbers
    use motion_proof, only: step_proof_t, prove_step
    use block_solver, only: solve_block
-   use convergence, only: convergence_t
+   use convergence, only: solve_report_t
    use fool_scenes, only: fool_t, new_mechanism, find_unknowns, place_at, scene_four_bar, scene_inverted, scene_slider, &
       scene_arm, scene_cylinder, scene_guides
    implicit none
@@ -51,9 +51,9 @@ contains
       integer, intent(in) :: i
       type(fool_t) :: f
       type(mechanism_t) :: m
-      type(following_t), allocatable :: e
+      type(continuation_t), allocatable :: e
       type(ball_numbers_t) :: p
-      type(placed_t) :: q(2)
+      type(proved_position_t) :: q(2)
       type(step_proof_t) :: proof
       real(wp) :: t(2)
       integer :: sign_of(2), failed(2), k
@@ -77,7 +77,7 @@ contains
       if (chance(dice, 0.25_wp)) sign_of(2) = -sign_of(2)
       m = new_mechanism(f)
       allocate (e)
-      call begin_following(e, m)
+      call begin_continuation(e, m)
       p = new_ball_numbers(m, e%blocks, e%geometry)
       call find_unknowns(m, e, f)
       wrong = .false.
@@ -149,10 +149,10 @@ contains
    !> Puts the engine where the assembly `s` is at `t`; `s` becomes 0 where that is wrong by more than a little.
    subroutine put_there(f, e, t, s)
       type(fool_t), intent(in) :: f
-      type(following_t), intent(inout) :: e
+      type(continuation_t), intent(inout) :: e
       real(wp), intent(in) :: t
       integer, intent(inout) :: s
-      type(convergence_t) :: c
+      type(solve_report_t) :: c
       real(qp) :: x(2, -1:1), margin, h
       real(wp) :: off
       integer :: k
@@ -181,7 +181,7 @@ contains
    !> No assembly lies within the bounds of `q` with all of its derivatives; otherwise `s` is its sign.
    logical function is_false(f, q, s)
       type(fool_t), intent(in) :: f
-      type(placed_t), intent(in) :: q
+      type(proved_position_t), intent(in) :: q
       integer, intent(inout) :: s
       real(qp) :: x(2, -1:1), margin(-1:1), motion(0:2), h, open
       integer :: sign_of, k

@@ -8,7 +8,7 @@ module fool_scenes
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_revolute, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_slide, term_harmonic, request_link
    use spanning_tree, only: spanning_tree_t, new_tree
-   use following, only: following_t
+   use continuation, only: continuation_t
    implicit none
    private
    public :: fool_t, new_mechanism, find_unknowns, place_at
@@ -102,7 +102,7 @@ contains
    !> The unknowns of the block of `f`, which is `m` with the engine `e`.
    subroutine find_unknowns(m, e, f)
       type(mechanism_t), intent(in) :: m
-      type(following_t), intent(in) :: e
+      type(continuation_t), intent(in) :: e
       type(fool_t), intent(inout) :: f
       type(spanning_tree_t) :: t
 

@@ -11,9 +11,9 @@ program threads
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t, new_state, set_drive_values
    use block_solver, only: workspace_t, new_workspace, solve_blocks
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: solve_report_t, is_solved
    use drive_path, only: drive_path_t
-   use following, only: following_t, begin_following
+   use continuation, only: continuation_t, begin_continuation
    use initial_assembly, only: solve_first
    use initial_estimate, only: guess_t
    use predictor, only: history_t, new_history, predict, accept
@@ -23,14 +23,14 @@ program threads
    type(failure_t), allocatable :: failure
    character(:), allocatable :: report
    character(200) :: file
-   type(following_t) :: shared
+   type(continuation_t) :: shared
    real(wp), allocatable :: alone(:, :), found(:, :, :)
    integer :: i, running
 
    call get_command_argument(1, file)
    call read_deck(trim(file), sets, report, failure)
    if (.not. allocated(sets)) error stop 'no deck'
-   call begin_following(shared, sets(1))
+   call begin_continuation(shared, sets(1))
    allocate (alone(3*shared%blocks%unknowns, instants), source=0.0_wp)
    allocate (found(3*shared%blocks%unknowns, instants, count), source=0.0_wp)
    call follow(shared%blocks, shared%geometry, shared%path, shared%guess, alone)
@@ -72,7 +72,7 @@ contains
       type(state_t) :: s
       type(history_t) :: history
       type(workspace_t) :: w
-      type(convergence_t) :: convergence
+      type(solve_report_t) :: convergence
       real(wp) :: t, change
       integer :: k
 

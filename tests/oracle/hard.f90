@@ -185,7 +185,7 @@ contains
 
       exact = exact_links(s, t)
       call find_allowed(s, exact, t, allowed, exists)
-      if (q%mark /= flag_none) then
+      if (q%flag /= flag_none) then
          tally%flagged = tally%flagged + 1
          if (exists) exists = maxval(allowed(:, :, 1))*epsilon(1.0_wp) <= nothing_left*fastest(exact)
          if (exists) tally%worst = huge(1.0_qp)

@@ -8,7 +8,7 @@ program print_expected
    use mechanism, only: mechanism_t, request_t, instant_count, instant, drive_angle, request_pair
    use motion, only: diagnostic_t, diagnostic_stroke
    use structure, only: structure_report_t
-   use following, only: certificate_counts_t
+   use continuation, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t

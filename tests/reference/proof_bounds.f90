@@ -5,7 +5,7 @@ program proof_bounds
    use kinds, only: wp
    use mechanism, only: mechanism_t, plane_origin, instant_count, instant, with_all_links, method_newton
    use motion, only: motion_t, flag_none, flag_singular, singular_change
-   use following, only: branch_crossed
+   use continuation, only: branch_crossed
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, prove_set
    use motion_proof, only: holds
    use balls, only: ball_t, distance
@@ -125,9 +125,9 @@ contains
       if (all(holds(a%now%proofs(1:)))) return
       reason = other_reason
       associate (q => a%now%motions(1), proof => a%now%proofs(1))
-         if (q%mark == flag_singular .and. q%singularity == singular_change .and. .not. proof%is_proved) reason = &
+         if (q%flag == flag_singular .and. q%singularity == singular_change .and. .not. proof%is_proved) reason = &
             at_change
-         if (q%mark == flag_none .and. proof%is_proved .and. a%list(1)%branch%kind == branch_crossed) reason = &
+         if (q%flag == flag_none .and. proof%is_proved .and. a%list(1)%branch%kind == branch_crossed) reason = &
             passes_change
       end associate
    end function reason_found

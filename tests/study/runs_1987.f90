@@ -121,7 +121,7 @@ contains
       iterations = [integer ::]
       do k = 0, instant_count(s%m) - 1
          call advance(a, instant(s%m, k), found)
-         if (found%mark /= flag_none) cycle
+         if (found%flag /= flag_none) cycle
          iterations = [iterations, a%convergence%iterations]
          call move_exactly(s, instant(s%m, k), there)
          error(1) = max(error(1), largest(s, found%position - there%position, .true.))

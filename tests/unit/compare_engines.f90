@@ -47,8 +47,8 @@ contains
          call advance(blocks, t(k), q)
          call advance(dense, t(k), r)
          ! Where there is no motion to begin with, later assemblies are anyone's choice.
-         if (k == 1 .and. (q%mark /= flag_none .or. r%mark /= flag_none)) exit
-         if (q%mark == flag_none .and. r%mark == flag_none) then
+         if (k == 1 .and. (q%flag /= flag_none .or. r%flag /= flag_none)) exit
+         if (q%flag == flag_none .and. r%flag == flag_none) then
             c%solved = c%solved + 1
             share = apart(q, r, wanted_links(m), dense%geometry%equations%length, &
                0.1_wp*dense%convergence%min_pivot)
@@ -57,9 +57,9 @@ contains
                c%condition = 0.1_wp*dense%convergence%min_pivot
             end if
             c%share = max(c%share, share)
-         else if (q%mark == flag_none) then
+         else if (q%flag == flag_none) then
             c%only_blocks = c%only_blocks + 1
-         else if (r%mark == flag_none) then
+         else if (r%flag == flag_none) then
             c%only_dense = c%only_dense + 1
          end if
       end do

@@ -11,7 +11,7 @@
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
-module shares
+module job_chunks
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_null_char
    use failures, only: capitals, status_system, status_signal
    use number_format, only: whole
@@ -20,10 +20,10 @@ module shares
    use system_calls, only: signal_received, signal_pipe, last_error, reason_of
    use text_output, only: held_length, write_held, release_output, turn_lost
    use command_line, only: out_shared
-   use outputs, only: outputs_t, share_of_job_t
+   use outputs, only: outputs_t, job_chunk_t
    implicit none
    private
-   public :: run_shares, next_part, write_in_turn
+   public :: run_chunks, next_part, write_in_turn
 
    !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache.
    integer, parameter :: parts_a_process = 1024
@@ -51,7 +51,7 @@ contains
    !> - in the parent when all is done: `next_part` gives no part.
    !>
    !> If a process cannot be started or was ended by a signal, the parent has its status and message.
-   subroutine run_shares(outputs, processes, status, message)
+   subroutine run_chunks(outputs, processes, status, message)
       class(outputs_t), intent(inout) :: outputs
       integer, intent(in) :: processes       !< number of children
       integer, intent(inout) :: status       !< in the parent: the largest exit status
@@ -113,7 +113,7 @@ contains
          outputs%files%emptied = .true.
          s%part = part_count(s)
       end associate
-   end subroutine run_shares
+   end subroutine run_chunks
 
    !> Ends the part at hand, if there is one, and begins the next: its sets or variants are outputs%own_first to
    !> outputs%own_last. False if there is no further part or the job is over; then all is written.
@@ -224,14 +224,14 @@ contains
 
    !> Counts the parts; 1 if there is nothing to compute.
    pure integer function part_count(share)
-      type(share_of_job_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share
 
       part_count = max(1, (share%last - share%first)/share%length + 1)
    end function part_count
 
    !> Gives the first set or variant of a part; for a part after the last one, the number after the last of all.
    pure integer function first_of(share, part)
-      type(share_of_job_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share
       integer, intent(in) :: part            !< counted from 1
 
       first_of = share%last + 1
@@ -240,7 +240,7 @@ contains
 
    !> Names a part, after a blank: SETS 5 TO 8, or VARIANTS 5 TO 8.
    pure function text_of(share, part) result(text)
-      type(share_of_job_t), intent(in) :: share
+      type(job_chunk_t), intent(in) :: share
       integer, intent(in) :: part            !< counted from 1
       character(:), allocatable :: text
 
@@ -253,4 +253,4 @@ contains
 
       count_of = max(0, int(lseek(descriptor, 0_c_long, from_here)))
    end function count_of
-end module shares
+end module job_chunks
