@@ -27,6 +27,8 @@ module assemblies
 
    !> A search ends after so many.
    integer, parameter :: max_assemblies = 1000
+   !> Assemblies whose distances differ by less than this part stay in the order in which they are found.
+   real(wp), parameter :: same_distance_part = sqrt(epsilon(1.0_wp))
    !> A cylinder shorter than this part of the characteristic length may have the length 0, whatever is proved.
    real(wp), parameter :: zero_length = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
 
@@ -241,7 +243,7 @@ contains
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%distance = sqrt(sum(squared_distances(one%position, continuation%guess%links, continuation%geometry%span)))
-      k = count(.not. is_nearer(one%distance, assemblies%list%distance))
+      k = count(assemblies%list%distance <= one%distance*(1.0_wp + same_distance_part))
       assemblies%list = [assemblies%list(:k), one, assemblies%list(k + 1:)]
    end subroutine record_assembly
 end module assemblies
