@@ -1,7 +1,6 @@
 !> The run of one motion: solve an instant, print an instant; nothing else is kept for later.
 module motion_run
-   use kinds, only: wp
-   use mechanism, only: instant, instant_count
+   use mechanism, only: instant
    use structure, only: structure_report_t
    use command_line, only: out_listing
    use system_calls, only: signal_received
@@ -14,10 +13,7 @@ module motion_run
    use phrases, only: text_broken_off
    use motion_proof, only: holds
    use set_motion, only: has_words
-   use set_analysis, only: set_analysis_t, begin_analysis, advance_set, prove_set
-   use analysis, only: advance, analysis_t, redundancy_error
-   use motion, only: motion_t, new_motion
-   use convergence, only: inconsistent_level
+   use set_analysis, only: set_analysis_t, begin_analysis, foresee_closure, advance_set, prove_set
    implicit none
    private
    public :: run_motion
@@ -71,25 +67,4 @@ contains
       if (p%lists .and. asked%wants_extremes) call find_dwells(asked%extremes, set, asked%dwells)
       call print_end(p, writers, set, counts, asked)
    end subroutine run_motion
-
-   !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the
-   !> run is known better. Without a closing tolerance, or if equations agree without it, the error is 0.
-   subroutine foresee_closure(set)
-      type(set_analysis_t), intent(inout) :: set   !< before its first instant
-      type(analysis_t) :: trial
-      type(motion_t) :: q
-      integer :: c, k
-
-      do c = 1, set%now%count
-         if (.not. (set%now%closing > 0.0_wp .and. set%list(c)%blocks%redundant > 0)) cycle
-         trial = set%list(c)
-         q = new_motion(size(set%now%parts(c)%links))
-         do k = 0, instant_count(set%now) - 1
-            call advance(trial, instant(set%now, k), q)
-         end do
-         ! The error of an instant without a position is larger than the tolerance.
-         if (redundancy_error(trial) > inconsistent_level) &
-            set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
-      end do
-   end subroutine foresee_closure
 end module motion_run

@@ -22,12 +22,10 @@ module writers
    use proof_table, only: write_proofs
    use rows, only: finished_row_t, find_rows
    use set_motion, only: has_words
-   use set_analysis, only: set_analysis_t, sample_set
+   use set_analysis, only: set_analysis_t, sample_set, set_certificates, set_closing_diagnostics
    use analysis, only: redundancy_error
    use phrases, only: phrase_t, phrase
    use number_format, only: whole
-   use continuation, only: certificate_counts_t
-   use motion, only: diagnostic_t, diagnostic_unused
    implicit none
    private
    public :: writers_t, printing_t, begin_printing, is_next, print_instant, end_tables, print_end, break_off
@@ -178,38 +176,4 @@ contains
       call put(writers%files(out_listing), '')
       call put(writers%files(out_listing), ' *** '//phrase(words, settings%polish)//' '//whole(number))
    end subroutine break_off
-
-   !> Gives the counts of certificates of all instants of the set.
-   pure type(certificate_counts_t) function set_certificates(set)
-      type(set_analysis_t), intent(in) :: set
-
-      set_certificates = set%worst
-      if (size(set%list) == 1) set_certificates = set%list(1)%certificate_counts
-   end function set_certificates
-
-   !> Gives the diagnostics (any number) after the last instant: BRANCH cards after whose instants no change point was
-   !> passed, in their order.
-   pure function set_closing_diagnostics(set) result(list)
-      type(set_analysis_t), intent(in) :: set
-      type(diagnostic_t), allocatable :: list(:)
-      logical, allocatable :: used(:)
-      integer :: c, k, n
-
-      n = 0
-      do c = 1, set%now%count
-         n = max(n, maxval([0, set%list(c)%branch_requests%cards%card]))
-      end do
-      allocate (list(n), used(n))
-      used = .false.
-      do c = 1, set%now%count
-         associate (cards => set%list(c)%branch_requests%cards)
-            used(cards%card) = used(cards%card) .or. set%list(c)%branch_requests%used
-            do k = 1, size(cards)
-               list(cards(k)%card) = diagnostic_t(kind=diagnostic_unused, part=c, t=cards(k)%t)
-               list(cards(k)%card)%links(1) = cards(k)%link
-            end do
-         end associate
-      end do
-      list = pack(list, .not. used)
-   end function set_closing_diagnostics
 end module writers

@@ -3,7 +3,8 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, request_measure, measure_line, request_t
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, measure_line, &
+      request_t
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
@@ -14,17 +15,19 @@ module set_analysis
    use motion_proof, only: motion_prover_t, prove_motion
    use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion, find_row_in_set
-   use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_turned, motion_t, &
-      new_motion, turned_t, flag_inconsistent
+   use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_turned, &
+      diagnostic_unused, motion_t, new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
-   use analysis, only: analysis_t, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant
+   use analysis, only: analysis_t, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant, &
+      redundancy_error
+   use convergence, only: inconsistent_level
    use instant_centres, only: points_coincide
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, reuse_set_analysis, advance_set, &
-      accept_state, rows_at, sample_set, prove_set
+   public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, foresee_closure, reuse_set_analysis, &
+      advance_set, accept_state, rows_at, sample_set, prove_set, set_certificates, set_closing_diagnostics
    public :: errors_unasked, errors_in_doubt, errors_always
 
    !> The angles from which measures go on between the instants of TIME, if extremes are searched for.
@@ -102,6 +105,27 @@ contains
       end do
       call begin_paths(set)
    end subroutine begin_analysis
+
+   !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the
+   !> run is known better. Without a closing tolerance, or if equations agree without it, the error is 0.
+   subroutine foresee_closure(set)
+      type(set_analysis_t), intent(inout) :: set   !< before its first instant
+      type(analysis_t) :: trial
+      type(motion_t) :: q
+      integer :: c, k
+
+      do c = 1, set%now%count
+         if (.not. (set%now%closing > 0.0_wp .and. set%list(c)%blocks%redundant > 0)) cycle
+         trial = set%list(c)
+         q = new_motion(size(set%now%parts(c)%links))
+         do k = 0, instant_count(set%now) - 1
+            call advance(trial, instant(set%now, k), q)
+         end do
+         ! The error of an instant without a position is larger than the tolerance.
+         if (redundancy_error(trial) > inconsistent_level) &
+            set%estimators(c)%closure = min(redundancy_error(trial), set%now%closing)
+      end do
+   end subroutine foresee_closure
 
    !> Begins the paths of the set: no instant is taken yet.
    subroutine begin_paths(set)
@@ -401,4 +425,38 @@ contains
          end associate
       end do
    end subroutine keep_turns
+
+   !> Gives the counts of certificates of all instants of the set.
+   pure type(certificate_counts_t) function set_certificates(set)
+      type(set_analysis_t), intent(in) :: set
+
+      set_certificates = set%worst
+      if (size(set%list) == 1) set_certificates = set%list(1)%certificate_counts
+   end function set_certificates
+
+   !> Gives the diagnostics (any number) after the last instant: BRANCH cards after whose instants no change point was
+   !> passed, in their order.
+   pure function set_closing_diagnostics(set) result(list)
+      type(set_analysis_t), intent(in) :: set
+      type(diagnostic_t), allocatable :: list(:)
+      logical, allocatable :: used(:)
+      integer :: c, k, n
+
+      n = 0
+      do c = 1, set%now%count
+         n = max(n, maxval([0, set%list(c)%branch_requests%cards%card]))
+      end do
+      allocate (list(n), used(n))
+      used = .false.
+      do c = 1, set%now%count
+         associate (cards => set%list(c)%branch_requests%cards)
+            used(cards%card) = used(cards%card) .or. set%list(c)%branch_requests%used
+            do k = 1, size(cards)
+               list(cards(k)%card) = diagnostic_t(kind=diagnostic_unused, part=c, t=cards(k)%t)
+               list(cards(k)%card)%links(1) = cards(k)%link
+            end do
+         end associate
+      end do
+      list = pack(list, .not. used)
+   end function set_closing_diagnostics
 end module set_analysis
