@@ -30,14 +30,17 @@ contains
 
       allocate (list(0))
       do c = 1, set%now%count
+         if (set%now%motions(c)%known < 0) then
+            if (set%now%variants > 0) cycle
+            first = first_assemblies(set, c)
+         end if
          do i = 1, size(set%now%parts(c)%drives)
             if (set%now%motions(c)%known >= 0) then
                call find_range(set%now%parts(c), set%now%motions(c), i, r)
                r%part = c
                r%limit%part = c
                list = [list, r]
-            else if (set%now%variants == 0) then
-               call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
+            else
                call find_circuits(set%now%parts(c), set%now%motions(c), i, first, found)
                found%part = c
                if (found%is_complete .and. .not. found%are_more) call add_branch_ranges(found, list)
@@ -84,18 +87,27 @@ contains
       allocate (list(sum([(size(set%now%parts(c)%drives), c=1, set%now%count)])))
       n = 0
       do c = 1, set%now%count
+         if (size(set%now%parts(c)%drives) > 0) first = first_assemblies(set, c)
          do i = 1, size(set%now%parts(c)%drives)
             n = n + 1
-            if (allocated(set%assemblies)) then
-               first = set%assemblies(c)
-            else if (i == 1) then
-               call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
-            end if
             call find_circuits(set%now%parts(c), set%now%motions(c), i, first, list(n))
             list(n)%part = c
          end do
       end do
    end subroutine find_all_circuits
+
+   !> Gives the assemblies of a part at the first instant. They are searched for only if the set does not have them.
+   function first_assemblies(set, c) result(first)
+      type(set_analysis_t), intent(in) :: set
+      integer, intent(in) :: c                   !< the number of the part
+      type(assemblies_t) :: first
+
+      if (allocated(set%assemblies)) then
+         first = set%assemblies(c)
+      else
+         call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
+      end if
+   end function first_assemblies
 
    !> Gives a value, or 0 if it is rounding.
    pure real(wp) function known(value)

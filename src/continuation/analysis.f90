@@ -45,7 +45,7 @@ module analysis
    use strokes, only: find_length_limit, flag_strokes
    use continuation, only: continuation_t, step_record_t, step_blocked, step_creeps, step_there, step_stands, &
       step_rests, follow_structure, begin_motion, measure_closure_error, continue_to, accept_substep, revert, &
-      continuation_state_t, record_checkpoint, restore, passed_of, limit_t, limit_before, branch_t, &
+      continuation_state_t, restore, passed_of, limit_t, limit_before, branch_t, &
       certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
    implicit none
    private
@@ -243,7 +243,7 @@ contains
       is_found = .false.
       if (.not. analysis%follows .or. limit_before(analysis%limits, t) > 0) return
       if (.not. analysis%is_left) then
-         call record_checkpoint(analysis%continuation_t, analysis%left)
+         analysis%left = analysis%continuation_state_t
          analysis%left_iterations = analysis%iterations
          analysis%is_left = .true.
       end if

@@ -11,7 +11,7 @@ module change_point_passage
    use branch_switching, only: switch_branch, decide
    use block_diagnostics, only: change_diagnostics, diagnostic_at_change, links_of
    use continuation, only: continuation_t, step_record_t, step_failed, step_there, step_stands, continuation_state_t, &
-      solve_at, continue_to, accept_substep, revert, follow_from, record_checkpoint, restore, passed_of
+      solve_at, continue_to, accept_substep, revert, follow_from, restore, passed_of
    implicit none
    private
    public :: leave, follow, go_by_value, solve_regular_blocks
@@ -46,7 +46,7 @@ contains
 
       beside = time_beside(continuation%path, last, t, drive_change_after_rest)
       continuation%branch_requests%stood_until = beside
-      call record_checkpoint(continuation, before)
+      before = continuation%continuation_state_t
       call follow(continuation, beside, step, at_end)
       if (step%ending < step_there .or. passed_of(step) > 0 .or. continuation%convergence%singular) then
          call restore(continuation, before)
@@ -96,9 +96,9 @@ contains
          merge(t, continuation%t, step%ending >= step_there), [continuation%drives%first, continuation%drives%last])
       if (drive == 0) return
 
-      call record_checkpoint(continuation, reached)
+      reached = continuation%continuation_state_t
       call revert(continuation, step)
-      call record_checkpoint(continuation, before)
+      before = continuation%continuation_state_t
       call go_from_turn_to_turn(continuation, drive, t, by_value)
       deallocate (continuation%path%leg)
       if (by_value%ending == step_there) call resume_motion(continuation, t, by_value)
@@ -128,7 +128,7 @@ contains
       type(continuation_state_t) :: first
       real(wp) :: turn, next
 
-      call record_checkpoint(continuation, first)
+      first = continuation%continuation_state_t
       turn = continuation%t
       next = next_turn(continuation%path, drive, turn, t)
       associate (value => value_at(continuation%path, drive, turn))

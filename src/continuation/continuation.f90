@@ -29,7 +29,7 @@ module continuation
    private
    public :: continuation_t, step_record_t, begin_continuation, follow_structure, begin_motion, solve_at, &
       measure_closure_error, continue_to, accept_substep, revert, follow_from, continuation_state_t, &
-      record_checkpoint, restore, passed_of
+      restore, passed_of
    public :: step_failed, step_blocked, step_creeps, step_there, step_stands, step_rests
    public :: limit_t, limit_before, largest_correction, lengths_followed
    public :: branch_t, certificate_counts_t, branch_none, branch_first, branch_same, branch_crossed
@@ -87,25 +87,20 @@ module continuation
       real(wp) :: t = 0.0_wp                     !< time
       type(history_t) :: history                 !< the motions that are followed
       type(state_t) :: state                     !< the motion found last
-      type(branch_requests_t) :: branch_requests !< and how change points were passed
-      type(solve_report_t) :: convergence         !< of the position solved for last
+      type(branch_requests_t) :: branch_requests !< BRANCH cards, and change points passed
+      type(solve_report_t) :: convergence        !< of the position solved for last
    end type continuation_state_t
 
    !> A mechanism as the solver has it, and how far its motion has come.
-   type :: continuation_t
+   type, extends(continuation_state_t) :: continuation_t
       type(blocks_t), allocatable :: blocks      !< its structure, constant
       type(geometry_t), allocatable :: geometry
       type(drive_path_t) :: path                 !< of its drives
       type(guess_t), allocatable :: guess        !< where its first position is searched for
-      type(state_t) :: state                     !< the motion found last
       type(workspace_t), allocatable :: work
-      type(history_t) :: history                 !< the motions that are followed
-      type(branch_requests_t) :: branch_requests !< BRANCH cards, and change points passed
-      type(solve_report_t) :: convergence         !< of the position solved for last
       integer :: iterations = 0                  !< of all positions so far
       logical :: follows = .false.               !< a regular motion is followed, found at `t`
-      real(wp) :: t = 0.0_wp                     !< time
-      type(continuation_state_t) :: place                     !< where the step that was divided last began
+      type(continuation_state_t) :: place        !< where the step that was divided last began
       type(drive_deviation_t) :: drives          !< how far the drives leave their chords
    end type continuation_t
 
@@ -253,7 +248,7 @@ contains
             step%ending = step_there
             return
          end if
-         if (step%tries == 1) call record_checkpoint(continuation, continuation%place)
+         if (step%tries == 1) continuation%place = continuation%continuation_state_t
          grows = accepted .and. (longer < max_longer .or. .not. continuation%convergence%singular)
          accepted = accepted .and. .not. continuation%convergence%singular
          if (accepted) call accept_substep(continuation, here)
@@ -444,29 +439,13 @@ contains
       continuation%history = place%history
    end subroutine follow_from
 
-   !> Records the place at which the motion is followed.
-   subroutine record_checkpoint(continuation, place)
-      type(continuation_t), intent(in) :: continuation
-      type(continuation_state_t), intent(inout) :: place
-
-      place%t = continuation%t
-      place%history = continuation%history
-      place%state = continuation%state
-      place%branch_requests = continuation%branch_requests
-      place%convergence = continuation%convergence
-   end subroutine record_checkpoint
-
    !> Follows the motion again from a place, to which a later step can go back.
    subroutine restore(continuation, place)
       type(continuation_t), intent(inout) :: continuation
       type(continuation_state_t), intent(in) :: place
 
-      continuation%t = place%t
-      continuation%history = place%history
-      continuation%state = place%state
-      continuation%branch_requests = place%branch_requests
-      continuation%convergence = place%convergence
-      call record_checkpoint(continuation, continuation%place)
+      continuation%continuation_state_t = place
+      continuation%place = place
    end subroutine restore
 
    !> Gives the side of the limit beyond which an instant lies, 1 or 2; 0: beyond none that is known.
