@@ -206,13 +206,13 @@ contains
 
          left = 0.0_wp
          if (history%jacobian(i)%pivot > near_singular_pivot*x%blocks(i)%lipschitz) return
-         associate (past => history%past, step => t - history%t(0), u => own_unknowns(b, i))
+         associate (past => history%past, latest => history%slot(0), step => t - history%t(0), u => own_unknowns(b, i))
             if (size(u) == 0) return
-            fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
-            if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
+            fastest = u(maxloc(abs(past(u)%acceleration(latest)), dim=1))
+            if (abs(past(fastest)%acceleration(latest)) <= 0.0_wp) return
             if (history%uncertain(0) > 0.0_wp .and. &
-               maxval(abs(past(u)%rate(0))) <= much_faster*largest_drive_rate(s)) return
-            left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
+               maxval(abs(past(u)%rate(latest))) <= much_faster*largest_drive_rate(s)) return
+            left = 0.5_wp*past(fastest)%rate(latest)/past(fastest)%acceleration(latest)
             if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_limit_part*abs(step)) left = 0.0_wp
          end associate
       end function time_to_limit
@@ -228,11 +228,11 @@ contains
          left = 0.0_wp
          longest = far_slide
          do k = b%list(i)%first, b%list(i)%last
-            associate (slide => history%past(b%unknown(k)), step => t - history%t(0))
-               if (b%unknown(k) <= b%orientations .or. .not. abs(slide%rate(0)) > 0.0_wp) cycle
+            associate (slide => history%past(b%unknown(k)), latest => history%slot(0), step => t - history%t(0))
+               if (b%unknown(k) <= b%orientations .or. .not. abs(slide%rate(latest)) > 0.0_wp) cycle
                if (abs(slide%value) < longest) cycle
-               if (abs(slide%value*slide%acceleration(0)/slide%rate(0)**2 - 2.0_wp) > pole_tolerance) cycle
-               to_go = 2.0_wp*slide%rate(0)/slide%acceleration(0)
+               if (abs(slide%value*slide%acceleration(latest)/slide%rate(latest)**2 - 2.0_wp) > pole_tolerance) cycle
+               to_go = 2.0_wp*slide%rate(latest)/slide%acceleration(latest)
                if (to_go*sign(1.0_wp, step) <= 0.0_wp) cycle
                if (abs(to_go) > (1.0_wp + near_limit_part)*abs(step) .and. .not. creeps) cycle
                left = to_go

@@ -45,7 +45,7 @@ module predictor
    !> Steps that differ by less than this part count as equal: instants are rounded too.
    real(wp), parameter :: equal_step_part = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
-   !> One unknown in the last three motions, the latest first; only the latest of its values.
+   !> One unknown in the last three motions, by slots; only the latest of its values.
    type :: unknown_history_t
       real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
    end type unknown_history_t
@@ -55,6 +55,7 @@ module predictor
       integer, allocatable :: predicted(:)              !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
+      integer :: slot(0:2) = [0, 1, 2]                  !< of the motions, the latest first
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
       real(wp) :: uncertain(0:2) = 0.0_wp               !< uncertainty of their accelerations over velocities, 1/time
       type(unknown_history_t), allocatable :: past(:)   !< (0:unknowns)
@@ -175,8 +176,8 @@ contains
          do k = 1, size(history%predicted)
             associate (i => history%predicted(k), past => history%past(history%predicted(k)))
                s%u(i)%value = past%value
-               s%u(i)%rate = past%rate(0)
-               s%u(i)%acceleration = past%acceleration(0)
+               s%u(i)%rate = past%rate(history%slot(0))
+               s%u(i)%acceleration = past%acceleration(history%slot(0))
                call set_direction(b, i, s)
             end associate
          end do
@@ -199,20 +200,17 @@ contains
       real(wp), intent(in) :: t                         !< the parameter of the path, in the deck's unit of time
       type(unknown_t), intent(in) :: unknown(0:*)       !< (0:unknowns) of the motion
       real(wp), intent(in) :: uncertain                 !< uncertainty of its accelerations over velocities, 1/time
-      integer :: k
+      integer :: slot, k
 
+      slot = history%slot(2)
+      history%slot = [slot, history%slot(0), history%slot(1)]
       history%t = [t, history%t(0), history%t(1)]
       history%uncertain = [uncertain, history%uncertain(0), history%uncertain(1)]
       do k = 1, size(history%predicted)
          associate (x => history%past(history%predicted(k)), now => unknown(history%predicted(k)))
             x%value = now%value
-            ! One by one: an array of three would be made first, and copied.
-            x%rate(2) = x%rate(1)
-            x%rate(1) = x%rate(0)
-            x%rate(0) = now%rate
-            x%acceleration(2) = x%acceleration(1)
-            x%acceleration(1) = x%acceleration(0)
-            x%acceleration(0) = now%acceleration
+            x%rate(slot) = now%rate
+            x%acceleration(slot) = now%acceleration
          end associate
       end do
       history%filled = min(history%filled + 1, 3)
@@ -234,21 +232,24 @@ contains
       type(unknown_t), intent(inout) :: unknown(0:*)    !< (0:unknowns)
       real(wp), intent(out) :: change                   !< the largest difference from the latest, rad or unit of length
       real(wp) :: step, d, w(3)
-      integer :: i, k, known
+      integer :: i, k, known, s0, s1, s2
 
       if (asserts) call assert(history%filled > 0 .or. .not. abs(t - history%t(0)) > 0.0_wp, &
          'predict: a motion that is remembered, or its parameter')
       change = 0.0_wp
       step = t - history%t(0)
+      s0 = history%slot(0)
+      s1 = history%slot(1)
+      s2 = history%slot(2)
       known = 0
       if (max(history%uncertain(0), history%uncertain(1), history%uncertain(2))*abs(step) > max_uncertain_part) then
          known = findloc(history%uncertain(:history%filled - 1)*abs(step) <= max_uncertain_part, .true., dim=1) - 1
       else if (has_equal_steps(history, step)) then
          do k = 1, size(history%predicted)
             associate (p => history%past(history%predicted(k)))
-               d = step*(rate_weight(0)*p%rate(0) + rate_weight(1)*p%rate(1) + rate_weight(2)*p%rate(2) &
-                  + step*(acceleration_weight(0)*p%acceleration(0) + acceleration_weight(1)*p%acceleration(1) &
-                  + acceleration_weight(2)*p%acceleration(2)))
+               d = step*(rate_weight(0)*p%rate(s0) + rate_weight(1)*p%rate(s1) + rate_weight(2)*p%rate(s2) &
+                  + step*(acceleration_weight(0)*p%acceleration(s0) + acceleration_weight(1)*p%acceleration(s1) &
+                  + acceleration_weight(2)*p%acceleration(s2)))
                unknown(history%predicted(k))%value = p%value + d
             end associate
             change = max(change, abs(d))
@@ -262,10 +263,10 @@ contains
          i = history%predicted(k)
          associate (v => history%past(i)%rate, a => history%past(i)%acceleration)
             if (history%order /= own_predictor) then
-               d = w(1)*v(0) + w(2)*a(0) + w(3)*(a(0) - a(1))
+               d = w(1)*v(s0) + w(2)*a(s0) + w(3)*(a(s0) - a(s1))
             else
-               d = step*v(0)
-               if (known >= 0) d = step*(v(0) + 0.5_wp*step*a(known))
+               d = step*v(s0)
+               if (known >= 0) d = step*(v(s0) + 0.5_wp*step*a(history%slot(known)))
             end if
          end associate
          unknown(i)%value = history%past(i)%value + d

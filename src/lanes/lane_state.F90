@@ -146,11 +146,11 @@ contains
 
       ! Of motions before the latest there are no values.
       do k = 0, 2
-         associate (slot => lanes%slot(k))
+         associate (slot => lanes%slot(k), from => continuation%history%slot(k))
             lanes%t(lane, slot) = continuation%history%t(k)
             do i = 1, size(lanes%predicted)
                associate (past => continuation%history%past(lanes%predicted(i)))
-                  lanes%past(lane, :, slot, lanes%predicted(i)) = [past%value, past%rate(k), past%acceleration(k)]
+                  lanes%past(lane, :, slot, lanes%predicted(i)) = [past%value, past%rate(from), past%acceleration(from)]
                end associate
             end do
          end associate
@@ -168,13 +168,13 @@ contains
       integer :: k, i, u
 
       do k = 0, 2
-         associate (slot => lanes%slot(k))
+         associate (slot => lanes%slot(k), to => continuation%history%slot(k))
             continuation%history%t(k) = lanes%t(lane, slot)
             do i = 1, size(lanes%predicted)
                u = lanes%predicted(i)
                if (k == 0) continuation%history%past(u)%value = lanes%past(lane, 1, slot, u)
-               continuation%history%past(u)%rate(k) = lanes%past(lane, 2, slot, u)
-               continuation%history%past(u)%acceleration(k) = lanes%past(lane, 3, slot, u)
+               continuation%history%past(u)%rate(to) = lanes%past(lane, 2, slot, u)
+               continuation%history%past(u)%acceleration(to) = lanes%past(lane, 3, slot, u)
             end do
          end associate
       end do
