@@ -18,7 +18,6 @@
 module block_equations
    use kinds, only: wp
    use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
-   use block_matrix, only: entries_of
    use blocks, only: blocks_t, geometry_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, &
       loop_projection, loop_angles
    use block_state, only: state_t

@@ -9,7 +9,6 @@
 #define TWO 2.0_wp
 module lane_equations
    use kinds, only: wp
-   use block_matrix, only: entries_of
    use blocks, only: block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
    use lane_sines, only: lane_count, sines
    use lane_state, only: lanes_t, vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t

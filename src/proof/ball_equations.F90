@@ -11,7 +11,6 @@
 #define TWO ball_t(2.0_wp, 0.0_wp)
 module ball_equations
    use kinds, only: wp
-   use block_matrix, only: entries_of
    use blocks, only: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, &
       loop_angles
    use balls, only: ball_t, rounding, up, operator(+), operator(-), operator(*)

@@ -6,7 +6,7 @@ module block_structure
    use mechanism, only: mechanism_t
    use scales, only: solver_length, power_of_two
    use klu, only: pattern_t, order_columns
-   use block_matrix, only: matrix_layout_t, is_sparse_better
+   use block_matrix, only: matrix_layout_t, is_sparse_better, entries_of
    use spanning_tree, only: spanning_tree_t, new_tree
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
@@ -269,6 +269,13 @@ contains
          end associate
       end do
       b%patterns = b%patterns(:patterns)
+      do i = 1, size(b%list)
+         associate (block => b%list(i), entries => entries_of(b%list(i)%shape), &
+            own => b%loops(b%list(i)%first_loop:b%list(i)%last_loop))
+            block%cleared = merge(0, entries, entries == sum((own%last_vector - own%first_own + 1) &
+               *(merge(1, 0, own%row_x > 0) + merge(1, 0, own%row_y > 0))))
+         end associate
+      end do
 
    contains
 
