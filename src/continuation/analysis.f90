@@ -184,12 +184,13 @@ contains
       real(wp), intent(in) :: t                            !< time
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)   !< as `reach`
+      type(step_record_t) :: to_start
       real(wp) :: near
 
       if (allocated(analysis%singular)) then
          near = time_beside(analysis%path, analysis%last, t, start_offset)
-         call continue_to(analysis%continuation_t, near, step)
-         if (step%ending >= step_there .and. &
+         call continue_to(analysis%continuation_t, near, to_start)
+         if (to_start%ending >= step_there .and. &
             .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
             call accept_substep(analysis%continuation_t, near)
       end if

@@ -157,6 +157,7 @@ contains
 
          now = drive_at(continuation%path, drive, continuation%t)
          call lead(continuation%path, drive, continuation%t, (value - now(1))/(to - turn), [turn, to])
+         one = step_record_t()
          call resume_motion(continuation, turn, one)
          if (one%ending == step_there) call continue_to(continuation, to, one)
          if (one%ending == step_there .and. continuation%convergence%singular) one%ending = step_stands

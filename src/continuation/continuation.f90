@@ -7,6 +7,7 @@
 !> blocks have kept their signs. CROSSED: as SAME, but for change points that were passed, each within a short substep,
 !> and listed.
 module continuation
+   use assertions, only: asserts, assert
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: structure_t, make_structure
@@ -220,11 +221,12 @@ contains
    subroutine continue_to(continuation, t, step)
       type(continuation_t), intent(inout) :: continuation
       real(wp), intent(in) :: t              !< parameter of the path to which it goes
-      type(step_record_t), intent(out) :: step
+      type(step_record_t), intent(inout) :: step   !< a new record, which is filled in
       real(wp) :: substep, here, longest, allowed, shortest
       integer :: failures, longer
       logical :: accepted, grows, is_last
 
+      if (asserts) call assert(step%tries == 0, 'continue_to: a new record')
       substep = t - continuation%t
       longest = abs(substep)
       shortest = min_substep_part*longest
