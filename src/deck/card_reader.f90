@@ -171,7 +171,7 @@ contains
       if (errors%count > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
-         call add_field_error(errors, card_unknown, card, card_fields(card_name))
+         if (.not. errors%is_free) call add_field_error(errors, card_unknown, card, card_fields(card_name))
       else if (allocated(above%star)) then
          call add_field_error(errors, card_second, card, card_fields(card_name))
       else if (above%form /= form_unknown) then
@@ -392,7 +392,9 @@ contains
       integer :: first, border
 
       is_found = .false.
-      do border = min(i, real_1), label_b, -1
+      ! It moves one label into the first real, and none beyond.
+      if (i > real_1 .or. (i == real_1 .and. card_forms(parsed%form)%labels(3:) == '-')) return
+      do border = i, label_b, -1
          call find_long_label(parsed%card, border, first, word)
          is_found = word /= ''
          if (is_found) exit
@@ -402,7 +404,8 @@ contains
       call add_error(errors, label_long, parsed%card, card_fields(border - 1), first, word)
    end subroutine refuse_long_label
 
-   !> Finds the word that begins in a label field and goes on in the next field.
+   !> Finds the word that begins in a label field and goes on in the next field. The longest words of LABEL-A fill their
+   !> field: a name begins after them.
    pure subroutine find_long_label(card, i, first, word)
       type(card_t), intent(in) :: card
       integer, intent(in) :: i               !< the field in which it goes on: label_b, ..., real_1
@@ -412,6 +415,8 @@ contains
       word = ''
       first = 0
       if (i <= label_a .or. i > real_1) return
+      if (i == label_b .and. any(capitals(card%text(card_fields(label_a)%first:card_fields(label_a)%last)) &
+         == ['RELANGLE', 'MEASURES'])) return
       associate (border => card_fields(i)%first)
          first = first_column(card, card_fields(i - 1))
          if (index(card%text(first:border), ' ') == 0) &

@@ -389,16 +389,14 @@ contains
 
    contains
 
-      !> Tells whether a label of card `k` is the name of another card, or the word of a drive.
+      !> Tells whether a label of card `k` is the name of another card.
       pure logical function is_name(label)
          integer, intent(in) :: label        !< label_a to label_c
 
          is_name = .false.
          if (any(definers%form == set%cards(k)%form .and. definers%label == label)) return
-         associate (name => set%cards(k)%label(label))
-            is_name = any(drive_words == name) .or. &
-               any([(find_name(set%named(other)%table, name) > 0, other=request_link, request_measure)])
-         end associate
+         is_name = any([(find_name(set%named(other)%table, set%cards(k)%label(label)) > 0, other=request_link, &
+            request_measure)])
       end function is_name
    end subroutine look_up_kinds
 

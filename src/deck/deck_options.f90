@@ -180,7 +180,7 @@ contains
       seen = name_table_t()
       do k = 1, set%count
          if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
-         if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0) &
+         if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0 .and. set%names_certain) &
             call add_card_error(set, extremes_time, k, card_name)
          associate (dwell => set%cards(k)%real(1:2))
             do i = 1, 2

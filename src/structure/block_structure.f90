@@ -8,7 +8,7 @@ module block_structure
    use klu, only: pattern_t, order_columns
    use block_matrix, only: matrix_layout_t, is_sparse_better, entries_of
    use spanning_tree, only: spanning_tree_t, new_tree
-   use matching, only: incidence_t, match, find_blocks, overdetermined
+   use matching, only: incidence_t, match, find_blocks, overdetermined, underdetermined
    use loop_equations, only: equations_t, equation_t, new_equations, new_equation_numbers, &
       incidence, equation_x, equation_y, equation_projection, equation_angle, equation_slide
    use blocks, only: blocks_t, geometry_t, block_t, body_vector_t, slide_t, loop_components, loop_projection, &
@@ -63,10 +63,13 @@ contains
       b%unknowns = tree%orientations + tree%slides + 2*tree%roots
       g = incidence(equations, b%orientations, b%unknowns)
       call match(g, unknown_of, equation_of)
-      b%free = pack([(i, i=1, b%unknowns)], equation_of == 0)
-      b%solvable = size(b%free) == 0
+      b%free = count(equation_of == 0)
+      b%solvable = b%free == 0
       b%redundant = count(unknown_of == 0)
-      if (.not. b%solvable) return
+      if (.not. b%solvable) then
+         b%loose = pack([(i, i=1, b%unknowns)], underdetermined(g, unknown_of, equation_of))
+         return
+      end if
 
       over = overdetermined(g, unknown_of, equation_of)
       call find_blocks(g, equation_of, over, first, member)

@@ -121,7 +121,8 @@ module blocks
       integer :: orientations = 0, unknowns = 0   !< angles; angles, slides and places of roots together
       logical :: solvable = .false.               !< each unknown has an equation of its own
       integer :: redundant = 0                    !< equations that found no unknown
-      integer, allocatable :: free(:)             !< unknowns that found no equation
+      integer :: free = 0                         !< unknowns that found no equation
+      integer, allocatable :: loose(:)            !< if there are any: all unknowns that could be free in their place
       type(block_t), allocatable :: list(:)
       integer, allocatable :: unknown(:)          !< by block
       integer, allocatable :: block_of(:)         !< (unknowns)

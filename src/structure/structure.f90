@@ -14,6 +14,7 @@ module structure
    use assur_groups, only: closure_incidence_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
    use block_structure, only: structure_t, make_structure
+   use blocks, only: blocks_t
    implicit none
    private
    public :: structure_t, structure_report_t, group_t, make_structure, find_structure, find_groups, check_structure, &
@@ -50,7 +51,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(structure_report_t) :: f
       type(closure_incidence_t) :: c
-      integer, allocatable :: unknown_of(:), equation_of(:)
+      integer, allocatable :: unknown_of(:), equation_of(:), loose(:)
       logical, allocatable :: over(:)
       integer :: k, parts
 
@@ -95,10 +96,36 @@ contains
          end do
       end if
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, parts)])
-      ! Two links that a prismatic pair joins have one angle: which links can move, that does not say.
-      f%free = sum([(size(f%structures(k)%blocks%free), k=1, parts)])
-      if (f%free > 0) f%loose = pack([(k, k=1, size(m%links))], .not. (m%links%ground .or. m%links%hidden))
+      if (f%solvable) return
+      ! Vector loops show more: two links that a prismatic pair joins have one angle, and a bar between two points at
+      ! one place turns freely.
+      f%free = sum([(f%structures(k)%blocks%free, k=1, parts)])
+      f%loose = [integer ::]
+      do k = 1, parts
+         if (f%structures(k)%blocks%solvable) cycle
+         loose = loose_links(f%structures(k)%blocks)
+         if (parts > 1) loose = f%set%cards(k)%of(loose)
+         f%loose = [f%loose, loose]
+      end do
+      f%loose = shown_links(m, f%loose)
    end function find_structure
+
+   !> Finds the links that may lack an equation for their angle, their slide along the link before, or their place.
+   pure function loose_links(blocks) result(links)
+      type(blocks_t), intent(in) :: blocks   !< not solvable
+      integer, allocatable :: links(:)       !< their numbers
+      integer :: i, slide
+
+      allocate (links(0))
+      associate (t => blocks%tree)
+         do i = 1, size(t%parent)
+            slide = 0
+            if (t%parent_joint(i) > 0) slide = t%slide(t%parent_joint(i))
+            if (any(blocks%loose == t%orientation(i) .or. (slide > 0 .and. blocks%loose == t%orientations + slide) &
+               .or. (t%root(i) > 0 .and. blocks%loose > t%orientations + t%slides))) links = [links, i]
+         end do
+      end associate
+   end function loose_links
 
    !> Finds the Assur groups of a mechanism, without the blocks of slots; none if it is not solvable. Only the listing
    !> has them, and the sets of a long job are checked one after another, but listed by several processes.

@@ -102,6 +102,13 @@ told 'two drives on one mechanism, none on the other' 1 \
    ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA01, PA1, PB1, PB01 AND DRIVES ANGLE CRANK1, ANGLE ROCK1
  *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 2'
+# Both points of a coupler at one place, off its origin: it turns freely, the other links are held one equation too often, and
+# only vector loops show it. No other link is named.
+{ head_of TWO; four_bar 1 $crank_rocker; four_bar 2 1$crank_rocker
+   drive ANGLE CRANK1 '' 14.0 9.0; drive ANGLE CRANK2 '' 14.0 9.0; until_time 2 1.0; } \
+   | sed "s/^POINT   C12 .*/$(point C12 COUPL2 3.5)/" > "$w/deck"
+told 'a bar between two points at one place' 1 ' *** E101  SET 1: LINK COUPL2: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
+ *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 2'
 { head_of CHAIN; point P0 BASE
    for i in 1 2 3 4 5 6 7 8 9 10; do
       link "BAR-$i" 0.0 0.0 0.0; point "P$i" "BAR-$i"; point "Q$i" "BAR-$i" 1.0
@@ -848,6 +855,10 @@ explained 'a deck in free format' '/^(TITLE|END)/ { print; next } { $1 = $1; pri
 explained 'a second set in free format' '/^(TITLE|END)/ { print; next } { $1 = $1 } /^REVOLUTE/ && !n++ { print "END" } 1' \
    ' *** E011  CARD 2  COLUMN 7  FIELD NAME: "M" IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65
  LAYOUT    |UNITS   LENGTH  RAD/DEG TIME'
+explained 'a deck in free format, with a * card and EXTREMES in their columns' \
+   '/^POINT   B / { print "POINT B PISTON"; print "* 0.0"; next } /^TIME/ { print "EXTREMESLINKS"; $1 = $1 } 1' \
+   ' *** E011  CARD 13  COLUMN 7  FIELD NAME: "B" IS NOT IN ITS COLUMNS: LABELS BEGIN IN COLUMN 9, 17 AND 25, NUMBERS IN 33, 49, 65
+ LAYOUT    |POINT   POINT   LINK            XI              ETA'
 explained 'numbers that touch' '/^DRIVE/ { $0 = "DRIVE   ANGLE   CRANK           0.52359877559829910.0" } 1' \
    ' *** E022  CARD 18  COLUMN 49  FIELD REAL-2: "910.0" TOUCHES THE NUMBER BEFORE IT: KEEP A BLANK BETWEEN 0.52359877559829 AND 910.0, OR 0.523598775598299 AND 10.0
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
