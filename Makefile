@@ -1,6 +1,5 @@
 # KINMAT. make: build/kinmat    make run: the paper's example    make help: all targets
 extra :=
-SHELL := /bin/sh
 FC := $(if $(filter default,$(origin FC)),gfortran,$(FC))
 # The kind of every real: double, single, or quad, a reference without LAPACK. make KIND=quad builds build/quad/kinmat.
 KIND   ?= double
@@ -14,7 +13,7 @@ export LC_ALL := C
 
 # No flag here changes a result. gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off $(COVERAGE)
-# Each kind: macros of kinds.F90 and lapack.F90, flags, and the level of `cold` files below. Only double is for speed.
+# Each kind: macros of kinds.F90 and lapack.F90, flags, and the level of `cold` files. Only double is for speed.
 macros_double  := -DREAL_KIND=real64 -DLETTER=d
 macros_single  := -DREAL_KIND=real32 -DLETTER=s
 macros_quad    := -DREAL_KIND=real128
@@ -63,8 +62,9 @@ run: $(BUILD)/kinmat
 	@$(BUILD)/kinmat docs/first.deck
 	@echo ' THE WHOLE MOTION: $(BUILD)/kinmat input/yoke.deck   ITS PICTURE: $(BUILD)/kinmat --no-listing --svg yoke.svg input/yoke.deck'
 
-# docs.mk makes texts of documents; tests.mk lists what tests/ needs, and reads which object needs which.
-include docs/tools/docs.mk tests/tests.mk
+# docs.mk makes texts of documents; tests.mk lists what tests/ needs, and reads which object needs which; optimization.mk
+# has flags of single sources.
+include docs/tools/docs.mk tests/tests.mk src/optimization.mk
 vpath %.f90 $(sort $(dir $(sources) $(helpers)) $(BUILD))
 vpath %.F90 $(sort $(dir $(sources)))
 define build_in
@@ -81,22 +81,6 @@ $(BUILD)/$(1):
 	$$(quiet)mkdir -p $$@
 endef
 $(foreach name,$(builds),$(eval $(call build_in,$(name))))
-
-# A step, and its row in a table, take nearly all time: `hot`. In double precision `warm` is optimized without the link.
-# The others, `cold`, compile with less optimization in half the time.
-modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
-in_both    = $(foreach name,release timed,$(patsubst %,$(BUILD)/$(name)/%.o,$(1)))
-for_speed  = $(if $(filter double,$(KIND)),$(call in_both,$(1)))
-hot  := document_texts $(filter-out picture% animation canvas drawing svg circuit% set_circuits ranges dwells, \
-   $(call modules_in,base linear mechanism blocks continuation perturbed proof rows answers $(if $(filter single,$(KIND)),,results)))
-warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
-$(call in_both,$(filter-out $(hot) $(warm),$(modules) $(command))): private extra := $(no_lto) -O$(or $(level_$(KIND)),0)
-$(call in_both,$(warm)): private extra := $(no_lto)
-# Loops over lanes have few turns: these flags save a tenth of a step.
-$(call for_speed,$(call modules_in,lanes)): private extra += -ftree-loop-vectorize -fvect-cost-model=very-cheap -fpeel-loops -fno-tree-loop-distribute-patterns
-# Procedures of a step and of a row have few callers: they are inlined at any length. Loops over a few numbers call nothing.
-$(call for_speed,$(call modules_in,blocks continuation) number_format masked_numbers listing_tables listing): \
-   private extra += -fno-tree-loop-distribute-patterns --param=max-inline-insns-auto=100 --param=large-function-growth=1000 --param=inline-min-speedup=5
 
 #: shared           build the library for C and Python: build/libkinmat.so.2
 shared: $(BUILD)/libkinmat.so.2
