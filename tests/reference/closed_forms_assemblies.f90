@@ -2,8 +2,8 @@
 !> (Gosselin and Sefrioui 1991; Merlet, Parallel Robots), a four-bar by the law of cosines. Roots are bracketed by those of
 !> the derivatives, so none is missed.
 module closed_forms_assemblies
-   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(*)
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner
+   use quad_jet, only: qp, degree_q, constant_jet, time_jet, operator(+), operator(*)
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, direction, four_bar_links
    implicit none
    private
    public :: platform_assemblies, platform, triple_rocker, crank_limit
@@ -156,16 +156,8 @@ contains
    pure function triple_rocker(t, side) result(links)
       real(qp), intent(in) :: t, side
       type(body_t) :: links(4)
-      type(place_t) :: a0, b0, a, b
-      type(jet_t) :: phi
 
-      phi = (57.0_qp + 5.0_qp*time_jet(t))*degree_q
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp, 0.0_qp)
-      a = polar(a0, 2.0_qp, phi)
-      b = corner(a, 1.5_qp, b0, 3.0_qp, side)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-         body('ROCKER', b0, direction(b0, b))]
+      links = four_bar_links((57.0_qp + 5.0_qp*time_jet(t))*degree_q, [2.0_qp, 1.5_qp, 3.0_qp, 4.0_qp], side)
    end function triple_rocker
 
    !> Its crank goes no further where coupler and rocker are in line, 4.5 long.

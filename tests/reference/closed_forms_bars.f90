@@ -4,7 +4,8 @@
 module closed_forms_bars
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
       operator(+), operator(-), operator(*), operator(/), sin
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, mirrored, on_line
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, mirrored, on_line, &
+      four_bar_links, bars
    implicit none
    private
    public :: chebyshev, kite, antiparallelogram, hart, two_loops
@@ -17,16 +18,8 @@ contains
    pure function chebyshev(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      type(jet_t) :: phi
-      type(place_t) :: a0, b0, a, b
 
-      phi = 30.0_qp*degree_q*time_jet(t)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(2.0_qp, 0.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = corner(a, 2.5_qp, b0, 2.5_qp, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = four_bar_links(30.0_qp*degree_q*time_jet(t), [1.0_qp, 2.5_qp, 2.5_qp, 2.0_qp], 1.0_qp)
    end function chebyshev
 
    !> Kite from 20 deg on; change points at 0 and 180 deg.
@@ -41,14 +34,12 @@ contains
    pure function kite_links(phi) result(links)
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(4)
-      type(place_t) :: a0, b0, a, b
+      type(place_t) :: a0, b0, a
 
       a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(3.0_qp, 0.0_qp)
       a = polar(a0, 1.0_qp, phi)
-      b = mirrored(a0, a, b0)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = bars(phi, a, mirrored(a0, a, b0), b0)
    end function kite_links
 
    !> Antiparallelogram from 15 deg on; change points at 0 and 180 deg.
@@ -63,14 +54,12 @@ contains
    pure function antiparallelogram_links(phi) result(links)
       type(jet_t), intent(in) :: phi
       type(body_t) :: links(4)
-      type(place_t) :: a0, b0, a, b
+      type(place_t) :: a0, b0, a
 
       a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(4.0_qp, 0.0_qp)
       a = polar(a0, 2.0_qp, phi)
-      b = swapped(a0, a, b0)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = bars(phi, a, swapped(a0, a, b0), b0)
    end function antiparallelogram_links
 
    !> The fourth corner of an antiparallelogram: the symmetry that changes `a` and `b` for one another changes `p` for
@@ -112,22 +101,17 @@ contains
    pure function two_loops(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(7)
-      type(jet_t) :: phi, psi, slope, time
-      type(place_t) :: a0, b0, a, b, o, pin, piston
+      type(jet_t) :: psi, slope, time
+      type(place_t) :: o, pin, piston
 
       time = time_jet(t)
-      phi = 0.5_qp + time
       psi = -0.25_qp + 0.75_qp*time + 0.1_qp*sin(2.0_qp*time)
       slope = constant_jet(-30.0_qp*degree_q)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp, 0.0_qp)
       o = fixed_place(1.0_qp, -4.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = corner(a, 3.5_qp, b0, 3.0_qp, 1.0_qp)
       pin = polar(o, 1.5_qp, psi)
       piston = on_line(pin, 4.0_qp, o, slope, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK-1', a0, phi), &
-               body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b)), &
+      links = [four_bar_links(0.5_qp + time, [1.0_qp, 3.5_qp, 3.0_qp, 4.0_qp], 1.0_qp), &
                body('CRANK-2', o, psi), body('ROD', pin, direction(pin, piston)), body('PISTON', piston, slope)]
+      links(2)%name = 'CRANK-1'
    end function two_loops
 end module closed_forms_bars

@@ -6,8 +6,7 @@ module closed_forms_dyads
    implicit none
    private
    public :: place_t, body_t, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, corner, &
-      mirrored, &
-      on_line, natural_spline_3
+      mirrored, on_line, four_bar_links, bars, natural_spline_3
 
    !> A point of the plane.
    type :: place_t
@@ -119,6 +118,31 @@ contains
       along = along + side*sqrt(length**2 - across*across)
       q = place_t(o%x + along*cos(phi), o%y + along*sin(phi))
    end function on_line
+
+   !> A four-bar on a base along the x axis with its crank at `phi`: `lengths` of crank, coupler, rocker and base; `side`
+   !> as in third_corner, seen from the crank's pin to the foot of the rocker.
+   pure function four_bar_links(phi, lengths, side) result(links)
+      type(jet_t), intent(in) :: phi
+      real(qp), intent(in) :: lengths(4), side
+      type(body_t) :: links(4)
+      type(place_t) :: a, b0
+
+      a = polar(fixed_place(0.0_qp, 0.0_qp), lengths(1), phi)
+      b0 = fixed_place(lengths(4), 0.0_qp)
+      links = bars(phi, a, corner(a, lengths(2), b0, lengths(3), side), b0)
+   end function four_bar_links
+
+   !> The links of a four-bar with the joints (0, 0), `a`, `b` and `b0`, the crank at `phi`.
+   pure function bars(phi, a, b, b0) result(links)
+      type(jet_t), intent(in) :: phi
+      type(place_t), intent(in) :: a, b, b0
+      type(body_t) :: links(4)
+      type(place_t) :: a0
+
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
+               body('ROCKER', b0, direction(b0, b))]
+   end function bars
 
    !> The natural cubic spline through (0, y0), (h, y1), (2h, y2). Its second derivative is 0 at the ends and
    !> m = 3 (y0 - 2 y1 + y2)/(2 h^2) in the middle, from the one equation (h/6)(0 + 4m + 0) = (y0 - 2 y1 + y2)/h.

@@ -3,7 +3,7 @@
 module closed_forms_hard
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), &
       operator(-), operator(*), operator(/), sqrt, cos
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, on_line, four_bar_links
    implicit none
    private
    public :: parallelogram, parallelogram_links, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, &
@@ -113,17 +113,8 @@ contains
    pure function far_small(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      real(qp), parameter :: unit = 1.0e-6_qp
-      type(jet_t) :: phi
-      type(place_t) :: a0, b0, a, b
 
-      phi = (10.0_qp + 30.0_qp*time_jet(t))*degree_q
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp*unit, 0.0_qp)
-      a = polar(a0, unit, phi)
-      b = corner(a, 3.5_qp*unit, b0, 3.0_qp*unit, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), &
-               body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+      links = four_bar_links((10.0_qp + 30.0_qp*time_jet(t))*degree_q, [1.0_qp, 3.5_qp, 3.0_qp, 4.0_qp]*1.0e-6_qp, 1.0_qp)
       links%x = links%x + 1200.0_qp
       links%y = links%y + 1600.0_qp
    end function far_small
@@ -132,15 +123,7 @@ contains
    pure function many_turns(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      type(jet_t) :: phi
-      type(place_t) :: a0, b0, a, b
 
-      phi = 1.0e6_qp + 0.5_qp*time_jet(t)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp, 0.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = corner(a, 3.5_qp, b0, 3.0_qp, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = four_bar_links(1.0e6_qp + 0.5_qp*time_jet(t), [1.0_qp, 3.5_qp, 3.0_qp, 4.0_qp], 1.0_qp)
    end function many_turns
 end module closed_forms_hard

@@ -5,14 +5,15 @@ module closed_forms_linkages
    use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), &
       operator(/), sqrt, sin, cos
    use rise_laws, only: rise_jet, rise_words
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, &
+      four_bar_links
    implicit none
    private
    public :: four_bar, crank_rockers, drawing, drawn_link, rise_dwell, drag_link, peaucellier, five_bar, pantograph, &
       book_four_bar
 
-   !> Crank, coupler and rocker of the crank-rocker.
-   real(qp), parameter :: sizes(3) = [1.0_qp, 3.5_qp, 3.0_qp]
+   !> Crank, coupler, rocker and base of the crank-rocker.
+   real(qp), parameter :: sizes(4) = [1.0_qp, 3.5_qp, 3.0_qp, 4.0_qp]
 
 contains
 
@@ -25,9 +26,9 @@ contains
 
       time = time_jet(t)
       if (set == 1) then
-         links = crank_rocker(30.0_qp*degree_q*time, 1.0_qp, sizes)
+         links = four_bar_links(30.0_qp*degree_q*time, sizes, 1.0_qp)
       else
-         links = crank_rocker(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), -1.0_qp, sizes)
+         links = four_bar_links(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), sizes, -1.0_qp)
       end if
    end function four_bar
 
@@ -35,16 +36,8 @@ contains
    pure function book_four_bar(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      type(jet_t) :: phi
-      type(place_t) :: a0, a, b, b0
 
-      phi = (30.0_qp + 60.0_qp*time_jet(t))*degree_q
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(90.0_qp, 0.0_qp)
-      a = polar(a0, 30.0_qp, phi)
-      b = third_corner(a, b0, constant_jet(70.0_qp**2), constant_jet(65.0_qp**2), 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               body('ROCKER', b0, direction(b0, b))]
+      links = four_bar_links((30.0_qp + 60.0_qp*time_jet(t))*degree_q, [30.0_qp, 70.0_qp, 65.0_qp, 90.0_qp], 1.0_qp)
    end function book_four_bar
 
    !> The variant number `n` of the open crank-rocker: three cranks, each with its coupler, and two rockers for each.
@@ -54,8 +47,8 @@ contains
       type(body_t) :: links(4)
 
       associate (k => (n - 1)/2)
-         links = crank_rocker(30.0_qp*degree_q*time_jet(t), 1.0_qp, [0.5_qp*(k + 1), 3.5_qp - 0.25_qp*k, &
-                                                                     merge(2.75_qp, 3.0_qp, modulo(n, 2) == 1)])
+         links = four_bar_links(30.0_qp*degree_q*time_jet(t), [0.5_qp*(k + 1), 3.5_qp - 0.25_qp*k, &
+            merge(2.75_qp, 3.0_qp, modulo(n, 2) == 1), 4.0_qp], 1.0_qp)
       end associate
    end function crank_rockers
 
@@ -107,23 +100,8 @@ contains
          phi = 30.0_qp + rise_jet(trim(rise_words(set)), 0.3_qp, 1.2_qp, 61.64_qp, t) &
             - rise_jet(trim(rise_words(set)), 2.1_qp, 0.6_qp, 61.64_qp, t)
       end if
-      links = crank_rocker(phi*degree_q, 1.0_qp, sizes)
+      links = four_bar_links(phi*degree_q, sizes, 1.0_qp)
    end function rise_dwell
-
-   !> Crank-rocker with the crank's angle `phi`; `side` 1: open, -1: crossed; `lengths` of crank, coupler and rocker.
-   pure function crank_rocker(phi, side, lengths) result(links)
-      type(jet_t), intent(in) :: phi
-      real(qp), intent(in) :: side, lengths(3)
-      type(body_t) :: links(4)
-      type(place_t) :: a0, b0, a, b
-
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp, 0.0_qp)
-      a = polar(a0, lengths(1), phi)
-      b = third_corner(a, b0, constant_jet(lengths(2)**2), constant_jet(lengths(3)**2), side)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), &
-               body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
-   end function crank_rocker
 
    !> Double crank: base 1 at (1, 0.5) turned by 30 deg, crank 2, coupler sqrt(6) with its axes in its middle,
    !> follower 2.5. The coupler's half length is the double that the deck's continuation card holds.

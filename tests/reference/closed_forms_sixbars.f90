@@ -3,7 +3,8 @@
 module closed_forms_sixbars
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
       operator(+), operator(-), operator(*), sin
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, corner, on_line
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, corner, on_line, &
+      four_bar_links
    implicit none
    private
    public :: watt, watt_output, stephenson, stephenson_output, klann, grounds
@@ -14,21 +15,14 @@ contains
    !> axes; rod CD = 4, output D0 D = 3 about (9, 0).
    pure function watt(t) result(links)
       real(qp), intent(in) :: t
-      type(body_t) :: links(6), rocker
-      type(jet_t) :: phi
-      type(place_t) :: a0, b0, d0, a, b, c, d
+      type(body_t) :: links(6)
+      type(place_t) :: d0, c, d
 
-      phi = 40.0_qp*degree_q*time_jet(t)
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(4.0_qp, 0.0_qp)
+      links(:4) = four_bar_links(40.0_qp*degree_q*time_jet(t), [1.0_qp, 3.5_qp, 3.0_qp, 4.0_qp], 1.0_qp)
       d0 = fixed_place(9.0_qp, 0.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = corner(a, 3.5_qp, b0, 3.0_qp, 1.0_qp)
-      rocker = body('ROCKER', b0, direction(b0, b))
-      c = place_on(rocker, 1.2_qp, -1.6_qp)
+      c = place_on(links(4), 1.2_qp, -1.6_qp)
       d = corner(c, 4.0_qp, d0, 3.0_qp, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
-               rocker, body('ROD', c, direction(c, d)), body('OUTPUT', d0, direction(d0, d))]
+      links(5:) = [body('ROD', c, direction(c, d)), body('OUTPUT', d0, direction(d0, d))]
    end function watt
 
    !> The same six-bar driven from its other side: the output swings by 6 deg about 100 deg. The rocker's second arm is
@@ -97,20 +91,14 @@ contains
    !> Its links with the crank at `phi`.
    pure function stephenson_at(phi) result(links)
       type(jet_t), intent(in) :: phi
-      type(body_t) :: links(6), coupler
-      type(place_t) :: a0, b0, d0, a, b, c, d
+      type(body_t) :: links(6)
+      type(place_t) :: d0, c, d
 
-      a0 = fixed_place(0.0_qp, 0.0_qp)
-      b0 = fixed_place(3.0_qp, 0.0_qp)
+      links(:4) = four_bar_links(phi, [1.0_qp, 2.5_qp, 2.5_qp, 3.0_qp], 1.0_qp)
       d0 = fixed_place(5.0_qp, 3.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = corner(a, 2.5_qp, b0, 2.5_qp, 1.0_qp)
-      coupler = body('COUPLER', a, direction(a, b))
-      c = place_on(coupler, 1.25_qp, 1.5_qp)
+      c = place_on(links(3), 1.25_qp, 1.5_qp)
       d = corner(c, 4.0_qp, d0, 3.0_qp, 1.0_qp)
-      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), coupler, &
-               body('ROCKER', b0, direction(b0, b)), body('ROD', c, direction(c, d)), &
-               body('OUTPUT', d0, direction(d0, d))]
+      links(5:) = [body('ROD', c, direction(c, d)), body('OUTPUT', d0, direction(d0, d))]
    end function stephenson_at
 
    !> Klann's leg, the joints of US patent 6,260,862: crank 0.268 about (1.599, 0.750), lower rocker 0.3206 about
