@@ -186,8 +186,8 @@ tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 	BUILD=$(BUILD) tests/system/tolerances.sh $(or $(N),10000)
 
 #: mutants          count faults in the sources that no test sees
-# Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
-mutants: $(BUILD)/release/print_expected
+# Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and the parts of mutants.sh not see?
+mutants: $(addprefix $(BUILD)/release/,print_expected cylinders_by_chance fuzz_mechanisms lengths_by_chance random_blocks)
 	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
 
 #: coverage         count the lines of src/ that tests run

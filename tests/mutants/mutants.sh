@@ -1,11 +1,10 @@
 #!/bin/sh
-# make mutants N=200 SEED=1: N faults, one at a time, in a copy of the sources below BUILD/mutants; which of them do the unit
-# tests and `make check` see? Lists those that survive. JOBS=2: two at a time; FILES='src/deck/cards.f90 ...': faults in these
-# alone. ONLY=file: its changes alone, a line each, as in equivalent.txt below.
+# make mutants N=200 SEED=1: puts N faults, one at a time, into a copy of the sources below BUILD/mutants, and lists those that
+# survive the unit tests and the `parts` below. JOBS=2: two at a time; FILES='src/deck/cards.f90 ...': only faults in these
+# files; ONLY=file: only its changes, a line each, as in equivalent.txt below; PARTS: a file of other parts.
 #
-# A mutant is built without traps and without optimization, which takes a second. It is killed by an assertion of a unit test
-# (those of its own module come first); or else by a listing that is not the one of closed forms; or else by the unit tests of a
-# build that stops at run-time traps, or by the time limit.
+# A mutant is built without traps and without optimization, which takes a second. It is killed by an assertion of a unit test;
+# or else by a check of a part; or else by the unit tests of a build that stops at run-time traps, or by the time limit.
 # tests/mutants/equivalent.txt names changes that change nothing, a line each: file|old text|new text|why.
 N=${N:-200}
 SEED=${SEED:-1}
@@ -17,6 +16,28 @@ export LC_ALL OPENBLAS_NUM_THREADS
 # Seconds of processor time of one process, and seconds by the clock: many times what the tests take.
 UNIT_TIME=${UNIT_TIME:-60} UNIT_CLOCK=${UNIT_CLOCK:-900}
 CHECK_TIME=${CHECK_TIME:-10} CHECK_CLOCK=${CHECK_CLOCK:-300}
+# Parts of `make test` that run only the command, the shortest first.
+parts() {
+   if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
+   sed 's/^ *//' <<'END'
+   tests/system/slots.sh
+   tests/system/many_sets.sh
+   tests/system/centres.sh
+   tests/system/measures.sh
+   tests/system/as_drawn.sh
+   tests/system/drawn.sh
+   tests/system/lengths.sh
+   tests/oracle/cylinders.sh 40
+   tests/system/ratios.sh
+   tests/system/answers.sh
+   tests/system/assemblies.sh
+   tests/system/check.sh
+   tests/system/together.sh
+   tests/system/faults.sh
+END
+}
+# What the parts need in addition to the command.
+tools='release/print_expected release/cylinders_by_chance release/fuzz_mechanisms release/lengths_by_chance release/random_blocks'
 unset MAKEFLAGS MFLAGS MAKELEVEL
 place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
@@ -54,21 +75,24 @@ run_until() {
    esac
 }
 
-# unit TREE KIND [SUITE]: the unit tests, which all must have been run; or those of one suite.
+# unit TREE KIND: the unit tests, which all must have been run.
 unit() {
-   run_until "$1/$2/tests" 'Failure in:' unit.log $UNIT_TIME $UNIT_CLOCK ./unit ${3:+-f "$3"}
+   run_until "$1/$2/tests" 'Failure in:' unit.log $UNIT_TIME $UNIT_CLOCK ./unit
    status=$?
-   [ $status -ne 0 ] || [ "$(tail -n 1 "$1/$2/tests/unit.log")" = "$(cat "$place/base/unit.count")" ] || status=3
+   [ $status -ne 0 ] || has_ended "$1" "$2/tests/unit.log" || status=3
    return $status
 }
 
-check() {
-   cp "$1/plain/debug/kinmat" "$1/plain/kinmat"
-   run_until "$1" 'FAILED' plain/check.log $CHECK_TIME $CHECK_CLOCK env BUILD=plain tests/system/check.sh
+# part TREE K: the part in line K of the list, which must have made all of its checks.
+part() {
+   run_until "$1" 'FAILED' "plain/$2.log" $CHECK_TIME $CHECK_CLOCK env BUILD=plain $(parts | sed -n "$2p")
    status=$?
-   [ $status -ne 0 ] || [ "$(tail -n 1 "$1/plain/check.log")" = "$(cat "$place/base/check.count")" ] || status=3
+   [ $status -ne 0 ] || has_ended "$1" "plain/$2.log" || status=3
    return $status
 }
+
+# has_ended TREE LOG: the last line is that of the sources without a mutant.
+has_ended() { [ "$(tail -n 1 "$1/$2")" = "$(tail -n 1 "$place/base/$2")" ]; }
 
 # The sources and tests as they are now, and their builds, which must pass.
 prepare() {
@@ -85,16 +109,19 @@ prepare() {
    mkdir -p "$base/plain/expected"
    # expected/ is what closed forms print; that they still do is for `make check` itself.
    mkdir -p "$base/plain/release"
-   cp expected/*.lst "$base/plain/expected/" && cp -p "$BUILD/release/print_expected" "$base/plain/release/" || return 3
+   cp expected/*.lst "$base/plain/expected/" || return 3
+   for tool in $tools; do
+      [ ! -f "$BUILD/$tool" ] || cp -p "$BUILD/$tool" "$base/plain/$tool" || return 3
+   done
    for kind in plain traps; do
       build "$base" $kind $kind/tests/unit || { tail -n 20 "$base/make.log"; return 3; }
-      (cd "$base/$kind/tests" && ./unit > unit.log 2>&1) || { echo "the unit tests fail without a mutant ($kind)"; return 3; }
+      unit "$base" $kind || { echo "the unit tests fail without a mutant ($kind)"; return 3; }
    done
-   tail -n 1 "$base/plain/tests/unit.log" > "$base/unit.count"
    build "$base" plain plain/debug/kinmat || { tail -n 20 "$base/make.log"; return 3; }
    cp "$base/plain/debug/kinmat" "$base/plain/kinmat"
-   (cd "$base" && BUILD=plain tests/system/check.sh > plain/check.log 2>&1) || { echo 'make check fails without a mutant'; return 3; }
-   tail -n 1 "$base/plain/check.log" > "$base/check.count"
+   for k in $(seq "$(parts | wc -l)"); do
+      part "$base" "$k" || { echo "$(parts | sed -n "${k}p") fails without a mutant"; cat "$base/plain/$k.log"; return 3; }
+   done
 }
 
 # relink TREE KIND TARGET...: the object of $name has changed. Where no other can see it (its .mod is the same) nothing else is compiled.
@@ -117,18 +144,22 @@ relink() {
 verdict() {
    tree=$1
    said='does not compile'
-   relink "$tree" plain plain/tests/unit plain/debug/kinmat || return
-   for suite in "test_${name}_suite" ''; do
-      unit "$tree" plain $suite
-      stopped=$?
-      [ $stopped -ne 1 ] || { said="assertion: $(first_failure "$tree/plain")"; return; }
+   relink "$tree" plain plain/tests/unit || return
+   unit "$tree" plain
+   stopped=$?
+   [ $stopped -ne 1 ] || { said="assertion: $(first_failure "$tree/plain")"; return; }
+
+   build "$tree" plain plain/debug/kinmat || return
+   cp "$tree/plain/debug/kinmat" "$tree/plain/kinmat"
+   for k in $(seq "$(parts | wc -l)"); do
+      part "$tree" "$k"
+      case $? in
+         0) ;;
+         2) [ $stopped -ne 0 ] || stopped=2; break;;
+         *) said="listing: $(parts | sed -n "${k}p"): $(sed -n 's/^FAILED: //p' "$tree/plain/$k.log" | head -n 1)"; return;;
+      esac
    done
-   check "$tree"
-   case $? in
-      0) ;;
-      2) [ $stopped -ne 0 ] || stopped=2;;
-      *) said="listing: $(sed -n 's/^FAILED: //p' "$tree/plain/check.log" | head -n 1)"; return;;
-   esac
+
    kind=plain
    if [ $stopped -eq 0 ]; then
       kind=traps

@@ -113,14 +113,15 @@ MAKE
 mkdir -p "$tiny/build/release" && : > "$tiny/build/release/print_expected"
 chmod +x "$tiny/tests/system/check.sh"
 cp tests/mutants/* "$tiny/tests/mutants/"
-(cd "$tiny" && BUILD=build N=5 SEED=1 UNIT_TIME=1 FC="${FC:-gfortran}" FILES=src/base/tiny.f90 tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
+echo tests/system/check.sh > "$tiny/parts"
+(cd "$tiny" && PARTS=parts BUILD=build N=5 SEED=1 UNIT_TIME=1 FC="${FC:-gfortran}" FILES=src/base/tiny.f90 tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
 equal 'five mutants: the last line' '5 mutants: 4 killed (1 by unit tests'"'"' assertions, 2 by run-time traps alone, 1 by listings alone), 1 survive' \
    "$(tail -n 1 "$tiny/said.txt")"
 equal 'the one that never ends' 'Killed by time: 1, counted as traps. Equivalent survivors: 0.' "$(grep '^Killed' "$tiny/said.txt")"
 equal 'the survivor' 'SURVIVES src/base/tiny.f90:9' "$(grep '^SURVIVES' "$tiny/said.txt")"
 equal 'what has seen a fault' 'assertion: held' "$(sed -n 's/^[0-9]*: \(assertion.*\): src.*/\1/p' "$tiny/said.txt")"
 echo 'src/base/tiny.f90|listed = 2|listed = 1' > "$tiny/only.txt"
-(cd "$tiny" && BUILD=build N=5 ONLY=only.txt FC="${FC:-gfortran}" tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
-equal 'one change alone' '1: listing: listed: src/base/tiny.f90:8: {listed = 2} -> {listed = 1}' "$(head -n 1 "$tiny/said.txt")"
+(cd "$tiny" && PARTS=parts BUILD=build N=5 ONLY=only.txt FC="${FC:-gfortran}" tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
+equal 'one change alone' '1: listing: tests/system/check.sh: listed: src/base/tiny.f90:8: {listed = 2} -> {listed = 1}' "$(head -n 1 "$tiny/said.txt")"
 equal 'the sources are as they were' 'held = 2' "$(sed -n 's/^ *\(held = .*\)/\1/p' "$tiny/src/base/tiny.f90")"
 conclude
