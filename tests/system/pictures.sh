@@ -225,6 +225,8 @@ equal 'the arrow of a velocity' yes "$(awk -F, '
    on && /<polygon/ { line = $0; sub(/.*points="/, "", line); split(line, tip, "[ ,]")
       x = (tip[1] - from[1])/scale - vx; y = (from[2] - tip[2])/scale - vy
       print (x*x + y*y < (0.02/scale)^2 ? "yes" : "no " x " " y); exit }' "$w/wishbone.csv" "$w/wishbone.svg")"
+equal 'the bar of velocities is 20 below the bar of lengths' 20 "$(sed -nE 's/.*class="(scale|arrow)" points="[^,]*,([0-9.]*) .*/\1 \2/p' "$w/wishbone.svg" \
+   | awk '{ level[$1] = $2 } END { print level["arrow"] - level["scale"] }')"
 equal 'the caption' 'T = 0 S, Y WHEEL = 310 MM' "$(sed -n 's/.*class="time">\(T = .*\)<.*/\1/p' "$w/wishbone.svg")"
 equal 'an animation has names and the value of the drive' '3 5 5' "$(grep -c 'class="link" style="fill' "$w/moving.svg") \
 $(grep -cE '>[ABCD]<|>WHEEL<' "$w/moving.svg") $(grep -c 'T = .* S, Y WHEEL = .* MM<' "$w/moving.svg" | sed 's/^361$/5/')"

@@ -130,6 +130,13 @@ same 'typed in: CSV' "$w/plain.csv" "$w/variant.csv"
 sed -n "/^ VARIANT $number /,/^ END OF VARIANT/p" "$w/slider.lst" | sed '1,/^$/d;$d' > "$w/variant.lst"
 sed -n '/^ RESULTS/,/^ END OF SET/p' "$w/plain.lst" | sed '1,/^$/d;$d' > "$w/plain.tables"
 same 'typed in: tables' "$w/plain.tables" "$w/variant.lst"
+# The estimates of errors, too: their sizes and their own perturbed numbers are those of the variant.
+errors() { moving_four_bar "$1" '' '' '' "$(card AT '' '' '' 0.0)" "$(card PRINT LINKS)" > "$w/errors.deck"
+   "$kinmat" --errors --no-listing --csv "$w/errors.csv" "$w/errors.deck"; }
+errors "$(vary R1 LIST '' 0.5 1.0)"
+sed '2,4d; s/^1,2,/1,/; 1s/variant,//' "$w/errors.csv" > "$w/variant.csv"
+errors ''
+same 'typed in: errors' "$w/errors.csv" "$w/variant.csv"
 
 # A drawing: a joint that moves takes the lengths of both its links with it.
 {
