@@ -79,6 +79,16 @@ for i in range(1, 20):
     x = names.index('TIP.x')
     check('a sweep', rows[0][x] == i/8 and abs(rows[2][x] + i/8) < 1e-8)
 
+# A deck that runs backwards goes on so only while every call is for its next instant.
+k = kinmat.Kinmat(deck.replace('0.0             3.14159265', '2.0             0.0       ') % 1.0)
+k.advance(2.0)
+k.advance(1.0)
+check('backwards', abs(k.advance(0.0)[k.columns.index('TIP.x')] - 1.0) < 1e-12)
+k = kinmat.Kinmat(deck.replace('0.0             3.14159265', '2.0             0.0       ') % 1.0)
+k.advance(2.0)
+k.advance(3.0)
+rejected('backwards after another time', 'BEFORE', lambda: k.advance(0.0))
+
 # A rocker that is driven beyond its limit: flagged, and NaN.
 k = kinmat.Kinmat("""GROUND  BASE
 LINK    CRANK
