@@ -85,7 +85,7 @@ unit() {
 
 # part TREE K: the part in line K of the list, which must have made all of its checks.
 part() {
-   run_until "$1" 'FAILED' "plain/$2.log" $CHECK_TIME $CHECK_CLOCK env BUILD=plain $(parts | sed -n "$2p")
+   run_until "$1" 'FAILED' "plain/$2.log" $CHECK_TIME $CHECK_CLOCK env -u N -u SEED BUILD=plain $(parts | sed -n "$2p")
    status=$?
    [ $status -ne 0 ] || has_ended "$1" "plain/$2.log" || status=3
    return $status
