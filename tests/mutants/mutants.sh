@@ -94,18 +94,19 @@ part() {
 # has_ended TREE LOG: the last line is that of the sources without a mutant.
 has_ended() { [ "$(tail -n 1 "$1/$2")" = "$(tail -n 1 "$place/base/$2")" ]; }
 
-# The sources and tests as they are now, and their builds, which must pass.
+# The sources and tests as they are now, and their builds, which must pass; those that have passed already need not again.
 prepare() {
    base=$place/base
    mkdir -p "$base" || return 3
    kept='Makefile README.md docs src tests input expected'
    files=$(find $kept -type f) || return 3
    for file in $files; do
-      cmp -s "$file" "$base/$file" || { mkdir -p "$(dirname "$base/$file")"; cp "$file" "$base/$file" || return 3; }
+      cmp -s "$file" "$base/$file" || { rm -f "$base/passed"; mkdir -p "$(dirname "$base/$file")"; cp "$file" "$base/$file" || return 3; }
    done
    (cd "$base" && find $kept -type f 2> /dev/null) | while read -r file; do
-      [ -f "$file" ] || { rm "$base/$file"; name=${file##*/}; rm -f "$base"/*/*/"${name%.*}".*; }
+      [ -f "$file" ] || { rm -f "$base/passed" "$base/$file"; name=${file##*/}; rm -f "$base"/*/*/"${name%.*}".*; }
    done
+   [ "$(cat "$base/passed" 2> /dev/null)" != "$(parts)" ] || return 0
    mkdir -p "$base/plain/expected"
    # expected/ is what closed forms print; that they still do is for `make check` itself.
    mkdir -p "$base/plain/release"
@@ -122,6 +123,7 @@ prepare() {
    for k in $(seq "$(parts | wc -l)"); do
       part "$base" "$k" || { echo "$(parts | sed -n "${k}p") fails without a mutant"; cat "$base/plain/$k.log"; return 3; }
    done
+   parts > "$base/passed"
 }
 
 # relink TREE KIND TARGET...: the object of $name has changed. Where no other can see it (its .mod is the same) nothing else is compiled.
