@@ -31,6 +31,8 @@ parts() {
    tests/system/ratios.sh
    tests/system/answers.sh
    tests/system/assemblies.sh
+   tests/system/command.sh
+   tests/system/output.sh
    tests/system/check.sh
    tests/system/together.sh
    tests/system/faults.sh
