@@ -10,13 +10,13 @@ module points
    use drives, only: drive_motion
    use scales, only: is_length
    use columns, only: columns_of_rows, forms, form_of, of_length
-   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, points_coincide
+   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, points_coincide
    use pair_geometry, only: pair_motion
    use plane_vectors, only: pi, full_turn, degree, direction, rotated, point_of, add_rotating, cross
    use motion, only: motion_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
-   public :: row_t, column_of_ratio, find_row, known_at, amplification_in_measure, difference, is_due, is_printed, &
+   public :: row_t, column_of_ratio, find_row, known_at, amplification_in_rows, difference, is_due, is_printed, &
       is_fixed
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
@@ -352,6 +352,35 @@ contains
       end associate
    end subroutine find_measure
 
+   !> Finds the largest factor by which roundings of the motion grow in the measures, poles and curves of its mechanism,
+   !> in characteristic ones. In a centre at infinity or at rest they grow without limit.
+   pure real(wp) function amplification_in_rows(m, q, rate) result(amplification)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q        !< all of it is known
+      real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
+      type(row_t) :: row
+      integer :: i
+
+      amplification = 0.0_wp
+      do i = 1, size(m%requests)
+         associate (request => m%requests(i), v => row%value(3, 1), a => row%value(3, 2))
+            if (request%kind == request_measure) amplification = max(amplification, &
+               amplification_in_measure(m, q, request%subject, rate))
+            if (.not. is_centre(request%kind)) cycle
+            call find_row(m, q, request, row)
+            if (row%state /= centre_finite) then
+               amplification = huge(1.0_wp)
+            else if (request%kind == request_pole) then
+               amplification = max(amplification, (1.0_wp + norm2(row%value(:2, 2))/request%length)*request%rate &
+                  /abs(row%weight))
+            else
+               amplification = max(amplification, (1.0_wp + row%value(1, 2)/request%length)*(3.0_wp/v + (v + a) &
+                  /abs(row%weight)))
+            end if
+         end associate
+      end do
+   end function amplification_in_rows
+
    !> Gives the factor by which roundings of the motion grow in a measure, in characteristic ones. With v = |d'|/s and
    !> a = |d''|/s in characteristic rates, and d from point P to point Q, it is 1 + v + v**2 + a for s = |d| and 1/s
    !> times as much for the direction. If points coincide, nothing can grow: 0.
@@ -359,7 +388,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q        !< all of it is known
       integer, intent(in) :: i               !< its number
-      real(wp), intent(in) :: rate           !< characteristic rate
+      real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
       real(wp) :: d(2, 0:2), distance, v
       integer :: k
 

@@ -3,12 +3,11 @@
 module significance_check
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, request_pole, request_measure, is_centre
+   use mechanism, only: mechanism_t, method_newton, is_centre, measure_count
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
-   use points, only: row_t, find_row, amplification_in_measure
-   use instant_centres, only: centre_finite
+   use points, only: amplification_in_rows
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
    implicit none
@@ -31,7 +30,7 @@ module significance_check
    type :: sizes_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< characteristic length and rate in the deck's units
       real(wp) :: law(0:1) = 0.0_wp            !< size of the drives' laws at t = 0, and how it grows with |t|; no units
-      logical :: has_centres = .false.         !< poles or curves are asked for
+      logical :: has_formulas = .false.        !< it has measures, poles or curves
    end type sizes_t
 
    !> With a smaller pivot of a block everything is in doubt.
@@ -54,7 +53,7 @@ contains
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
-      s%has_centres = any(is_centre(m%requests%kind))
+      s%has_formulas = measure_count(m) > 0 .or. any(is_centre(m%requests%kind))
       do i = 1, size(m%drives)
          sizes = growing_sizes(m%drives(i), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
          do k = 1, 3
@@ -92,10 +91,9 @@ contains
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       associate (length => sizes%length, rate => sizes%rate)
          size_of = max(1.0_wp, largest(1, 0)/length, maxval(abs(q%origin))/length, &
-            max(largest(1, 1)/length, largest(2, 1))/rate, max(largest(1, 2)/length, largest(2, 2))/rate**2, &
-            amplification_in_measures(m, q, rate))
+            max(largest(1, 1)/length, largest(2, 1))/rate, max(largest(1, 2)/length, largest(2, 2))/rate**2)
       end associate
-      if (sizes%has_centres) size_of = max(size_of, amplification_in_centres(m, q))
+      if (sizes%has_formulas) size_of = max(size_of, amplification_in_rows(m, q, sizes%rate))
       if (size_of > safe_size) return
       usual = max(size_of, min(angle, usual_angle))
 
@@ -139,46 +137,4 @@ contains
             abs(accelerations(3, i))])
       end do
    end subroutine find_largest
-
-   !> Finds the largest growth of roundings of a motion in the poles and curves of its mechanism, relative to their
-   !> characteristic sizes. At infinity and at rest the growth is huge.
-   pure real(wp) function amplification_in_centres(m, q) result(amplification)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(row_t) :: row
-      integer :: i
-
-      amplification = 0.0_wp
-      do i = 1, size(m%requests)
-         if (.not. is_centre(m%requests(i)%kind)) cycle
-         call find_row(m, q, m%requests(i), row)
-         if (row%state /= centre_finite) amplification = huge(1.0_wp)
-         if (row%state /= centre_finite) return
-         associate (length => m%requests(i)%length, v => row%value(3, 1), a => row%value(3, 2))
-            if (m%requests(i)%kind == request_pole) then
-               amplification = max(amplification, (1.0_wp + norm2(row%value(:2, &
-                  2))/length)*m%requests(i)%rate/abs(row%weight))
-            else
-               amplification = max(amplification, (1.0_wp + row%value(1, 2)/length)*(3.0_wp/v + (v + &
-                  a)/abs(row%weight)))
-            end if
-         end associate
-      end do
-   end function amplification_in_centres
-
-   !> Finds the largest growth of roundings of a motion in the measures of its mechanism, relative to their
-   !> characteristic sizes.
-   pure real(wp) function amplification_in_measures(m, q, rate) result(amplification)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q        !< all of it is known
-      real(wp), intent(in) :: rate           !< characteristic rate, 1 over the unit of time
-      integer :: i
-
-      amplification = 0.0_wp
-      if (.not. allocated(m%measures)) return
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind == request_measure) &
-            amplification = max(amplification, amplification_in_measure(m, q, m%requests(i)%subject, rate))
-      end do
-   end function amplification_in_measures
 end module significance_check
