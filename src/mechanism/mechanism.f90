@@ -367,6 +367,36 @@ contains
       end if
    end function request_links
 
+   !> Tells whether the subject of a request belongs to the ground.
+   pure logical function is_fixed(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      is_fixed = all(m%links(request_links(m, request))%ground)
+   end function is_fixed
+
+   !> Tells whether the value of a request is a sum of numbers of cards: its subject belongs to the ground, and is no
+   !> measure.
+   pure logical function is_sum_of_numbers(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      is_sum_of_numbers = request%kind /= request_measure .and. is_fixed(m, request)
+   end function is_sum_of_numbers
+
+   !> Gives the size of the largest number whose sum is the place of a ground point; 0 for another request of the
+   !> ground, which has numbers of cards as they stand.
+   pure real(wp) function largest_summand(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      largest_summand = 0.0_wp
+      if (request%kind /= request_point) return
+      associate (point => m%points(request%subject))
+         largest_summand = max(norm2(point%offset), norm2(m%links(point%link)%position(:2)))
+      end associate
+   end function largest_summand
+
    !> Finds the links of a subject that is no measure; if they are fewer than three, some appear several times.
    pure function subject_links(m, kind, subject, second) result(links)
       type(mechanism_t), intent(in) :: m

@@ -13,11 +13,11 @@ module points
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, points_coincide
    use pair_geometry, only: pair_motion
    use plane_vectors, only: pi, full_turn, degree, direction, rotated, point_of, add_rotating, cross
-   use motion, only: motion_t, known_of, flag_none, flag_singular, flag_stroke
+   use motion, only: motion_t, turned_t, known_of, flag_none, flag_singular, flag_stroke
    implicit none
    private
    public :: row_t, column_of_ratio, find_row, known_at, amplification_in_rows, difference, is_due, is_printed, &
-      is_fixed
+      keep_turns
 
    !> One row of a table, in the deck's units of length and time and in radians. Its `value` has x, y, phi (of a pair
    !> its value first) and their derivatives; of a pole or curve the numbers of `centre_t`.
@@ -243,14 +243,6 @@ contains
       end if
    end function difference
 
-   !> Tells whether the subject of a request belongs to the ground.
-   pure logical function is_fixed(m, request)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-
-      is_fixed = all(m%links(request_links(m, request))%ground)
-   end function is_fixed
-
    !> Gives the place from the motion's origin, the velocity and the acceleration (2, 0:2) of a point, in the deck's
    !> units. With the vector u from its link's origin o to the point:
    !>   p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
@@ -409,6 +401,26 @@ contains
          end if
       end associate
    end function amplification_in_measure
+
+   !> Keeps the values of the measures that continue, from which the next instant goes on.
+   pure subroutine keep_turns(m, q)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
+      type(row_t) :: row
+      integer :: i
+
+      if (.not. allocated(m%measures)) return
+      if (.not. any(m%measures%continues)) return
+      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
+      do i = 1, size(m%measures)
+         if (.not. m%measures(i)%continues) cycle
+         call find_row(m, q, request_t(request_measure, i), row)
+         associate (turned => q%turned(i))
+            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
+            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
+         end associate
+      end do
+   end subroutine keep_turns
 
    !> Gives a direction above -pi and up to pi. A direction that is -pi but for rounding becomes pi.
    pure real(wp) function between_half_turns(angle) result(x)

@@ -2,13 +2,12 @@
 !> in whatever part they are. Links, pairs, drives and tolerances of a part by their numbers there.
 module set_members
    use kinds, only: wp, label_length
-   use mechanism, only: drive_t, request_t, tolerance_t, shown_links
+   use mechanism, only: drive_t, request_t, tolerance_t, shown_links, is_fixed
    use motion, only: diagnostic_t
    use independent, only: set_t, request_of
    use names, only: drive_name, subject_name
    use scales, only: characteristic_length, characteristic_rate
    use columns, only: form_of
-   use points, only: is_fixed
    implicit none
    private
    public :: requests_of, row_form, row_subject, link_of_point, ratio_drive, moving_extremes, drive_of, drive_number, &

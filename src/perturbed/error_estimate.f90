@@ -3,10 +3,11 @@
 module error_estimate
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_point, request_measure, request_pole, is_centre
+   use mechanism, only: mechanism_t, is_centre, is_sum_of_numbers, largest_summand
    use motion, only: motion_t
-   use points, only: row_t, find_row, known_at, difference, is_fixed
-   use instant_centres, only: centre_finite, centre_starting, points_coincide
+   use columns, only: columns_of_rows, forms
+   use points, only: row_t, find_row, known_at, difference
+   use instant_centres, only: centre_finite, centre_infinite, centre_starting, points_coincide
    use masked_numbers, only: nothing_known, errors_a_digit
    use significance_check, only: sizes_t, sizes_of, find_amplification
    use blocks, only: blocks_t, geometry_t
@@ -299,11 +300,8 @@ contains
 
       error = 0.0_wp
       associate (request => m%requests(i))
-         if (is_fixed(m, request) .and. request%kind /= request_measure) then
-            ! Its value is a sum of numbers of cards.
-            error(:, 0) = abs(row%value(:, 0))
-            if (request%kind == request_point) error(:, 0) = max(error(:, 0), norm2(m%points(request%subject)%offset), &
-               norm2(m%links(m%points(request%subject)%link)%position(:2)))
+         if (is_sum_of_numbers(m, request)) then
+            error(:, 0) = max(abs(row%value(:, 0)), largest_summand(m, request))
             error(:, 0) = merge(safety_factor*epsilon(1.0_wp)*error(:, 0), 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
             return
          end if
@@ -332,7 +330,7 @@ contains
       call find_row(m, q, m%requests(i), row)
       error = estimate_of(row, m, estimate, i)
       if (.not. estimate%taken) return
-      if (is_fixed(m, m%requests(i)) .and. row%kind /= request_measure) return
+      if (is_sum_of_numbers(m, m%requests(i))) return
       where (error < nothing_known) &
          error = estimate%own(:, :, i) + estimate%by_closure(:, :, i) + difference(row, estimate%solved(i))
       if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
@@ -362,7 +360,8 @@ contains
       lost = one%known < row%known
       same_side = row%state /= centre_finite .or. (one%weight > 0.0_wp .eqv. row%weight > 0.0_wp)
       if (one%state == row%state .and. same_side) return
-      first = merge(0, 1, row%kind == request_pole)
+      ! A place that exists even if the centre is at infinity is not the place of the centre.
+      first = merge(1, 0, columns_of_rows(forms(row%form)%first)%there(centre_infinite))
       lost(:2, first:) = .true.
       if (max(one%state, row%state) >= centre_starting) lost(3, :) = .true.
    end function lost_numbers

@@ -4,13 +4,13 @@
 module drawing
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_pole, has_guide, has_path, instant_count, plane_origin
+   use mechanism, only: mechanism_t, request_pole, has_guide, has_path, is_fixed, instant_count, plane_origin
    use plane_vectors, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
    use motion, only: known_of, flag_none, singular_unclear
    use columns, only: columns_of_rows, column_at, cell_of, cell_number
-   use points, only: row_t, is_fixed
+   use points, only: row_t
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    implicit none
    private

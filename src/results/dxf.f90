@@ -2,9 +2,9 @@
 !> paths of points through the instants of the deck; JOINTS and LINKS have the first instant.
 module dxf
    use kinds, only: wp
-   use mechanism, only: mechanism_t, has_path, has_guide
+   use mechanism, only: mechanism_t, has_path, has_guide, is_fixed
    use motion, only: motion_t
-   use points, only: row_t, is_fixed
+   use points, only: row_t
    use plane_vectors, only: direction
    use scales, only: characteristic_length
    use separations, only: closes

@@ -3,8 +3,7 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, request_measure, measure_line, &
-      request_t
+   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, measure_line
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
@@ -18,12 +17,11 @@ module set_analysis
    use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_turned, &
       diagnostic_unused, motion_t, new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
-   use points, only: row_t, find_row
+   use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant, &
       redundancy_error
    use convergence, only: inconsistent_level
-   use instant_centres, only: points_coincide
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, analyze_set, begin_analysis, foresee_closure, reuse_set_analysis, &
@@ -405,26 +403,6 @@ contains
          end associate
       end do
    end subroutine prove_set
-
-   !> Keeps the values of the measures that continue, from which the next instant goes on.
-   pure subroutine keep_turns(m, q)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(inout) :: q     !< at an instant; gets `turned`
-      type(row_t) :: row
-      integer :: i
-
-      if (.not. allocated(m%measures)) return
-      if (.not. any(m%measures%continues)) return
-      if (.not. allocated(q%turned)) allocate (q%turned(size(m%measures)))
-      do i = 1, size(m%measures)
-         if (.not. m%measures(i)%continues) cycle
-         call find_row(m, q, request_t(request_measure, i), row)
-         associate (turned => q%turned(i))
-            turned%is_latest = row%known >= 0 .and. row%state /= points_coincide
-            if (turned%is_latest) turned = turned_t(row%value(1, 0), .true., .true.)
-         end associate
-      end do
-   end subroutine keep_turns
 
    !> Gives the counts of certificates of all instants of the set.
    pure type(certificate_counts_t) function set_certificates(set)
