@@ -34,7 +34,7 @@ module blocks
       integer :: first_row = 1, last_row = 0      !< its rows
       integer :: first_loop = 1, last_loop = 0    !< its vector loops
       type(matrix_layout_t) :: shape              !< of its Jacobian
-      integer :: cleared = 0                      !< entries of its Jacobian that are cleared: none if body vectors set all
+      integer :: cleared = 0                      !< entries of its Jacobian to clear: none if body vectors set all
       logical :: explicit = .false.               !< one equation that is linear with coefficient 1
    end type block_t
 
