@@ -401,14 +401,4 @@ contains
       if (settings%steps > 0) steps = [steps, abs(settings%t1 - settings%t0)/real(settings%steps, wp)]
       step = minval(steps, mask=steps > 0.0_wp)
    end function shortest_step
-
-   !> Gives the words of cells without a number, each at the end of its field.
-   pure function words_of_cells(polish) result(words)
-      logical, intent(in) :: polish          !< in Polish
-      character(numeral_length) :: words(cell_none:last_cell)
-
-      words = cell_words%english
-      if (polish) words = cell_words%polish
-      words = adjustr(words)
-   end function words_of_cells
 end module listing_layout
