@@ -11,7 +11,7 @@ module lapack_routines
    public
 
    interface
-      !> LU factorization with partial pivoting, column by column: of small complex matrices in half of the time of
+      !> Factors a complex matrix by LU with partial pivoting, column by column: a small one in half of the time of
       !> ZGETRF. In double precision, whatever the kind of reals.
       subroutine zgetf2(m, n, a, lda, ipiv, info)
          import :: dp
@@ -19,7 +19,7 @@ module lapack_routines
          complex(dp), intent(inout) :: a(lda, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine zgetf2
-      !> Solves from the factors of zgetf2.
+      !> Solves equations with the factors of zgetf2.
       subroutine zgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: dp
          character(1), intent(in) :: trans
@@ -29,14 +29,14 @@ module lapack_routines
          integer, intent(out) :: info
       end subroutine zgetrs
 #ifdef LETTER
-      !> LU factorization with partial pivoting.
+      !> Factors a matrix by LU with partial pivoting.
       pure subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
          import :: wp
          integer, intent(in) :: m, n, lda
          real(wp), intent(inout) :: a(lda, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine NAMED(getrf)
-      !> Solves from the factors of getrf.
+      !> Solves equations with the factors of getrf.
       subroutine NAMED(getrs)(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          character(1), intent(in) :: trans
@@ -45,14 +45,14 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(getrs)
-      !> getrf and getrs at once.
+      !> Factors a matrix and solves its equations: getrf, then getrs.
       subroutine NAMED(gesv)(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine NAMED(gesv)
-      !> 1-norm of a matrix known by its products, by reverse communication.
+      !> Estimates the 1-norm of a matrix from its products with vectors, by reverse communication.
       subroutine NAMED(lacn2)(n, v, x, isgn, est, kase, isave)
          import :: wp
          integer, intent(in) :: n
@@ -66,7 +66,7 @@ module lapack_routines
          real(wp), intent(inout) :: d(*), e(*), b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(ptsv)
-      !> QR factorization.
+      !> Factors a matrix by QR.
       pure subroutine NAMED(geqrf)(m, n, a, lda, tau, work, lwork, info)
          import :: wp
          integer, intent(in) :: m, n, lda, lwork
@@ -92,7 +92,7 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(trtrs)
-      !> Singular value decomposition.
+      !> Finds the singular value decomposition of a matrix.
       pure subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
          import :: wp
          character(1), intent(in) :: jobu, jobvt
