@@ -197,7 +197,7 @@ contains
       coordinate%drive_rate = drive%polynomial(2)
       if (set%degrees .and. .not. is_length(drive)) coordinate%drive_rate = in_degrees(coordinate%drive_rate)
       if (abs(drive%polynomial(3)) > 0.0_wp .or. .not. abs(drive%polynomial(2)) > 0.0_wp) coordinate%sought(1) = .false.
-      if (allocated(drive%terms)) coordinate%sought(1) = coordinate%sought(1) .and. size(drive%terms) == 0
+      coordinate%sought(1) = coordinate%sought(1) .and. .not. allocated(drive%terms)
       coordinate%column = column_of_ratio
       coordinate%columns = [0, coordinate%columns(:1)]
       coordinate%sought = [.false., coordinate%sought(:1)]

@@ -46,7 +46,8 @@ contains
       do k = 1, set%count
          if (set%cards(k)%form /= form_drive .or. set%cards(k)%given(1)) cycle
          associate (drive => set%mechanism%drives(set%cards(k)%subject))
-            drive%drawn = .not. any(term_kinds(drive%terms%kind)%has_rows)
+            drive%drawn = .true.
+            if (allocated(drive%terms)) drive%drawn = .not. any(term_kinds(drive%terms%kind)%has_rows)
             if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
          end associate
       end do
@@ -77,7 +78,7 @@ contains
          ! The last card of a drive has its last term, the last of a table its last row.
          do k = set%count, 1, -1
             associate (card => set%cards(k))
-               if (card%subject == 0 .or. .not. (card%form == form_drive .or. is_term(card))) cycle
+               if (card%subject == 0 .or. .not. is_term(card)) cycle
                associate (drive => set%mechanism%drives(card%subject))
                   if (.not. allocated(drive%terms)) allocate (drive%terms(card%term))
                   if (.not. is_row(card)) cycle
@@ -194,7 +195,7 @@ contains
          k = findloc(abs(m%drives%polynomial(2)) > 0.0_wp, .true., dim=1)
          if (count(abs(m%drives%polynomial(2)) > 0.0_wp) == 1) then
             associate (drive => m%drives(k))
-               if (any(drive%kind == [drive_angle, drive_relangle]) .and. size(drive%terms) == 0 .and. &
+               if (any(drive%kind == [drive_angle, drive_relangle]) .and. .not. allocated(drive%terms) .and. &
                    .not. abs(drive%polynomial(3)) > 0.0_wp) then
                   m%t1 = m%t0 + 2.0_wp*pi*m%turns/abs(drive%polynomial(2))
                   if (.not. m%t1 > m%t0) &

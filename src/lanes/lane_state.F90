@@ -119,7 +119,7 @@ contains
       do i = 1, size(continuation%path%laws)
          associate (law => continuation%path%laws(i))
             lanes%polynomial(lane, :, i) = law%polynomial
-            if (allocated(law%terms)) lanes%is_polynomial = lanes%is_polynomial .and. size(law%terms) == 0
+            lanes%is_polynomial = lanes%is_polynomial .and. .not. allocated(law%terms)
          end associate
          lanes%unit(lane, i) = continuation%path%unit(i)
       end do
