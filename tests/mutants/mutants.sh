@@ -59,7 +59,7 @@ build() {
 # its output begins like PATTERN. Status: 1 where there is such a line, 2 where time was up, 3 after another failure.
 run_until() {
    pattern=$2 log=$1/$3
-   (cd "$1" && ulimit -t "$4" && ulimit -v 4000000 && ulimit -f 200000 && ulimit -c 0 && clock=$5 && shift 5 &&
+   (cd "$1" && ulimit -t "$4" && ulimit -v 4000000 && ulimit -f 500000 && ulimit -c 0 && clock=$5 && shift 5 &&
       exec timeout -k 5 "$clock" "$@") > "$log" 2>&1 < /dev/null &
    running=$!
    while kill -0 $running 2> /dev/null; do
