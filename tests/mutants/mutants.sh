@@ -35,11 +35,13 @@ parts() {
    tests/system/output.sh
    tests/system/check.sh
    tests/system/together.sh
+   tests/system/tolerances.sh
+   tests/system/units.sh
    tests/system/faults.sh
 END
 }
 # What the parts need in addition to the command.
-tools='release/print_expected release/cylinders_by_chance release/fuzz_mechanisms release/lengths_by_chance release/random_blocks'
+tools='kinmat-quad release/print_expected release/cylinders_by_chance release/fuzz_mechanisms release/lengths_by_chance release/random_blocks'
 unset MAKEFLAGS MFLAGS MAKELEVEL
 place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
