@@ -33,11 +33,11 @@ parts() {
    tests/system/assemblies.sh
    tests/system/command.sh
    tests/system/output.sh
-   tests/system/check.sh
    tests/system/together.sh
    tests/system/tolerances.sh
    tests/system/units.sh
    tests/system/faults.sh
+   tests/system/check.sh
 END
 }
 # What the parts need in addition to the command.
