@@ -28,7 +28,8 @@ module homotopy
    !> The correction of a prediction at which steps aim, in parts of z.
    real(dp), parameter :: aimed_correction = 1.0e-5_dp
    !> The largest correction of a prediction, in parts of z: paths that are further apart are not mistaken for one
-   !> another.
+   !> another. Paths that almost meet at some t are apart by about the root of the least step there. Therefore,
+   !> below the least step by the first tenth, this limit falls with the root of the step.
    real(dp), parameter :: max_prediction_error = 1.0e-3_dp
    !> Corrections below this part of z are rounding. On the way to an end, a correction below its root is the last,
    !> since Newton's method leaves the square: near a singular end rounding keeps corrections above a smaller part.
@@ -37,8 +38,9 @@ module homotopy
    !> From here on t falls by tenths, and from each of them the end is tried in a few steps. A path that does not reach
    !> its end so has a singular one, unless its neighbour is nearer to it than about the root of the last of them.
    real(dp), parameter :: tenth = 0.1_dp, t_near_end = tenth
-   !> The first step and the least, parts of the way: to `t_near_end`, by the first tenth, and to the end.
-   real(dp), parameter :: steps_near_end(2) = [0.02_dp, 1.0e-5_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
+   !> The first step and the least, parts of the way: to `t_near_end`, by the first tenth, and to the end. Before
+   !> `least_tenths` a tenth has the least step to `t_near_end`: a path that fails there is lost.
+   real(dp), parameter :: steps_near_end(2) = [0.02_dp, 1.0e-9_dp], steps_by_tenth(2) = [0.3_dp, 1.0e-5_dp]
    real(dp), parameter :: steps_to_end(2) = 0.3_dp
    integer, parameter :: max_tenths = nint(-log10(epsilon(1.0_dp))) - 3
    !> x . u of a path to infinity falls with t at this power or more: 1 over the number of paths that meet there.
@@ -163,8 +165,7 @@ contains
 
       h%p = bilinear%p
       allocate (h%f(0:bilinear%p, 0:bilinear%p, 2*bilinear%p), h%more(0:bilinear%p, 0:bilinear%p, 2*bilinear%p), &
-         h%h(0:bilinear%p, 0:bilinear%p, 2*bilinear%p))
-      h%f(:, :, :) = bilinear%c
+         h%h(0:bilinear%p, 0:bilinear%p, 2*bilinear%p), source=bilinear%c)
       do k = 1, bilinear%p
          h%f(k, :, :) = h%f(k, :, :) + start%chart(k, 1)*h%f(0, :, :)
       end do
@@ -228,10 +229,10 @@ contains
          last = z
          try = steps_to_end(1)
          call follow(paths, t, 0.0_dp, try, steps_to_end(2), last, is_done)
-         if (is_done) exit
-         if (k == max_tenths) exit
+         if (is_done .or. k == max_tenths) exit
          last = z
-         call follow(paths, t, tenth*t, step, steps_by_tenth(2), last, is_done)
+         call follow(paths, t, tenth*t, step, merge(steps_near_end(2), steps_by_tenth(2), k < least_tenths), last, &
+            is_done)
          if (.not. is_done) exit
          z = last
          t = tenth*t
@@ -300,6 +301,7 @@ contains
          call predict(paths, from, to, s, h, point, tangent, next, is_done)
          call find_t(from, to, s + h, t, rate)
          if (is_done) call correct(paths, t, next, next_tangent, correction, is_done)
+         if (is_done) is_done = correction <= max_prediction_error*sqrt(h/steps_by_tenth(2))
          if (is_done) then
             point = next
             tangent = next_tangent

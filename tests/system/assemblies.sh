@@ -81,6 +81,28 @@ for scale in 0.1 0.003 3e-6 300.0; do
    done
 done
 
+# Lazy tongs of four stages, driven by their height h. With n stages upward, h is (2 n - 4) times the height of a stage: n is
+# 3 or 4, which are five choices, and the slide is on either side. Two paths almost meet on the way.
+for size in '2.442369423937087 0.55962212899206532 0.39120118' '2.16759960793283035 1.23774550194012889 1.95892131'; do
+   echo "$size" | awk '
+      function card(name, a, b, c) { printf "%-8s%-8s%-8s%s\n", name, a, b, c }
+      function joint(name, a, b, x, y) { card("JOINT", name, a, b); printf "*       %-24.17f%-24.17f\n", x, y }
+      { w = $1; h = $2
+        card("UNITS", "M", "DEG", "S"); card("GROUND", "G")
+        for (i = 0; i < 4; i++) { card("LINK", "A" i); card("LINK", "B" i) }
+        card("LINK", "SL")
+        joint("O", "G", "A0", 0, 0); joint("W", "B0", "SL", w, 0)
+        card("POINT", "Z", "G"); card("POINT", "WS", "SL"); printf "*       %-24.17f\n", w; card("PRISM", "Z", "WS", "WAY")
+        for (i = 0; i < 4; i++) {
+           joint("M" i, "A" i, "B" i, w/2, h*(i + 0.5))
+           if (i > 0) { joint("P" i, "A" i - 1, "B" i, w, h*i); joint("Q" i, "B" i - 1, "A" i, 0, h*i) }
+        }
+        card("POINT", "T", "B3"); printf "*       %-24.17f%-24.17f\n", 0, 4*h
+        printf "%-48s%s\n%-32s0.0\nASSEMBLY\nEND\n", "DRIVE   Y       T", $3, "AT" }' > "$w/tongs.deck"
+   equal "tongs, $size" '0 FAILED   REAL 10, 10 PROVED' "$(assemblies "$w/tongs.deck" | awk '
+      /PATHS/ { printf "%s", substr($0, index($0, " FAILED") - 1) } /^ ASSEMBLY .*PROVED/ { n++ } END { print ", " n " PROVED" }')"
+done
+
 # A link on two parallel guides that agree to rounding: its assembly is there. A block without unknowns has no line.
 {
    card GROUND G; card LINK L
