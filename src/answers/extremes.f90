@@ -3,12 +3,13 @@
 module extremes
    use kinds, only: wp
    use plane_vectors, only: pi, in_degrees, wrap_angle
-   use mechanism, only: request_t, drive_t, request_measure
+   use mechanism, only: request_t, drive_t
    use scales, only: is_length
    use separations, only: closes, closes_to
    use drives, only: joints_of, largest_frequency
+   use instant_centres, only: points_coincide
    use points, only: row_t, column_of_ratio
-   use columns, only: columns_of_rows, forms, column_at, is_ratio, usual_size, of_angle
+   use columns, only: columns_of_rows, forms, kinds_of_rows, column_at, is_ratio, usual_size, of_angle
    use significance_check, only: max_amplification
    use independent, only: set_t, request_of
    use set_members, only: row_form, ratio_drive, moving_extremes, drive_of, sizes_of
@@ -49,7 +50,7 @@ module extremes
       integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
       integer :: part = 0, row = 0                     !< number of its mechanism, and of its row in `track_t`
       logical :: is_angle = .false.
-      logical :: is_measure = .false.                  !< it may be known less well if two points are close
+      logical :: can_coincide = .false.                !< it may be known less well if two points are close
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
       real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
@@ -187,7 +188,8 @@ contains
       coordinate%columns = [(column_at(coordinate%form, column, k), k=0, 2)]
       coordinate%sought = asked%sought(column, :)
       coordinate%is_angle = columns_of_rows(coordinate%columns(0))%dimension == of_angle
-      coordinate%is_measure = asked%kind == request_measure
+      coordinate%can_coincide = .not. columns_of_rows(column_at(kinds_of_rows(asked%kind)%forms(1), 1, 1)) &
+         %there(points_coincide)
       if (coordinate%sought(0)) coordinate%dwell = asked%dwell(merge(2, 1, coordinate%is_angle))
       coordinate%size_of = merge(1.0_wp, sizes(1), coordinate%is_angle)*sizes(2)**[(k, k=0, 2)]
       allocate (coordinate%places(0), coordinate%reversals(0))
@@ -237,8 +239,8 @@ contains
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (.not. extreme%is_located .and. abs(extreme%t - best%t) <= 0.0_wp &
                .and. extreme%error < best%error)
-            ! An equal value that is much better known replaces a value of a measure.
-            better = better .or. (coordinate%is_measure .and. abs(gain) <= open &
+            ! An equal value that is much better known replaces a value that may be known less well.
+            better = better .or. (coordinate%can_coincide .and. abs(gain) <= open &
                .and. extreme%error < badly_known*best%error)
             if (.not. extreme%has_bound) better = extreme%value*outward(which) > 0.0_wp
             if (.not. better) cycle

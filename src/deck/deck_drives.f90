@@ -121,7 +121,7 @@ contains
             if (card%label(label_c) /= '' .and. .not. (kind == drive_relangle .or. takes_rpm) .and. card%valid .and. &
                set%errors%count == before) call refuse_field(card, label_c, set%errors)
             if (kind == drive_relangle) then
-               call look_up(set, request_link, k, label_c, drive%second)
+               call look_up(set, driven_kinds(kind), k, label_c, drive%second)
                if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
             end if
 

@@ -5,6 +5,7 @@ module deck_remarks
    use kinds, only: wp, label_length
    use plane_vectors, only: full_turn, in_degrees, wrap_angle
    use mechanism
+   use columns, only: kinds_of_rows
    use parameters, only: unit_t, parameter_unit, parameter_value, is_as_drawn
    use drawn_values, only: drawn_way, drawn_opening, drawn_place
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
@@ -76,8 +77,7 @@ contains
             if (.not. link(i)) call add_card_remark(set, remark_link_unused, card_of_link(i), label_a)
          end do
          where (.not. link) m%links%ground = .true.
-         point(pack(m%requests%subject, &
-            m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
+         point(pack(m%requests%subject, kinds_of_rows(m%requests%kind)%subject == request_point)) = .true.
          if (allocated(m%lengths)) point([m%lengths%point(1), m%lengths%point(2)]) = .true.
          do i = 1, measure_count(m)
             associate (subjects => m%measures(i)%subjects)

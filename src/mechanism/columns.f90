@@ -9,9 +9,9 @@ module columns
    use instant_centres, only: centre_finite, centre_infinite, points_coincide
    implicit none
    private
-   public :: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, row_turning, last_form, &
+   public :: row_column_t, columns_of_rows, forms, kinds_of_rows, form_of, column_at, row_turning, &
       table_turning, last_table, of_length, of_angle, last_dimension
-   public :: table_of, is_ratio, usual_size, quantities, drives
+   public :: table_of, table_of_links, is_ratio, usual_size, quantities, drives
    public :: cell_words, cell_of, cell_none, cell_number, cell_count, cell_unbounded, cell_word, cell_spare, &
       last_cell
 
@@ -43,14 +43,17 @@ module columns
       integer :: coordinates = 0             !< columns of order 0 whose extremes can be asked for
    end type row_form_t
 
-   !> The words of a kind of rows: the kind of a request, or `table_turning`.
+   !> The words and the properties of a kind of rows: the kind of a request, or `table_turning`.
    type :: row_kind_t
       character(12) :: english = '', polish = ''   !< over the names in the listing
+      integer :: subject = 0                 !< the kind of what a row is about: request_link, ...; 0: of ratios
       integer :: names = 1                   !< names in a row, each with a column of its own
       integer :: rows = 1                    !< in the CSV: one, or one for each of the three axes of `at`,
       character(7) :: csv(0:2) = ''          !< and their kinds
       integer :: forms(2) = 0                !< of its rows; the columns of the second one follow those of the first
       character(8) :: quantities(0:2) = ''   !< on COLUMN cards, by the order of a column; '': the English heads
+      logical :: is_centre = .false.         !< instant centres or centres of curvature, which have no derivatives
+      logical :: has_centrode = .false.      !< pictures have their path in the fixed plane and in the moving one
    end type row_kind_t
 
    !> The contents of a cell.
@@ -163,17 +166,19 @@ module columns
    integer, parameter :: table_turning = 0, last_table = request_ratio + last_form - row_ratio
    character(8), parameter :: of_ratio(0:2) = ['VALUE   ', 'DERIV   ', '        ']
    type(row_kind_t), parameter :: kinds_of_rows(table_turning:last_table) = [ &
-      row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_turning, 0]), &
-      row_kind_t('LINK', 'OGNIWO', 1, 1, 'LINK', [row_link, 0]), &
-      row_kind_t('POINT', 'PUNKT', 1, 1, 'POINT', [row_point, 0]), &
-      row_kind_t('PAIR', 'PARA', 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
-      row_kind_t('MEASURE', 'WIELKOSC', 1, 1, 'MEASURE', [row_length, row_direction], of_value), &
-      row_kind_t('POLE', 'BIEGUN', 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0]), &
-      row_kind_t('CURVE', 'TOR', 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0]), &
-      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio, 0], of_ratio), &
-      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 1, 0], of_ratio), &
-      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 2, 0], of_ratio), &
-      row_kind_t('RATIO', 'PRZELOZENIE', 5, 1, 'RATIO', [row_ratio + 3, 0], of_ratio)]
+      row_kind_t('LINK', 'OGNIWO', request_link, 1, 1, 'LINK', [row_turning, 0]), &
+      row_kind_t('LINK', 'OGNIWO', request_link, 1, 1, 'LINK', [row_link, 0]), &
+      row_kind_t('POINT', 'PUNKT', request_point, 1, 1, 'POINT', [row_point, 0]), &
+      row_kind_t('PAIR', 'PARA', request_pair, 1, 1, 'PAIR', [row_slide, row_angle], of_value), &
+      row_kind_t('MEASURE', 'WIELKOSC', request_measure, 1, 1, 'MEASURE', [row_length, row_direction], of_value), &
+      row_kind_t('POLE', 'BIEGUN', request_link, 2, 3, ['POLE   ', 'POLE-I ', 'POLE-J '], [row_pole, 0], &
+         is_centre=.true., has_centrode=.true.), &
+      row_kind_t('CURVE', 'TOR', request_point, 2, 3, ['CURVE  ', 'CENTRE ', 'RADIUS '], [row_curve, 0], &
+         is_centre=.true.), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 0, 5, 1, 'RATIO', [row_ratio, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 0, 5, 1, 'RATIO', [row_ratio + 1, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 0, 5, 1, 'RATIO', [row_ratio + 2, 0], of_ratio), &
+      row_kind_t('RATIO', 'PRZELOZENIE', 0, 5, 1, 'RATIO', [row_ratio + 3, 0], of_ratio)]
 
 contains
 
@@ -202,6 +207,14 @@ contains
       table = merge(links_table, kind, kind == request_link)
       if (kind == request_ratio) table = kind + form - row_ratio
    end function table_of
+
+   !> Finds the kind of the tables of links: only angles, if no link shows its place.
+   pure integer function table_of_links(requests, shows_place) result(table)
+      type(request_t), intent(in) :: requests(:)   !< (any number)
+      logical, intent(in) :: shows_place(:)  !< (requests) of a link: the tables have its place
+
+      table = merge(request_link, table_turning, any(requests%kind == request_link .and. shows_place))
+   end function table_of_links
 
    !> Tells whether rows of a form are ratios.
    elemental logical function is_ratio(form)

@@ -6,8 +6,9 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, subject_t, pair_links, drive_links, request_links, &
       subject_links, measure_links, measures_within, measure_count, drive_relangle, driven_kinds, request_link, &
-      request_point, request_pair, request_measure, request_curve, is_centre, parameter_link, parameter_knot, &
+      request_point, request_pair, request_measure, parameter_link, parameter_knot, &
       parameter_length, parameter_hole
+   use columns, only: kinds_of_rows
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -25,9 +26,7 @@ module independent
    end type numbering_t
    !> The kind of drives, after links, points, pairs and measures (request_link, ..., request_measure).
    integer, parameter :: of_drives = 5
-   !> The kinds of the subjects of requests, and of numbers on cards.
-   integer, parameter :: of_requests(request_link:request_curve) = &
-      [request_link, request_point, request_pair, request_measure, request_link, request_point]
+   !> The kinds of the subjects of numbers on cards.
    integer, parameter :: of_numbers(parameter_link:parameter_knot) = &
       [request_link, request_point, request_point, request_pair, of_drives, of_drives]
 
@@ -87,7 +86,7 @@ contains
 
       ! Each point, and each link, with the part that it belongs to or that uses it.
       associate (of_points => pack([(i, i=1, size(m%requests))], &
-                                   m%requests%kind == request_point .or. m%requests%kind == request_curve), &
+                                   kinds_of_rows(m%requests%kind)%subject == request_point), &
                  is_point => measured%kind == request_point)
          used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, pack(measured%number, is_point), &
             m%requests(of_points)%subject]
@@ -233,7 +232,7 @@ contains
       own%requests%second = place(request_link)%of(own%requests%second)
       own%requests%drive = place(of_drives)%of(own%requests%drive)
       do i = 1, size(own%requests)
-         own%requests(i)%subject = place(of_requests(own%requests(i)%kind))%of(own%requests(i)%subject)
+         own%requests(i)%subject = place(kinds_of_rows(own%requests(i)%kind)%subject)%of(own%requests(i)%subject)
       end do
 
       if (allocated(m%branch_requests)) then
@@ -270,7 +269,7 @@ contains
       end if
 
       if (allocated(own%measures)) own%measures%length = characteristic_length(own)
-      if (any(is_centre(own%requests%kind))) then
+      if (any(kinds_of_rows(own%requests%kind)%is_centre)) then
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
       end if

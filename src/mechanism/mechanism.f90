@@ -391,10 +391,8 @@ contains
       type(request_t), intent(in) :: request
 
       largest_summand = 0.0_wp
-      if (request%kind /= request_point) return
-      associate (point => m%points(request%subject))
-         largest_summand = max(norm2(point%offset), norm2(m%links(point%link)%position(:2)))
-      end associate
+      if (request%kind == request_point) largest_summand = max(norm2(m%points(request%subject)%offset), &
+         norm2(m%links(m%points(request%subject)%link)%position(:2)))
    end function largest_summand
 
    !> Finds the links of a subject that is no measure; if they are fewer than three, some appear several times.
@@ -502,13 +500,6 @@ contains
 
       has_guide = pair_kinds(kind)%has_guide
    end function has_guide
-
-   !> Tells whether requests of a kind are for instant centres or centres of curvature, which have no derivatives.
-   elemental logical function is_centre(kind)
-      integer, intent(in) :: kind            !< request_link, ...
-
-      is_centre = kind == request_pole .or. kind == request_curve
-   end function is_centre
 
    !> Tells whether pictures have the path of a request: a card asks for a point. Points that only the listing has,
    !> since no card asks for them, have no path.

@@ -4,12 +4,12 @@ module points
    use assertions, only: asserts, assert
    use kinds, only: wp, label_length
    use mechanism, only: settings_t, mechanism_t, request_t, has_guide, request_link, request_point, &
-      request_pair, request_measure, request_pole, request_curve, request_ratio, is_centre, instant_count, &
+      request_pair, request_measure, request_pole, request_curve, request_ratio, instant_count, &
       request_links, subject_links, measure_distance, measure_line, measure_angle, measure_xi, measure_eta, measure_sum
    use names, only: subject_name, drive_name
    use drives, only: drive_motion
    use scales, only: is_length
-   use columns, only: columns_of_rows, forms, form_of, of_length
+   use columns, only: columns_of_rows, forms, kinds_of_rows, form_of, of_length
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, points_coincide
    use pair_geometry, only: pair_motion
    use plane_vectors, only: pi, full_turn, degree, direction, rotated, point_of, add_rotating, cross
@@ -91,7 +91,7 @@ contains
       end if
 
       associate (i => request%subject)
-         if (.not. is_centre(request%kind)) row%name = subject_name(m, request%kind, i)
+         row%name = subject_name(m, kinds_of_rows(request%kind)%subject, i)
          select case (request%kind)
          case (request_link)
             if (m%links(i)%ground) then
@@ -114,11 +114,10 @@ contains
             return
 
          case (request_pole)
-            row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
+            row%name = trim(m%links(request%second)%name)//' '//row%name
             if (row%known < 1) return
             row%centre_t = pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate)
          case (request_curve)
-            row%name = m%points(i)%name
             if (request%second > 0) row%name = trim(row%name)//' '//m%links(request%second)%name
             ! In the axes of the link from which it is seen, or in the fixed plane.
             p = point_motion(m, q, i)
@@ -358,7 +357,7 @@ contains
          associate (request => m%requests(i), v => row%value(3, 1), a => row%value(3, 2))
             if (request%kind == request_measure) amplification = max(amplification, &
                amplification_in_measure(m, q, request%subject, rate))
-            if (.not. is_centre(request%kind)) cycle
+            if (.not. kinds_of_rows(request%kind)%is_centre) cycle
             call find_row(m, q, request, row)
             if (row%state /= centre_finite) then
                amplification = huge(1.0_wp)

@@ -3,9 +3,9 @@
 module error_estimate
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, is_centre, is_sum_of_numbers, largest_summand
+   use mechanism, only: mechanism_t, is_sum_of_numbers, largest_summand
    use motion, only: motion_t
-   use columns, only: columns_of_rows, forms
+   use columns, only: columns_of_rows, forms, kinds_of_rows
    use points, only: row_t, find_row, known_at, difference
    use instant_centres, only: centre_finite, centre_infinite, centre_starting, points_coincide
    use masked_numbers, only: nothing_known, errors_a_digit
@@ -282,7 +282,7 @@ contains
       real(wp) :: x(3, 0:2)
 
       x = part*difference(one, middle)
-      if (.not. is_centre(one%kind)) then
+      if (.not. kinds_of_rows(one%kind)%is_centre) then
          x(:, last_common(one, middle) + 1:) = nothing_known
       else
          x = merge(nothing_known, x, lost_numbers(one, middle))
@@ -312,7 +312,7 @@ contains
             max(estimate%changes(:, :, i), estimate%by_closure(:, :, i)) >= nothing_known)
          where (error < nothing_known) &
             error = hypot(error, estimate%by_closure(:, :, i)*closure_errors_a_digit/errors_a_digit)
-         if (.not. is_centre(request%kind)) &
+         if (.not. kinds_of_rows(request%kind)%is_centre) &
             error(:, min(row%known, last_common(estimate%solved(i), row)) + 1:) = nothing_known
       end associate
    end function estimate_of
@@ -333,7 +333,7 @@ contains
       if (is_sum_of_numbers(m, m%requests(i))) return
       where (error < nothing_known) &
          error = estimate%own(:, :, i) + estimate%by_closure(:, :, i) + difference(row, estimate%solved(i))
-      if (is_centre(m%requests(i)%kind)) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
+      if (kinds_of_rows(row%kind)%is_centre) error = merge(nothing_known, error, lost_numbers(row, estimate%solved(i)))
    end function row_error
 
    !> Finds how much of a row a sample has, as `known` of `row_t`. If points of the sample coincide and points of the

@@ -3,11 +3,12 @@
 !> sensitivity is the difference of two rows of the mechanism with one number a little above and below.
 module sensitivities
    use kinds, only: wp
-   use mechanism, only: mechanism_t, tolerance_t, request_t, is_centre, parameter_drive, term_kinds
+   use mechanism, only: mechanism_t, tolerance_t, request_t, parameter_drive, term_kinds
    use drives, only: joint_distance
    use parameters, only: parameter_value, change_parameter
    use masked_numbers, only: nothing_known
    use motion, only: motion_t
+   use columns, only: kinds_of_rows
    use points, only: row_t, find_row
    use instant_centres, only: points_coincide
    use blocks, only: blocks_t, geometry_t
@@ -202,7 +203,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
 
-      has_tolerances = allocated(m%tolerances) .and. .not. is_centre(request%kind) .and. request%drive == 0
+      has_tolerances = allocated(m%tolerances) .and. .not. kinds_of_rows(request%kind)%is_centre &
+         .and. request%drive == 0
    end function has_tolerances
 
    !> Finds which derivatives with respect to a number exist at a time, and on which side: the joints of a rise may be

@@ -3,10 +3,11 @@
 module significance_check
    use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, measure_count
+   use mechanism, only: mechanism_t, method_newton, measure_count
    use motion, only: motion_t
    use drives, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
+   use columns, only: kinds_of_rows
    use points, only: amplification_in_rows
    use blocks, only: blocks_t, geometry_t
    use block_state, only: state_t
@@ -53,7 +54,7 @@ contains
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
-      s%has_formulas = measure_count(m) > 0 .or. any(is_centre(m%requests%kind))
+      s%has_formulas = measure_count(m) > 0 .or. any(kinds_of_rows(m%requests%kind)%is_centre)
       do i = 1, size(m%drives)
          sizes = growing_sizes(m%drives(i), latest_time(m))/merge(s%length, 1.0_wp, is_length(m%drives(i)))
          do k = 1, 3

@@ -2,7 +2,7 @@
 !> largest first.
 module contributions_table
    use kinds, only: wp
-   use mechanism, only: request_t, tolerance_t, is_centre
+   use mechanism, only: request_t, tolerance_t
    use independent, only: set_t
    use set_members, only: requests_of, row_form, row_subject, tolerances_of
    use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, row_turning
@@ -41,7 +41,7 @@ contains
       call put(o, '')
       call put(o, ' '//phrase(text_shares, set%polish))
       requests = requests_of(set)
-      if (any(is_centre(requests%kind))) &
+      if (any(kinds_of_rows(requests%kind)%is_centre)) &
          call put(o, ' --- '//phrase(text_no_shares, set%polish))
       if (any(requests%drive > 0)) &
          call put(o, ' --- '//phrase(text_no_ratio_shares, set%polish))

@@ -4,12 +4,12 @@
 module drawing
    use kinds, only: wp
    use disjoint_sets, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, request_pole, has_guide, has_path, is_fixed, instant_count, plane_origin
+   use mechanism, only: mechanism_t, has_guide, has_path, is_fixed, instant_count, plane_origin
    use plane_vectors, only: pi, cross, direction, quarter_turn, point_of
    use drives, only: drive_rate
    use scales, only: is_length, latest_time
    use motion, only: known_of, flag_none, singular_unclear
-   use columns, only: columns_of_rows, column_at, cell_of, cell_number
+   use columns, only: columns_of_rows, kinds_of_rows, column_at, cell_of, cell_number
    use points, only: row_t
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    implicit none
@@ -151,7 +151,7 @@ contains
          if (size(d%curves) < max_curves .and. has_path(m%requests(i)) .and. .not. is_fixed(m, m%requests(i))) &
             d%curves = [d%curves, m%requests(i)%subject]
       end do
-      d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
+      d%poles = pack([(i, i=1, size(m%requests))], kinds_of_rows(m%requests%kind)%has_centrode)
       allocate (d%guides(count(has_guide(m%pairs%kind))))
       d%guides%pair = pack([(i, i=1, size(m%pairs))], has_guide(m%pairs%kind))
 

@@ -7,9 +7,9 @@
 !> A number that does not vary is blank; a link, point or pair without a number that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: request_t, request_link
+   use mechanism, only: request_t
    use separations, only: closes
-   use columns, only: columns_of_rows, forms, table_of, table_turning, cell_none, cell_unbounded, of_angle
+   use columns, only: columns_of_rows, forms, table_of, table_of_links, cell_none, cell_unbounded, of_angle
    use table, only: format_t, number_text
    use independent, only: set_t, first_drive
    use set_members, only: requests_of, row_subject, drive_title
@@ -55,9 +55,8 @@ contains
       moves = .false.
       goes_on = .false.
       requests = requests_of(set)
-      ! Links of which only angles are asked for have no columns of places.
-      links_table = merge(request_link, table_turning, any([(requests(extremes%asked(q))%kind == request_link .and. &
-         any(requests(extremes%asked(q))%sought(:2, :)), q=1, size(extremes%asked))]))
+      links_table = table_of_links(requests(extremes%asked), &
+         [(any(requests(extremes%asked(q))%sought(:2, :)), q=1, size(extremes%asked))])
 
       do q = 1, size(extremes%asked)
          part = set%rows(extremes%asked(q))%part

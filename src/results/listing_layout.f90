@@ -6,8 +6,8 @@
 module listing_layout
    use kinds, only: wp, label_length
    use plane_vectors, only: degree
-   use mechanism, only: drive_t, settings_t, request_t, request_link
-   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, last_form, table_turning, last_table, &
+   use mechanism, only: drive_t, settings_t, request_t
+   use columns, only: row_column_t, columns_of_rows, forms, kinds_of_rows, table_of_links, table_turning, last_table, &
       last_dimension, quantities, of_drives => drives, is_ratio, usual_size, cell_none, last_cell, of_length, &
       of_angle, cell_words
    use independent, only: set_t
@@ -56,9 +56,9 @@ module listing_layout
       type(format_t) :: time                  !< of the instants
       integer :: more_decimals = 0         !< of the effect of tolerances, in addition to the decimals of the number
       logical :: polish = .false.
-      integer :: links_table = request_link   !< the kind of the tables of links
-      integer :: shift(last_form) = 0      !< places that the columns of a form of rows are further on
-      logical :: has(last_form) = .false.  !< there are such rows
+      integer :: links_table = table_turning   !< the kind of the tables of links
+      integer :: shift(size(forms)) = 0    !< places that the columns of a form of rows are further on
+      logical :: has(size(forms)) = .false.   !< there are such rows
       character(label_length) :: unit(last_dimension) = ''   !< of lengths and angles; of the quantity of a ratio
       character(label_length + 4) :: per(last_dimension, 0:2) = ''   !< the divisor of the unit of a derivative
       logical :: per_below = .false.       !< the divisor is in a line below the unit, which is long
@@ -140,9 +140,7 @@ contains
       subroutine lay_out_tables()
          integer :: i, k
 
-         if (any(requests%angle_alone) .and. .not. any(requests%kind == request_link .and. requests%every > 0 .and. &
-            .not. requests%angle_alone)) l%links_table = table_turning
-
+         l%links_table = table_of_links(requests, requests%every > 0 .and. .not. requests%angle_alone)
          do i = 1, size(requests)
             l%has(row_form(set, i)) = .true.
          end do

@@ -3,7 +3,7 @@
 module set_analysis
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, is_centre, instant, instant_count, measure_line
+   use mechanism, only: mechanism_t, method_newton, instant, instant_count, measure_line
    use scales, only: characteristic_length
    use plane_vectors, only: pi
    use structure, only: structure_report_t, find_structure
@@ -17,6 +17,7 @@ module set_analysis
    use motion, only: add_diagnostics, diagnostic_t, new_diagnostic, diagnostic_surplus, diagnostic_turned, &
       diagnostic_unused, motion_t, new_motion, turned_t, flag_inconsistent
    use block_rank, only: surplus_drives
+   use columns, only: kinds_of_rows
    use points, only: row_t, find_row, keep_turns
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, analyze_structure, reuse_analysis, advance, evaluate_at, restore_instant, &
@@ -156,7 +157,8 @@ contains
       if (.not. is_done) return
       associate (own => set%now%parts(1))
          ! These keep numbers of the mechanism.
-         is_done = .not. (any(is_centre(own%requests%kind)) .or. allocated(own%tolerances) .or. own%assemblies)
+         is_done = .not. (any(kinds_of_rows(own%requests%kind)%is_centre) .or. allocated(own%tolerances) &
+            .or. own%assemblies)
          if (.not. is_done) return
 
          own%settings_t = m%settings_t

@@ -4,7 +4,8 @@ module csv_rows
    use kinds, only: wp
    use csv_cells, only: cells, cell_length, split, whole_text
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
-   use mechanism, only: mechanism_t, instant_count, is_centre, request_link, request_point, request_pair, &
+   use columns, only: kinds_of_rows
+   use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, &
       request_measure, request_pole, pair_prismatic
    use names, only: subject_name
    use jet_closure, only: body_jet_t
@@ -62,7 +63,7 @@ contains
             call pass_number(unit, 'RATIO', subject_name(m, m%requests(i)%kind, m%requests(i)%subject), wrong)
             rows%due(i) = .false.
          end if
-         if (rows%due(i) .and. is_centre(m%requests(i)%kind)) then
+         if (rows%due(i) .and. kinds_of_rows(m%requests(i)%kind)%is_centre) then
             call pass_centre(unit, m, i, wrong)
             rows%due(i) = .false.
          end if
