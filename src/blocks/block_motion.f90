@@ -43,6 +43,8 @@ contains
          end associate
       end do
       b%needed = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
+      ! A run is a period if all links return on which those asked for depend.
+      if (any(m%requests%extremes)) x%chain = new_chain(m, b, x, wanted_links(m) .or. need(b%tree%orientation))
       b%moving = pack(b%needed, moving_blocks(b, b%needed))
       b%is_found = wanted_links(m) .and. b%tree%orientation > 0
       do i = 1, size(m%links)
