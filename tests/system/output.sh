@@ -178,6 +178,16 @@ for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debu
    rm -f stop[.-]*
 done
 kinmat=$release
+# Sixteen variants run together: those that are broken off have no row.
+moving_four_bar "$(card VARY R1 16 '' 0.5 1.25)" '' '' '' "$(card TIME 9000000 '' '' 0.0 12.0)" > variants
+env --default-signal=INT,TERM "$kinmat" variants --jobs 1 -o stop.lst --summary stop.csv 2> err &
+pid=$!
+sleep 1
+kill -TERM $pid
+wait $pid
+equal 'SIGTERM, variants: status' 143 $?
+equal 'SIGTERM, variants: no row' '' "$(sed 1d stop.csv)"
+rm -f stop[.-]*
 
 # A signal that comes anywhere, mostly between two sets: the last line says after which, for each number of processes.
 { card GROUND BASE; card LINK CRANK; card JOINT O BASE CRANK; card DRIVE ANGLE CRANK '' 1.0; card TIME 2 '' '' 0.0 1.0; echo END; } > one.deck
