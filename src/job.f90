@@ -10,12 +10,14 @@ module job
    use text_output, only: flush_output, turn_lost
    use processes, only: processor_count, end_process
    use command_line
+
    use outputs, only: open_outputs, open_table, close_outputs, is_over
    use job_chunks, only: run_chunks, next_part
    use writers, only: writers_t, break_off
    use motion_run, only: run_motion
    use variant_runs, only: run_variants, are_together
    use lane_runs, only: lane_count
+
    use listing, only: new_layout, listing_head, remark_text
    use csv, only: csv_head, new_table, table_head
    use solver_log, only: log_head

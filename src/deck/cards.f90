@@ -72,11 +72,13 @@ module cards
       form_t('LLL', 2, .false., 'SLOT    POINT-I POINT-J PAIR    ALPHA           H'), &
       form_t('LLL', 2, .false., 'CYLINDERPOINT-P POINT-Q PAIR    LEAST           GREATEST'), &
       form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
+      ! Drives and lengths.
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
       form_t('L--', 3, .false., 'RISE    LAW                     START           DURATION        LIFT'), &
       form_t('LLl', 1, .false., 'LENGTH  POINT-P POINT-Q LINK    LENGTH'), &
       form_t('l--', 3, .false., 'TOLER   LINK                    OF R1           OF R2           OF R3'), &
+      ! The run and the method, and rows.
       form_t('Wl-', 2, .true.,  'TIME    STEPS   TURNS           T0              T1/TURNS'), &
       form_t('---', 3, .false., 'AT                              T               T               T'), &
       form_t('l--', 2, .true.,  'METHOD  METHOD                  TOLERANCE       CLOSING'), &
@@ -91,6 +93,7 @@ module cards
       form_t('LLl', 3, .false., 'VARY    R1/2/3  N/LIST  TIE     FROM/VALUE      TO/VALUE        VALUE'), &
       form_t('---', 0, .true.,  'ASSEMBLY'), &
       form_t('---', 0, .true.,  'PROVE'), &
+      ! Measures.
       form_t('LLL', 0, .false., 'DISTANCEPOINT-P POINT-Q MEASURE'), &
       form_t('LLL', 0, .false., 'LINE    POINT-P POINT-Q MEASURE'), &
       form_t('LLL', 0, .false., 'ANGLE   FROM    TO      MEASURE'), &

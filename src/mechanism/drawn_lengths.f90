@@ -124,6 +124,7 @@ contains
       do i = 1, size(m%points)
          place(:, i) = m%points(i)%place
       end do
+
       lengths = 0
       if (allocated(m%lengths)) lengths = size(m%lengths)
       k = 1
@@ -132,6 +133,7 @@ contains
             is_one = k == lengths .or. next%hole(2) /= one%hole(2)
             reach = reach_t(has_two=.not. is_one)
             q = m%points(one%point(2))%place
+            ! A length alone keeps its direction.
             if (is_one) then
                way = q - place(:, one%point(1))
                reach%has_no_side = norm2(way) <= same_place_tolerance*(norm2(q) + norm2(place(:, one%point(1))))

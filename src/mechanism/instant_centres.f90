@@ -104,8 +104,7 @@ contains
       c%value(:2, 0) = motion(:, 0)
       c%value(3, 0) = arrow_angle(v)
       if (speed <= negligible_motion) then
-         c%state = centre_resting
-         if (norm2(a) > negligible_motion) c%state = centre_starting
+         c%state = merge(centre_starting, centre_resting, norm2(a) > negligible_motion)
          c%value(3, 0) = arrow_angle(a)
          return
       end if

@@ -174,8 +174,7 @@ contains
          call find_measure(m, unit, request%subject, s, row%state, row%weight)
       end if
 
-      in_angles = 1.0_wp
-      if (m%degrees) in_angles = degree
+      in_angles = merge(degree, 1.0_wp, m%degrees)
       f = drive_motion(m%drives(request%drive), q%t)
       in_drive = merge(1.0_wp, in_angles, is_length(m%drives(request%drive)))
       if (columns_of_rows(forms(form_of(m, request_t(request%kind, request%subject)))%first)%dimension == of_length) &

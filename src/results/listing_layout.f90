@@ -84,66 +84,18 @@ contains
       ! The effect of a tolerance has four digits.
       if (set%largest_tolerance > 0.0_wp) &
          l%more_decimals = max(0, 3 - digits_after_first - floor(log10(set%largest_tolerance)))
-      call choose_own_digits()
+      call choose_own_digits(l, set, requests)
       call lay_out_tables()
       call write_instant()
 
    contains
-
-      !> Chooses the digits of each part of the set. If the decimals of parts differ by at most one, all have those of
-      !> the largest part.
-      subroutine choose_own_digits()
-         type(format_t) :: largest(of_length:of_angle, 0:2)
-         real(wp) :: sizes(2), angle   ! the characteristic length and rate
-         integer :: c, k, i
-         logical :: mixed
-
-         angle = 1.0_wp
-         if (set%degrees) angle = degree
-         allocate (l%own(set%count))
-         do c = 1, set%count
-            sizes = sizes_of(set, c)
-            associate (f => l%own(c)%format)
-               do k = 0, 2
-                  f(:, k) = [format_t(), format_t(is_angle=.true., unit=angle)]
-                  call choose_digits(log10(sizes(1)) + k*log10(sizes(2)), l%more_decimals, f(of_length, k))
-                  call choose_digits(k*log10(sizes(2)) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
-                     f(of_angle, k))
-               end do
-
-               if (.not. any(requests%drive > 0 .and. set%rows%part == c)) cycle
-               do i = of_angle + 1, last_dimension
-                  do k = 0, 1
-                     call choose_digits(log10(usual_size(i, k, sizes(1), sizes(2), set%degrees)), 0, f(i, k))
-                  end do
-               end do
-            end associate
-         end do
-
-         l%digits_t = l%own(1)
-         largest = l%own(1)%format(:of_angle, :)
-         mixed = .false.
-         do c = 2, set%count
-            associate (all_of => l%format(:of_angle, :), own => l%own(c)%format(:of_angle, :))
-               mixed = mixed .or. any(own%power /= l%own(1)%format(:of_angle, :)%power)
-               all_of%decimals = min(all_of%decimals, own%decimals)
-               largest%decimals = max(largest%decimals, own%decimals)
-            end associate
-         end do
-         if (mixed .or. any(largest%decimals - l%format(:of_angle, :)%decimals > 1)) return
-         do c = 1, set%count
-            l%own(c)%format(:of_angle, :) = l%format(:of_angle, :)
-         end do
-      end subroutine choose_own_digits
 
       !> Chooses the table of links and the columns of tables with rows of two forms; then writes the lines over rows.
       subroutine lay_out_tables()
          integer :: i, k
 
          l%links_table = table_of_links(requests, requests%every > 0 .and. .not. requests%angle_alone)
-         do i = 1, size(requests)
-            l%has(row_form(set, i)) = .true.
-         end do
+         l%has([(row_form(set, i), i=1, size(requests))]) = .true.
          do k = table_turning, last_table
             associate (of_table => kinds_of_rows(k)%forms)
                if (of_table(2) == 0 .and. .not. is_ratio(of_table(1))) then
@@ -199,6 +151,54 @@ contains
          l%more_drives = more(size(set%drives) - size(l%drives), set%polish)
       end subroutine write_instant
    end function new_layout
+
+   !> Chooses the digits of each part of the set. If the decimals of parts differ by at most one, all have those of
+   !> the largest part.
+   subroutine choose_own_digits(l, set, requests)
+      type(layout_t), intent(inout) :: l     !< gets `own` and `digits_t`
+      class(set_t), intent(in) :: set
+      type(request_t), intent(in) :: requests(:)   !< (rows of the set)
+      type(format_t) :: largest(of_length:of_angle, 0:2)
+      real(wp) :: sizes(2), angle   ! the characteristic length and rate
+      integer :: c, k, i
+      logical :: mixed
+
+      angle = merge(degree, 1.0_wp, set%degrees)
+      allocate (l%own(set%count))
+      do c = 1, set%count
+         sizes = sizes_of(set, c)
+         associate (f => l%own(c)%format)
+            do k = 0, 2
+               f(:, k) = [format_t(), format_t(is_angle=.true., unit=angle)]
+               call choose_digits(log10(sizes(1)) + k*log10(sizes(2)), l%more_decimals, f(of_length, k))
+               call choose_digits(k*log10(sizes(2)) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), l%more_decimals, &
+                  f(of_angle, k))
+            end do
+
+            if (.not. any(requests%drive > 0 .and. set%rows%part == c)) cycle
+            do i = of_angle + 1, last_dimension
+               do k = 0, 1
+                  call choose_digits(log10(usual_size(i, k, sizes(1), sizes(2), set%degrees)), 0, f(i, k))
+               end do
+            end do
+         end associate
+      end do
+
+      l%digits_t = l%own(1)
+      largest = l%own(1)%format(:of_angle, :)
+      mixed = .false.
+      do c = 2, set%count
+         associate (all_of => l%format(:of_angle, :), own => l%own(c)%format(:of_angle, :))
+            mixed = mixed .or. any(own%power /= l%own(1)%format(:of_angle, :)%power)
+            all_of%decimals = min(all_of%decimals, own%decimals)
+            largest%decimals = max(largest%decimals, own%decimals)
+         end associate
+      end do
+      if (mixed .or. any(largest%decimals - l%format(:of_angle, :)%decimals > 1)) return
+      do c = 1, set%count
+         l%own(c)%format(:of_angle, :) = l%format(:of_angle, :)
+      end do
+   end subroutine choose_own_digits
 
    !> Names a row: its link, point, pair or measure, of a ratio with its drive: MU BY ANGLE CRANK.
    function row_title(set, i) result(name)

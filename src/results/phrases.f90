@@ -9,6 +9,7 @@ module phrases
       character(160) :: english = '', polish = ''
    end type phrase_t
 
+   ! The head of a set, its data and its structure.
    type(phrase_t), parameter, public :: &
       text_program = phrase_t('KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
          'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM'), &
@@ -32,6 +33,7 @@ module phrases
       text_pair = phrase_t('PAIR', 'PARA'), &
       text_none = phrase_t('NONE', 'BRAK'), &
       text_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
+      ! Flags of instants.
       text_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
       text_no_position = phrase_t('NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA'), &
       text_singular = phrase_t('JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', &
@@ -52,6 +54,7 @@ module phrases
       text_second = phrase_t('AMBIGUOUS INITIAL GUESS, ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
          'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       text_incomplete = phrase_t('A NEARER ASSEMBLY MAY EXIST', 'MOZE ISTNIEC BLIZSZY MONTAZ'), &
+      ! Redundant equations, and cylinders.
       text_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
       text_closure_error = phrase_t('LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS, IN CHARACTERISTIC LENGTHS:', &
          'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH, W DLUGOSCIACH CHARAKT.:'), &
@@ -75,6 +78,7 @@ module phrases
          'ZADNA LICZBA NIE JEST ZNANA LEPIEJ NIZ BLAD ZAMKNIECIA, W DLUGOSCIACH CHARAKT. LUB RAD:'), &
       text_unclosed = phrase_t('DIGITS LOST TO ROUNDING OR TO THE CLOSURE ERROR', &
          'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE LUB BLAD ZAMKNIECIA'), &
+      ! Drives, limits and change points.
       text_surplus = phrase_t('A DRIVE IS TOO MANY, REMOVE ONE OF:', 'JEDEN NAPED JEST ZBEDNY, USUN JEDEN Z:'), &
       text_drive = phrase_t('DRIVE', 'NAPED'), &
       text_below = phrase_t('BELOW', 'PONIZEJ'), &
@@ -98,6 +102,7 @@ module phrases
       text_blocked = phrase_t('THE MOTION IS FOLLOWED TO T =', 'RUCH SLEDZONO DO CHWILI T ='), &
       text_close = phrase_t('LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
          'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)'), &
+      ! Steps and branches.
       text_branch = phrase_t('BRANCH', 'GALAZ'), &
       text_continuation = phrase_t('CONTINUATION', 'KONTYNUACJA'), &
       text_certified = phrase_t('STEPS CERTIFIED', 'KROKI POTWIERDZONE'), &
@@ -106,6 +111,7 @@ module phrases
       text_other = phrase_t('PASSED TO THE OTHER BRANCH (CARD BRANCH)', 'RUCH PRZECHODZI NA DRUGA GALAZ'), &
       text_not_found = phrase_t('OTHER BRANCH NOT FOUND', 'DRUGIEJ GALEZI NIE ZNALEZIONO'), &
       text_branch_from = phrase_t('FROM T =', 'OD CHWILI T =')
+   ! Extremes and ranges.
    type(phrase_t), parameter, public :: &
       text_extremes = phrase_t('EXTREMES', 'EKSTREMA'), &
       text_stroke = phrase_t('STROKE', 'SKOK'), &
@@ -129,6 +135,7 @@ module phrases
       text_turns = phrase_t('TURNS', 'OBROTACH'), &
       text_on_the_way = phrase_t('CHANGE POINTS ON THE WAY', 'PUNKTY ZMIANY NA DRODZE'), &
       text_no_limit = phrase_t('NO LIMIT FOUND UP TO', 'KRESU NIE ZNALEZIONO DO'), &
+      ! All assemblies.
       text_assemblies = phrase_t('ASSEMBLIES', 'MONTAZE'), &
       text_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
       text_mechanism = phrase_t('INDEPENDENT MECHANISM', 'NIEZALEZNY MECHANIZM'), &
@@ -155,6 +162,7 @@ module phrases
          'MOZE BRAKOWAC MONTAZY: SCIEZKI BEZ KONCA:'), &
       text_first_missed = phrase_t('ASSEMBLIES MAY BE MISSING: THAT IN WHICH THE RUN BEGINS WAS NOT FOUND', &
          'MOZE BRAKOWAC MONTAZY: NIE ZNALEZIONO TEGO, W KTORYM ZACZYNA SIE RUCH'), &
+      ! Tolerances.
       text_worst = phrase_t('WORST', 'NAJGOR.'), &
       text_shares = phrase_t('TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
@@ -163,6 +171,7 @@ module phrases
       text_small_shares = phrase_t('CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:'), &
       text_jams = phrase_t('ITS TOLERANCE BREAKS A REDUNDANT EQUATION (THE MECHANISM JAMS)', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')
+   ! Circuits.
    type(phrase_t), parameter, public :: &
       text_circuits = phrase_t('CIRCUITS AND BRANCHES', 'OBWODY I GALEZIE'), &
       text_circuit = phrase_t('CIRCUIT', 'OBWOD'), &
@@ -183,6 +192,7 @@ module phrases
          'OBWODOW JEST WIECEJ, PODANO PIERWSZE'), &
       text_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
          'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE')
+   ! Proofs.
    type(phrase_t), parameter, public :: &
       text_proof = phrase_t('PROOF: EXISTENCE AND UNIQUENESS IN EACH STEP, AND ERROR BOUNDS', &
          'DOWOD: ISTNIENIE I JEDNOZNACZNOSC W KAZDYM KROKU, GRANICE BLEDOW'), &
@@ -195,6 +205,7 @@ module phrases
       text_too_wide = phrase_t('BLOCK TOO LARGE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
    type(phrase_t), parameter, public :: &
       text_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
+   ! Remarks of instants, and pictures.
    type(phrase_t), parameter, public :: &
       text_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
       text_here = phrase_t('THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM'), &
@@ -207,6 +218,7 @@ module phrases
       text_position = phrase_t('POSITION', 'POLOZENIE'), &
       text_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
       text_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
+      ! Variants, and runs that were broken off.
       text_variant = phrase_t('VARIANT', 'WARIANT'), &
       text_variants = phrase_t('VARIANTS', 'WARIANTY'), &
       text_end_variant = phrase_t('END OF VARIANT', 'KONIEC WARIANTU'), &
