@@ -83,7 +83,7 @@ contains
 
             if (card_forms(form)%reals == 0) then
                call add_card_error(set, card_alone, k, card_name)
-            else if (is_second(k, above)) then
+            else if (is_second(set, k, above)) then
                call add_card_error(set, card_second, k, card_name)
             else if (card%label(label_a) /= '' .and. form /= form_joint) then
                call add_card_error(set, field_unused, k, label_a)
@@ -113,22 +113,6 @@ contains
       if (n > 0) set%mechanism%tolerances = list(:n)
 
    contains
-
-      !> Tells whether a TOLER card is a second one of the card above it: of a JOINT card each link may have its own.
-      logical function is_second(k, above)
-         integer, intent(in) :: k            !< number of the TOLER card
-         integer, intent(in) :: above        !< number of the card above it
-         integer :: i
-
-         is_second = .false.
-         do i = above + 1, k - 1
-            if (set%cards(i)%form /= form_toler) cycle
-            associate (labels => [set%cards(i)%label(label_a), set%cards(k)%label(label_a)])
-               is_second = is_second .or. set%cards(above)%form /= form_joint .or. any(labels == '') .or. &
-                  any(labels == both_word) .or. labels(1) == labels(2)
-            end associate
-         end do
-      end function is_second
 
       !> Finds the points of a JOINT card whose holes have the tolerances of a TOLER card, and marks all points of the
       !> holes of the joint. A name that is no link of the joint is an error.
@@ -189,6 +173,23 @@ contains
             name=parameter_name(set%mechanism, number), unit=unit%factor, powers=unit%powers, unit_name=unit%name)
       end subroutine add_tolerance
    end subroutine build_tolerances
+
+   !> Tells whether a TOLER card is a second one of the card above it: of a JOINT card each link may have its own.
+   pure logical function is_second(set, k, above)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k            !< number of the TOLER card
+      integer, intent(in) :: above        !< number of the card above it
+      integer :: i
+
+      is_second = .false.
+      do i = above + 1, k - 1
+         if (set%cards(i)%form /= form_toler) cycle
+         associate (labels => [set%cards(i)%label(label_a), set%cards(k)%label(label_a)])
+            is_second = is_second .or. set%cards(above)%form /= form_joint .or. any(labels == '') .or. &
+               any(labels == both_word) .or. labels(1) == labels(2)
+         end associate
+      end do
+   end function is_second
 
    !> Finds the address of a real of a card; its kind is 0 if no number of the mechanism is there.
    pure function number_on_card(set, k, i) result(number)

@@ -66,7 +66,7 @@ contains
       allocate (s%columns(0))
       call add_column(summary_column_t('variant', .true., phrase(text_variant, set%polish)))
       do i = 1, size(variation%numbers)
-         call add_number(variation%numbers(:i))
+         call add_column(number_column(variation%numbers(:i)))
       end do
 
       call add_column(summary_column_t('solved', .true., phrase(text_instants, set%polish), &
@@ -101,25 +101,6 @@ contains
 
          s%columns = [s%columns, column]
       end subroutine add_column
-
-      !> Adds the column of a varied number. If earlier ones have its name, a number counts them.
-      subroutine add_number(numbers)
-         type(varied_t), intent(in) :: numbers(:)   !< (1 or more) the last one is added
-         type(summary_column_t) :: c
-         real(wp) :: largest
-         integer :: same_named
-
-         associate (one => numbers(size(numbers)))
-            c = summary_column_t(dotted(trim(one%owner)//' '//one%word), .true., one%owner, one%word, one%unit)
-            same_named = count(numbers%owner == one%owner .and. numbers%word == one%word)
-            if (same_named > 1) c%name = trim(c%name)//'.'//whole(same_named)
-            largest = max(abs(one%first), abs(one%last))
-            if (allocated(one%list)) largest = maxval(abs(one%list))
-            call choose_digits(log10(max(largest, tiny(1.0_wp))), 0, c%format)
-            if (.not. largest > 0.0_wp) c%format%power = 0
-         end associate
-         call add_column(c)
-      end subroutine add_number
 
       !> Adds the column of the values of a drive.
       subroutine add_drive(number, start, above, below)
@@ -180,6 +161,24 @@ contains
          end do
       end subroutine add_extremes
    end function new_summary
+
+   !> Makes the column of a varied number. If earlier ones have its name, a number counts them.
+   function number_column(numbers) result(c)
+      type(varied_t), intent(in) :: numbers(:)   !< (1 or more) the last one gets the column
+      type(summary_column_t) :: c
+      real(wp) :: largest
+      integer :: same_named
+
+      associate (one => numbers(size(numbers)))
+         c = summary_column_t(dotted(trim(one%owner)//' '//one%word), .true., one%owner, one%word, one%unit)
+         same_named = count(numbers%owner == one%owner .and. numbers%word == one%word)
+         if (same_named > 1) c%name = trim(c%name)//'.'//whole(same_named)
+         largest = max(abs(one%first), abs(one%last))
+         if (allocated(one%list)) largest = maxval(abs(one%list))
+         call choose_digits(log10(max(largest, tiny(1.0_wp))), 0, c%format)
+         if (.not. largest > 0.0_wp) c%format%power = 0
+      end associate
+   end function number_column
 
    !> Makes the row of a variant, with its values only.
    function new_row(summary, variation, n) result(r)
