@@ -429,8 +429,8 @@ contains
       complex(dp), intent(out) :: residual(:)   !< (2p)
       complex(dp), intent(out) :: slope(:)   !< (2p) minus the derivative by t
       complex(dp), dimension(0:paths%p) :: x, y, by_x
-      complex(dp) :: by_y
-      integer :: j, k
+      complex(dp) :: by_y, along
+      integer :: i, j, k
 
       if (abs(t - paths%t) > 0.0_dp) paths%h(:, :, :) = paths%f + t*paths%more
       paths%t = t
@@ -442,11 +442,16 @@ contains
          do j = 1, 2*p
             by_x = 0.0_dp
             do k = 0, p
-               by_x = by_x + paths%h(:, k, j)*y(k)
-               by_y = sum(x*paths%h(:, k, j))
+               by_y = 0.0_dp
+               along = 0.0_dp
+               do i = 0, p
+                  by_x(i) = by_x(i) + paths%h(i, k, j)*y(k)
+                  by_y = by_y + x(i)*paths%h(i, k, j)
+                  along = along + x(i)*paths%more(i, k, j)
+               end do
                if (k > 0) a(j, p + k) = by_y
                residual(j) = residual(j) + by_y*y(k)
-               slope(j) = slope(j) - sum(x*paths%more(:, k, j))*y(k)
+               slope(j) = slope(j) - along*y(k)
             end do
             a(j, :p) = by_x(1:)
          end do
