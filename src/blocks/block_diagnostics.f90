@@ -28,6 +28,8 @@ module block_diagnostics
    real(wp), parameter :: near_singular_pivot = 0.05_wp
    !> And an unknown is faster than the drives, by more than this factor.
    real(wp), parameter :: much_faster = 10.0_wp
+   !> A limit is another block's, and nearer, if its time left is below this part.
+   real(wp), parameter :: much_nearer = 0.5_wp
    !> A slide on its way to infinity is so many units of its loop long,
    real(wp), parameter :: far_slide = 10.0_wp
    !> and s s''/s'^2, which is 2 at a pole, differs from 2 by no more than this.
@@ -141,8 +143,9 @@ contains
       end do
    end function links_with
 
-   !> Finds the limit of the motion that is followed, none or one. It is the limit of the first block, in solving order,
-   !> that comes to one; blocks that build on it come to it as well.
+   !> Finds the limit of the motion that is followed, none or one: that of the block that comes to one first. Blocks
+   !> that build on it come to it as well, at a time that is equal but for an error of higher order. Of blocks whose times
+   !> left do not differ by a factor the first in solving order counts.
    function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -153,30 +156,31 @@ contains
       logical, intent(in) :: creeps          !< many substeps have come so near that a slide's infinity may be after `t`
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
-      real(wp) :: left, f(3)
+      real(wp) :: left, nearest, f(3)
       logical :: moves(0:size(path%laws))
-      integer :: d, k
+      integer :: i, d, k
 
       allocate (list(0))
       if (history%filled == 0) return
+      i = 0
+      nearest = huge(nearest)
       do k = 1, size(b%moving)
          if (b%list(b%moving(k))%explicit) cycle
          left = time_to_limit(b%moving(k))
          if (abs(left) <= 0.0_wp) left = time_to_infinity(b%moving(k))
-         if (abs(left) <= 0.0_wp) cycle
-         associate (i => b%moving(k))
-            r = new_diagnostic(diagnostic_limit, links_of(b, x, b%moving(k)))
-            r%in_line = is_in_line(b, x, i, r, history%past%value)
-            r%t = history%t(0) + left
-         end associate
-         exit
+         if (abs(left) <= 0.0_wp .or. abs(left) >= much_nearer*nearest) cycle
+         i = b%moving(k)
+         nearest = abs(left)
+         r = new_diagnostic(diagnostic_limit, links_of(b, x, i))
+         r%in_line = is_in_line(b, x, i, r, history%past%value)
+         r%t = history%t(0) + left
       end do
-      if (k > size(b%moving)) return
+      if (i == 0) return
 
       ! The first drive that moves the block there, itself or through those on which it builds; if all stand still, the
       ! first that could.
       moves = .false.
-      associate (below => blocks_below(b, b%moving(k)))
+      associate (below => blocks_below(b, i))
          do d = 1, size(below)
             associate (block => b%list(below(d)))
                moves(b%rows(block%first_row:block%last_row)%drive) = .true.
