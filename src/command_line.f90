@@ -136,38 +136,43 @@ contains
          end select
       end do
 
-      ! A study and times are no listing; a study reads its deck more than once.
-      if ((options%study .or. options%time) .and. len(options%show) == 0) then
-         if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
-            .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
-            .or. (options%study .and. options%time)) then
-            call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
-               //' CAN ONLY BE COMBINED WITH -o AND --quiet')
-         else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-            call reject('OPTION --study NEEDS THE DECK AS A FILE')
-         end if
-      end if
-
-      ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
-      if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-         call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
-      if (count(to_standard_output(options%files)) > 1) call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT')
-      do k = 1, out_last
-         if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
-            call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
-      end do
-
-      if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
-         word = ''
-         do k = 1, size(card_forms)
-            word = word//' '//trim(form_name(k))
-         end do
-         call reject('OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//word)
-      end if
+      call refuse_combinations()
       if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
          .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
 
    contains
+
+      !> Rejects options that exclude each other, or that lack what they need.
+      subroutine refuse_combinations()
+         ! A study and times are no listing; a study reads its deck more than once.
+         if ((options%study .or. options%time) .and. len(options%show) == 0) then
+            if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
+               .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
+               .or. (options%study .and. options%time)) then
+               call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
+                  //' CAN ONLY BE COMBINED WITH -o AND --quiet')
+            else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
+               call reject('OPTION --study NEEDS THE DECK AS A FILE')
+            end if
+         end if
+
+         ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
+         if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
+            call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
+         if (count(to_standard_output(options%files)) > 1) call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT')
+         do k = 1, out_last
+            if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
+               call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
+         end do
+
+         if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
+            word = ''
+            do k = 1, size(card_forms)
+               word = word//' '//trim(form_name(k))
+            end do
+            call reject('OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//word)
+         end if
+      end subroutine refuse_combinations
 
       !> Makes `failure` hold a sentence, if there is no failure yet.
       subroutine reject(text)

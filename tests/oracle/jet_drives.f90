@@ -25,6 +25,7 @@ contains
 
       c = d%polynomial
       f = jet_t(c(1) + c(2)*t + 0.5_qp*c(3)*t**2, c(2) + c(3)*t, c(3))
+      if (.not. allocated(d%terms)) return
       do i = 1, size(d%terms)
          f = f + term_of(d%terms(i), t)
       end do
@@ -139,6 +140,7 @@ contains
 
       c = abs(d%polynomial)
       s = [c(1) + c(2)*abs(t) + c(3)*t**2, c(2) + c(3)*abs(t), c(3)]
+      if (.not. allocated(d%terms)) return
       do i = 1, size(d%terms)
          s = s + term_sizes(d%terms(i), t)
       end do
@@ -188,6 +190,7 @@ contains
          one%polynomial(k) = drive%polynomial(k)
          if (abs(drive%polynomial(k)) > 0.0_wp) c = [c, drive_jet(one, t)]
       end do
+      if (.not. allocated(drive%terms)) return
       do i = 1, size(drive%terms)
          c = [c, term_changes(alone(drive, i), t)]
       end do
@@ -247,10 +250,7 @@ contains
 
       one = drive
       one%polynomial = 0.0_wp
-      if (i == 0) then
-         one%terms = drive%terms(:0)
-      else
-         one%terms = drive%terms(i:i)
-      end if
+      if (allocated(one%terms)) deallocate (one%terms)
+      if (i > 0) one%terms = drive%terms(i:i)
    end function alone
 end module jet_drives

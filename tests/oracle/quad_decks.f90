@@ -62,6 +62,7 @@ contains
       associate (c => drive%polynomial)
          f = number(m, c(1), turns) + number(m, c(2), turns)*time + 0.5_qp*number(m, c(3), turns)*time*time
       end associate
+      if (.not. allocated(drive%terms)) return
       do i = 1, size(drive%terms)
          f = f + term_on_card(m, drive%terms(i), turns, t)
       end do

@@ -167,8 +167,6 @@ contains
             term%r = [between(d%dice, -0.5_wp, 0.5_wp), between(d%dice, 0.5_wp, 2.0_wp), between(d%dice, -pi, pi)]
             drive%polynomial(1) = drive%polynomial(1) - term%r(1)*sin(term%r(3))
             drive%terms = [term]
-         else
-            allocate (drive%terms(0))
          end if
       end associate
    end subroutine add_drive

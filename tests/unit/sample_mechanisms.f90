@@ -196,8 +196,5 @@ contains
 
       allocate (m%at(0))
       m%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
-      do i = 1, size(m%drives)
-         if (.not. allocated(m%drives(i)%terms)) allocate (m%drives(i)%terms(0))
-      end do
    end subroutine finish
 end module sample_mechanisms
