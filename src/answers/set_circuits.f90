@@ -97,15 +97,15 @@ contains
    end subroutine find_all_circuits
 
    !> Gives the assemblies of a part at the first instant. They are searched for only if the set does not have them.
-   function first_assemblies(set, c) result(first)
+   function first_assemblies(set, part) result(first)
       type(set_analysis_t), intent(in) :: set
-      integer, intent(in) :: c                   !< the number of the part
+      integer, intent(in) :: part                !< its number
       type(assemblies_t) :: first
 
       if (allocated(set%assemblies)) then
-         first = set%assemblies(c)
+         first = set%assemblies(part)
       else
-         call find_assemblies(set%now%parts(c), set%now%motions(c)%t, first)
+         call find_assemblies(set%now%parts(part), set%now%motions(part)%t, first)
       end if
    end function first_assemblies
 

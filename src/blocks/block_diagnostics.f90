@@ -144,8 +144,8 @@ contains
    end function links_with
 
    !> Finds the limit of the motion that is followed, none or one: that of the block that comes to one first. Blocks
-   !> that build on it come to it as well, at a time that is equal but for an error of higher order. Of blocks whose times
-   !> left do not differ by a factor the first in solving order counts.
+   !> that build on it come to it as well, at an equal time but for an error of higher order. If the times left of two
+   !> blocks do not differ by the factor `much_nearer`, the first in solving order counts.
    function limit_diagnostic(b, x, path, history, s, t, creeps) result(list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
