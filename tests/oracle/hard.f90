@@ -10,7 +10,7 @@ program hard
    use plane_vectors, only: pi, degree
    use quad_jet, only: qp, pi_q
    use mechanism, only: method_matrix, method_dense
-   use motion, only: motion_t, new_motion, flag_none
+   use motion, only: motion_t, new_motion, flag_none, flag_stroke
    use scales, only: characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
    use jet_closure, only: body_jet_t
@@ -185,7 +185,7 @@ contains
 
       exact = exact_links(s, t)
       call find_allowed(s, exact, t, allowed, exists)
-      if (q%flag /= flag_none) then
+      if (.not. any(q%flag == [flag_none, flag_stroke])) then
          tally%flagged = tally%flagged + 1
          if (exists) exists = maxval(allowed(:, :, 1))*epsilon(1.0_wp) <= nothing_left*fastest(exact)
          if (exists) tally%worst = huge(1.0_qp)
