@@ -102,19 +102,23 @@ for alpha in 90 90.00001 89.99999 90.001 89.999 90.1 87.3; do
    equal "a run to infinity, $alpha" "$(limit "$alpha")" "$(sed -n 's/^ [*]* DRIVE ANGLE CRANK = \(.*\) DEG, .*AT THE LIMIT.*/\1/p' "$w/run")"
 done
 
-# Two dyads 3, 3.2 on one slide, mirrored but for 2E-7 of a height: the lower one is in line first, at 5 -+ sqrt(6.2**2 - 2.0000002**2).
-# The other would be 7E-8 further on, and the loops make the lower one build on it.
+# Two dyads 3, 3.2 on one slide, mirrored but for a little of a height: the dyad of the greater height h is in line first, at
+# 5 -+ sqrt(6.2**2 - (h - 2)**2). The loops make the second dyad build on the first, whichever comes to its limit earlier.
 dyad() { card LINK "ROD$1" '' '' 3.0 "$2" "$4"; card LINK "JAW$1" '' '' 5.0 "$3" "$5"
    card POINT "P$1" SL '' 0.0 "$2"; card POINT "A$1" "ROD$1"; card POINT "B$1" "ROD$1" '' 3.0
    card POINT "G$1" BASE '' 5.0 "$3"; card POINT "C$1" "JAW$1"; card POINT "D$1" "JAW$1" '' 3.2
    card REVOLUTE "P$1" "A$1" "PA$1"; card REVOLUTE "B$1" "D$1" "BD$1"; card REVOLUTE "G$1" "C$1" "GC$1"; }
-{ card UNITS M DEG S; card GROUND BASE; card LINK SL '' '' 3.0; dyad 0 2.0 4.0 111.5 165.7; dyad 1 -2.0 -4.0000002 -111.5 -165.7
-  card POINT O BASE; card POINT S SL; card PRISM O S GUIDE 0.0; card DRIVE SLIDE GUIDE '' 3.0 1.0; card AT '' '' '' 0.0; card RANGE
-  card END; } > "$w/deck"
-ends=$(awk 'BEGIN { o = sqrt(6.2^2 - 2.0000002^2); printf "%.12f %.12f", 5 - o, 5 + o }')
-range 'two dyads that are in line almost together' " SLIDE GUIDE
-   MIN  $(limit "${ends% *}") M   LINKS ROD1, JAW1 AT THE LIMIT, COLLINEAR
-   MAX  $(limit "${ends#* }") M   LINKS ROD1, JAW1 AT THE LIMIT, COLLINEAR"
+for height in 4.000000002 4.0000002 4.00002 4.002 3.999999998 3.9999998 3.99998 3.998; do
+   { card UNITS M DEG S; card GROUND BASE; card LINK SL '' '' 3.0
+     dyad 0 2.0 4.0 111.5 165.7; dyad 1 -2.0 "-$height" -111.5 -165.7
+     card POINT O BASE; card POINT S SL; card PRISM O S GUIDE 0.0; card DRIVE SLIDE GUIDE '' 3.0 1.0; card AT '' '' '' 0.0; card RANGE
+     card END; } > "$w/deck"
+   first=$(awk -v h="$height" 'BEGIN { k = h > 4; o = sqrt(6.2^2 - ((k ? h : 4) - 2)^2); printf "%d %.12f %.12f", k, 5 - o, 5 + o }')
+   set -- $first
+   range "two dyads that are in line almost together, $height" " SLIDE GUIDE
+   MIN  $(limit "$2") M   LINKS ROD$1, JAW$1 AT THE LIMIT, COLLINEAR
+   MAX  $(limit "$3") M   LINKS ROD$1, JAW$1 AT THE LIMIT, COLLINEAR"
+done
 
 # Each of the two cranks of a five-bar alone.
 for method in NEWTON DENSE; do
