@@ -168,14 +168,14 @@ contains
          if (b%list(b%moving(k))%explicit) cycle
          left = time_to_limit(b%moving(k))
          if (abs(left) <= 0.0_wp) left = time_to_infinity(b%moving(k))
-         if (abs(left) <= 0.0_wp .or. abs(left) >= much_nearer*nearest) cycle
+         if (abs(left) <= 0.0_wp .or. abs(left) >= much_nearer*abs(nearest)) cycle
          i = b%moving(k)
-         nearest = abs(left)
-         r = new_diagnostic(diagnostic_limit, links_of(b, x, i))
-         r%in_line = is_in_line(b, x, i, r, history%past%value)
-         r%t = history%t(0) + left
+         nearest = left
       end do
       if (i == 0) return
+      r = new_diagnostic(diagnostic_limit, links_of(b, x, i))
+      r%in_line = is_in_line(b, x, i, r, history%past%value)
+      r%t = history%t(0) + nearest
 
       ! The first drive that moves the block there, itself or through those on which it builds; if all stand still, the
       ! first that could.
