@@ -5,7 +5,7 @@ module number_types
    use kinds, only: wp
    implicit none
    private
-   public :: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
+   public :: vector_t, unknown_t, row_numbers_t, loop_numbers_t, link_numbers_t, loop_state_t
 
 #include "number_types.inc"
 end module number_types

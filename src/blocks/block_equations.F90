@@ -23,7 +23,7 @@ module block_equations
    use block_state, only: state_t
    implicit none
    private
-   public :: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives
+   public :: find_direct, find_known, assemble, velocity_rows, acceleration_rows, add_drives, add_rotating
    public :: find_known_parts, assemble_dense, right_hand_side
 
 contains

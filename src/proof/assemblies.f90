@@ -179,7 +179,7 @@ contains
             if (assemblies%are_more) exit
             call prove_position(p, continuation%blocks, continuation%path, continuation%state, 0, q, failed)
             is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
-            call record_assembly(m, continuation, found, chosen, is_proved, q, assemblies)
+            call record_assembly(continuation, found, chosen, is_proved, p, q, assemblies)
             i = i - 1
             cycle
          end if
@@ -207,17 +207,17 @@ contains
 
    !> Puts an assembly among the others, the nearest first. If distances are equal they keep the order in which they
    !> were found. An assembly with a cylinder of negative length is only counted.
-   subroutine record_assembly(m, continuation, found, chosen, is_proved, proof, assemblies)
-      type(mechanism_t), intent(in) :: m
+   subroutine record_assembly(continuation, found, chosen, is_proved, numbers, proof, assemblies)
       type(continuation_t), intent(in) :: continuation   !< its state is the assembly
       type(block_positions_t), intent(in) :: found(:)   !< (blocks)
       integer, intent(in) :: chosen(:)       !< (blocks) numbers of the positions of the assembly
       logical, intent(in) :: is_proved       !< the assembly is proved,
+      type(ball_numbers_t), intent(in) :: numbers     !< of the mechanism
       type(proved_position_t), intent(in) :: proof    !< and lies in these balls
       type(assemblies_t), intent(inout) :: assemblies
       type(assembly_t) :: one
       type(motion_t) :: q
-      type(ball_t) :: links(3, 0:2, size(m%links))
+      type(ball_t) :: links(3, 0:2, size(continuation%guess%links, 2))
       real(wp) :: length, zero, off(2, 0:2)
       logical :: finite
       integer :: i, k
@@ -227,7 +227,7 @@ contains
          finite)
       one%is_proved = is_proved
       off = 0.0_wp
-      if (is_proved) call bound_links(m, continuation%geometry, proof%ball_state_t, q, links, off)
+      if (is_proved) call bound_links(continuation%geometry, numbers, proof%ball_state_t, q, links, off)
       do i = 1, size(continuation%geometry%cylinders)
          associate (c => continuation%geometry%cylinders(i))
             length = cylinder_length(c, q%position(:, c%i), q%position(:, c%j))

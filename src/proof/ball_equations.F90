@@ -16,8 +16,8 @@ module ball_equations
    use balls, only: ball_t, rounding, up, operator(+), operator(-), operator(*)
    implicit none
    private
-   public :: vector_t, unknown_t, ball_numbers_t, ball_state_t, new_ball_state, set_ball, set_radius, set_direction
-   public :: assemble_balls, ball_accelerations, find_direct, add_rotating
+   public :: vector_t, unknown_t, link_numbers_t, ball_numbers_t, ball_state_t, new_ball_state, set_ball
+   public :: set_radius, set_direction, assemble_balls, ball_accelerations, find_direct, add_rotating
 
 #include "number_types.inc"
 
@@ -25,6 +25,7 @@ module ball_equations
    type :: ball_numbers_t
       type(row_numbers_t), allocatable :: rows(:)
       type(loop_numbers_t), allocatable :: loops(:)
+      type(link_numbers_t), allocatable :: links(:)    !< in the order of the chain, those that are wanted
       type(vector_t), allocatable :: d(:), e(:)
    end type ball_numbers_t
 

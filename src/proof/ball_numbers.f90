@@ -13,12 +13,12 @@ module ball_numbers
    use ball_equations, only: vector_t, ball_numbers_t
    implicit none
    private
-   public :: new_ball_numbers, around, angle_error, length_in_link
+   public :: new_ball_numbers
 
    !> Relative error of a number of the deck: the roundings of its decimals and units.
    real(wp), parameter, public :: number_error = 4.0_wp*rounding
    !> Relative error of the components of a vector that the deck's angles turn: sine and cosine, products and their sum.
-   real(wp), parameter, public :: vector_error = 8.0_wp*rounding
+   real(wp), parameter :: vector_error = 8.0_wp*rounding
 
 contains
 
@@ -28,7 +28,7 @@ contains
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
       type(ball_numbers_t) :: p
-      real(wp) :: angle, of_direction, lengths(0:b%tree%orientations)
+      real(wp) :: angle, of_direction, of_vectors, lengths(0:b%tree%orientations)
       integer :: i, k
 
       angle = angle_error(m)
@@ -59,6 +59,19 @@ contains
             do k = g%first_slide, g%last_slide
                p%e(k) = around(x%e(k), of_direction*length_of(x%e(k)))
             end do
+         end associate
+      end do
+
+      of_vectors = (number_error + of_direction)*(maxval([0.0_wp, length_in_link(m, [(i, i=1, size(m%points))])]) &
+         + maxval([0.0_wp, abs(m%pairs%offset)]))
+      allocate (p%links(x%chain%wanted))
+      do i = 1, x%chain%wanted
+         associate (own => x%chain%links(i)%numbers)
+            p%links(i)%reach = around(own%reach, of_vectors)
+            p%links(i)%body_vector = around(own%body_vector, of_vectors)
+            p%links(i)%slide_vector = around(own%slide_vector, of_direction*length_of(own%slide_vector))
+            p%links(i)%root_unit = around(own%root_unit, 0.0_wp)
+            p%links(i)%angle_offset = ball_t(own%angle_offset, angle)
          end associate
       end do
 

@@ -92,7 +92,7 @@ contains
          call prove_position(prover%numbers, b, path, s, merge(2, 0, bounded), here, failed)
          found%is_proved = failed == 0
          if (found%is_proved) then
-            if (bounded) call bound_links(m, x, here%ball_state_t, q, found%links, found%largest)
+            if (bounded) call bound_links(x, prover%numbers, here%ball_state_t, q, found%links, found%largest)
             found%closure_error = here%closure_error
             found%has_step = prover%has_begun
             if (found%has_step) call prove_step(prover%numbers, b, x, path, s, before, here, found%step)

@@ -86,7 +86,6 @@ contains
 
       if (.not. b%solvable) return
       chain = new_chain(m, b, x, wanted_links(m))
-      chain%length = 1.0_wp
       do d = 1, size(m%drives)
          if (all(m%requests%drive /= d)) cycle
          state = new_state(b, size(m%drives))

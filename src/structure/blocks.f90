@@ -10,11 +10,11 @@
 !> on, and no other; and of these again and again only what a drive moves.
 module blocks
    use kinds, only: wp
-   use number_types, only: vector_t, row_numbers_t, loop_numbers_t
+   use number_types, only: vector_t, row_numbers_t, loop_numbers_t, link_numbers_t
    use cylinders, only: cylinder_t
    use klu, only: pattern_t
    use block_matrix, only: matrix_layout_t
-   use spanning_tree, only: spanning_tree_t, link_offset_t
+   use spanning_tree, only: spanning_tree_t
    use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
@@ -85,10 +85,8 @@ module blocks
       integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
-      real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
       logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
-      real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
-      type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
+      type(link_numbers_t) :: numbers
    end type link_step_t
 
    !> The links to be moved, the wanted ones first, parents before their children; and those that stay.
@@ -98,7 +96,6 @@ module blocks
       integer :: wanted = 0                             !< so many links are wanted, or parents of wanted ones
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
-      real(wp) :: length = 1.0_wp                       !< the unit of slides in the deck's
    end type link_order_t
 
    !> What the numbers of the cards make of the blocks.

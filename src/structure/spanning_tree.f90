@@ -11,7 +11,7 @@ module spanning_tree
    use mechanism, only: mechanism_t, has_guide, pair_links
    implicit none
    private
-   public :: spanning_tree_t, new_tree, axes_t, other_link, link_offset_t, point_offset, guide
+   public :: spanning_tree_t, new_tree, axes_t, other_link, point_offset, guide
 
    type :: spanning_tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -36,13 +36,6 @@ module spanning_tree
       real(wp), allocatable :: angle_offset(:)   !< (links) phi of the link less the angle of its orientation, rad
       real(wp), allocatable :: turn(:, :)        !< (2, links) the unit vector at this angle
    end type axes_t
-
-   !> Where a link is, seen from its parent: its origin is that of the parent + R(parent) (reach + s slide_body_vector)
-   !> - R(own) body_vector, R of the orientations.
-   type :: link_offset_t
-      real(wp) :: reach(2) = 0.0_wp, body_vector(2) = 0.0_wp, slide_body_vector(2) = 0.0_wp
-      integer :: slide = 0
-   end type link_offset_t
 
 contains
 

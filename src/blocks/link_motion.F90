@@ -1,17 +1,18 @@
-!> The motion of the links from the motion of the unknowns, along the tree. A link's origin is
-!>
-!>    origin = parent's origin + R_p r + s R_p e - R d,
-!>
-!> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
+!> The motion of the links from the motion of the unknowns, along the tree: the origin of a link is that of its parent
+!> and the offset of link_motion.inc, here compiled for reals.
+#define NUMBER real(wp)
+#define ZERO 0.0_wp
+#define TWO 2.0_wp
 module link_motion
    use assertions, only: asserts, assert
    use kinds, only: wp
-   use plane_vectors, only: rotated, quarter_turn, add_rotating
+   use number_types, only: vector_t, unknown_t, link_numbers_t
    use mechanism, only: mechanism_t, has_guide
    use motion, only: motion_t, flag_none, flag_not_converged, flag_singular
    use blocks, only: blocks_t, geometry_t, link_order_t, link_step_t
-   use block_state, only: unknown_t, state_t
-   use spanning_tree, only: axes_t, guide, link_offset_t, point_offset, spanning_tree_t
+   use block_equations, only: add_rotating
+   use block_state, only: state_t
+   use spanning_tree, only: axes_t, guide, point_offset, spanning_tree_t
    implicit none
    private
    public :: new_chain, assign_chain, move_links, flag_links, missing_nothing, missing_rates, missing_all
@@ -59,20 +60,19 @@ contains
       do i = 1, size(chain%links)
          associate (h => chain%links(i), link => chain%links(i)%link, t => b%tree, a => x%equations%axes)
             h%orientation = t%orientation(link)
-            h%angle_offset = a%angle_offset(link)
+            h%numbers%angle_offset = a%angle_offset(link)
             if (t%parent(link) == 0) then
                h%root = t%orientations + t%slides + 2*t%root(link) - 1
-               h%root_unit = x%unit(h%root:h%root + 1)
+               h%numbers%root_unit = vector_of(x%equations%length*x%unit(h%root:h%root + 1))
                cycle
             end if
 
-            h%place = place_on_tree(m, t, a, link)
-            h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
+            associate (slide => t%slide(t%parent_joint(link)))
+               if (slide > 0) h%slide = t%orientations + slide
+            end associate
+            call set_offset(m, t, x, h)
+            h%has_body_vector = any(abs([h%numbers%body_vector%x, h%numbers%body_vector%y]) > 0.0_wp)
             h%parent_orientation = t%orientation(t%parent(link))
-            if (h%place%slide > 0) then
-               h%slide = t%orientations + h%place%slide
-               h%place%slide_body_vector = x%unit(h%slide)*h%place%slide_body_vector
-            end if
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
          end associate
       end do
@@ -80,7 +80,6 @@ contains
          chain%ground_position(:, i) = m%links(chain%ground(i))%position - [x%equations%axes%origin, 0.0_wp]
       end do
       chain%origin = x%equations%axes%origin
-      chain%length = x%equations%length
    end subroutine assign_chain
 
    !> Finds the motion of the first links of a chain.
@@ -93,12 +92,12 @@ contains
 
       if (asserts) call assert(n <= size(chain%links), 'move_links: as many links as there are')
       q%origin = chain%origin
-      call move_chain(n, chain%links, size(chain%ground), chain%ground, chain%ground_position, s%u, chain%length, &
-         q%position, q%velocity, q%acceleration, finite)
+      call move_chain(n, chain%links, size(chain%ground), chain%ground, chain%ground_position, s%u, q%position, &
+         q%velocity, q%acceleration, finite)
    end subroutine move_links
 
    !> Finds the motion of ground links and moving links on plain arrays, which cost no descriptors.
-   pure subroutine move_chain(n, links, grounds, ground, ground_positions, unknowns, length, positions, velocities, &
+   pure subroutine move_chain(n, links, grounds, ground, ground_positions, unknowns, positions, velocities, &
       accelerations, finite)
       integer, intent(in) :: n                              !< how many links are moved
       type(link_step_t), intent(in) :: links(n)            !< parents before their children
@@ -106,64 +105,31 @@ contains
       integer, intent(in) :: ground(*)                      !< (ground links) their numbers
       real(wp), intent(in) :: ground_positions(3, *)        !< (3, ground links) x, y, phi, in the deck's unit and rad
       type(unknown_t), intent(in) :: unknowns(0:*)          !< (0:unknowns)
-      real(wp), intent(in) :: length                        !< the unit of slides in the deck's
       real(wp), intent(inout) :: positions(3, *)            !< (3, links) x, y, phi, in the deck's unit and rad
       real(wp), intent(inout) :: velocities(3, *)           !< (3, links) by time
       real(wp), intent(inout) :: accelerations(3, *)        !< (3, links) by time squared
       logical, intent(out) :: finite                        !< no number is out of range
-      real(wp), dimension(2) :: x, x_t, x_tt, e, e_t
+      type(vector_t) :: place(0:2)
       real(wp) :: check
-      integer :: i, k
+      integer :: i
 
       do i = 1, grounds
          positions(:, ground(i)) = ground_positions(:, i)
       end do
       check = 0.0_wp
       do i = 1, n
-         associate (h => links(i), f => unknowns(links(i)%orientation))
-            associate (parent => unknowns(h%parent_orientation), r => h%place%reach, d => h%place%body_vector)
-               if (h%parent_orientation == 0) then
-                  x = r
-                  x_t = 0.0_wp
-                  x_tt = 0.0_wp
-               else
-                  x = rotated(r, [parent%c, parent%s])
-                  x_t = parent%rate*quarter_turn(x)
-                  x_tt = parent%acceleration*quarter_turn(x) - parent%rate**2*x
-               end if
-
-               if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
-                  f%acceleration, x, x_t, x_tt)
-               if (h%slide > 0) then
-                  ! s R e with its derivatives.
-                  e = length*rotated(h%place%slide_body_vector, [parent%c, parent%s])
-                  e_t = quarter_turn(e)
-                  associate (slide => unknowns(h%slide))
-                     x = x + slide%value*e
-                     x_t = x_t + slide%rate*e + slide%value*parent%rate*e_t
-                     x_tt = x_tt + slide%acceleration*e + 2.0_wp*slide%rate*parent%rate*e_t &
-                        + slide%value*(parent%acceleration*e_t - parent%rate**2*e)
-                  end associate
-               end if
-            end associate
-
-            ! A link that no pair joins to the ground has unknowns of its own for x and y.
-            if (h%root > 0) then
-               x = length*h%root_unit*unknowns(h%root:h%root + 1)%value
-               x_t = length*h%root_unit*unknowns(h%root:h%root + 1)%rate
-               x_tt = length*h%root_unit*unknowns(h%root:h%root + 1)%acceleration
-            end if
+         call find_offset(links(i), links(i)%numbers, unknowns, place)
+         associate (h => links(i), f => unknowns(links(i)%orientation), k => links(i)%link)
             if (h%parent > 0) then
-               x = x + positions(:2, h%parent)
-               x_t = x_t + velocities(:2, h%parent)
-               x_tt = x_tt + accelerations(:2, h%parent)
+               place(0) = vector_t(place(0)%x + positions(1, h%parent), place(0)%y + positions(2, h%parent))
+               place(1) = vector_t(place(1)%x + velocities(1, h%parent), place(1)%y + velocities(2, h%parent))
+               place(2) = vector_t(place(2)%x + accelerations(1, h%parent), place(2)%y + accelerations(2, h%parent))
             end if
-
-            k = h%link
-            positions(:, k) = [x, f%value + h%angle_offset]
-            velocities(:, k) = [x_t, f%rate]
-            accelerations(:, k) = [x_tt, f%acceleration]
-            check = check + ((x(1) + x(2)) + (x_t(1) + x_t(2)) + ((x_tt(1) + x_tt(2)) + f%acceleration))
+            positions(:, k) = [place(0)%x, place(0)%y, f%value + h%numbers%angle_offset]
+            velocities(:, k) = [place(1)%x, place(1)%y, f%rate]
+            accelerations(:, k) = [place(2)%x, place(2)%y, f%acceleration]
+            check = check + ((place(0)%x + place(0)%y) + (place(1)%x + place(1)%y) &
+               + ((place(2)%x + place(2)%y) + f%acceleration))
          end associate
       end do
       finite = abs(check) <= huge(check)
@@ -191,24 +157,37 @@ contains
       end associate
    end subroutine flag_links
 
-   !> Finds where a link is, seen from its parent, in the deck's unit of length.
-   pure function place_on_tree(m, tree, axes, link) result(p)
+   !> Gives a link the numbers of its offset from its parent.
+   pure subroutine set_offset(m, tree, x, link)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
-      type(axes_t), intent(in) :: axes
-      integer, intent(in) :: link   !< its number; it has a parent
-      type(link_offset_t) :: p
-      real(wp) :: sign_of
+      type(geometry_t), intent(in) :: x
+      type(link_step_t), intent(inout) :: link   !< with a parent
+      real(wp) :: sign_of, reach(2)
 
-      associate (pair => m%pairs(tree%parent_joint(link)), parent => tree%parent(link))
-         sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
-         p%reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
-         p%body_vector = point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
-         if (m%links(parent)%ground) p%reach = p%reach + (m%links(parent)%position(:2) - axes%origin)
-         if (.not. has_guide(pair%kind)) return
-         p%slide = tree%slide(tree%parent_joint(link))
-         p%slide_body_vector = sign_of*guide(m, axes, tree%parent_joint(link), across=.false.)
-         p%reach = p%reach - sign_of*guide(m, axes, tree%parent_joint(link), across=.true.)*pair%offset
+      associate (joint => tree%parent_joint(link%link), parent => tree%parent(link%link), axes => x%equations%axes)
+         associate (pair => m%pairs(joint))
+            sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link%link)
+            reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+            link%numbers%body_vector = &
+               vector_of(-point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp)))
+            if (m%links(parent)%ground) reach = reach + (m%links(parent)%position(:2) - axes%origin)
+            if (has_guide(pair%kind)) then
+               reach = reach - sign_of*guide(m, axes, joint, across=.true.)*pair%offset
+               link%numbers%slide_vector = vector_of(x%equations%length*x%unit(link%slide)*sign_of &
+                  *guide(m, axes, joint, across=.false.))
+            end if
+            link%numbers%reach = vector_of(reach)
+         end associate
       end associate
-   end function place_on_tree
+   end subroutine set_offset
+
+   !> Gives two numbers as a vector.
+   pure type(vector_t) function vector_of(numbers)
+      real(wp), intent(in) :: numbers(2)     !< x and y, in any unit
+
+      vector_of = vector_t(numbers(1), numbers(2))
+   end function vector_of
+
+#include "link_motion.inc"
 end module link_motion
