@@ -90,10 +90,7 @@ contains
       moves = .false.
       level = max(surplus_tolerance, sqrt(real(x%closing, dp)))
       if (f%system%p == 0) then
-         ends%paths = 1
-         allocate (ends%list(1))
-         ends%list(1)%x = [(1.0_dp, 0.0_dp)]
-         ends%list(1)%y = ends%list(1)%x
+         ends = ends_t(paths=1, list=[path_end_t([(1.0_dp, 0.0_dp)], [(1.0_dp, 0.0_dp)])])
       else if (f%system%p == 1) then
          call solve_quadratic(f%system, ends, moves)
       else
@@ -105,16 +102,16 @@ contains
       found%infinite = found%infinite + ends%infinite
       found%failed = found%failed + ends%failed
       do k = 1, size(ends%list)
-         found%finite = found%finite + 1
          associate (e => ends%list(k))
             if (all([(abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= level*maxval(abs(e%x))*maxval(abs(e%y)), &
                j=1, size(f%more, 3))])) then
                call add_position(e)
             else
-               call leave_out(found%partial)
+               found%partial = found%partial + 1
             end if
          end associate
       end do
+      found%finite = found%paths - (found%infinite + found%failed + found%partial)
       found%real = found%real + size(found%sign_of)
       found%is_open = found%is_open .or. any(found%rates_open)
 
@@ -147,12 +144,12 @@ contains
 
          call solve_block(b, x, i, .true., w, s, c)
          if (c%ended == ended_inconsistent) then
-            call leave_out(found%partial)
+            found%partial = found%partial + 1
             return
          end if
          if (.not. is_solved(c) .or. apart(values_of(b, i, s), place) > &
             merge(max_singular_move, max_newton_move, ending%is_singular) + moves_per_closing*x%closing) then
-            call leave_out(found%failed)
+            found%failed = found%failed + 1
             return
          end if
 
@@ -166,14 +163,6 @@ contains
          found%rates_open = [found%rates_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))
       end subroutine add_position
-
-      !> Counts the last of the finite ends with others instead.
-      subroutine leave_out(number)
-         integer, intent(inout) :: number   !< of the ends with which it counts
-
-         number = number + 1
-         found%finite = found%finite - 1
-      end subroutine leave_out
 
       !> Gives the largest difference of two positions of the block, in rad or the unit of the loop; angles without
       !> whole turns.

@@ -587,6 +587,7 @@ contains
                   second = second + length_of(x%e(k))*turn*(2.0_wp*change(slide%column) + length*turn)
                end associate
             end do
+
             if (g%kind == loop_projection) then
                associate (turn => change(g%orientation_column))
                   second = second + turn*(2.0_wp*first + length_of(now(m)%closure_error)*turn)

@@ -44,6 +44,7 @@ contains
          end associate
       end do
       if (limit%pair == 0) return
+
       do d = 1, size(continuation%path%laws)
          f = drive_at(continuation%path, d, limit%t)
          if (limit%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle

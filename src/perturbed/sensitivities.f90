@@ -72,7 +72,7 @@ contains
       type(sensitivities_t), intent(inout) :: found
       type(row_t), dimension(size(m%requests)) :: middle, up, down
       type(row_t) :: row
-      real(wp) :: step, h
+      real(wp) :: step, h, factor
       integer :: i, d, k, side, order
 
       found%taken = .true.
@@ -107,8 +107,12 @@ contains
                h = step*0.5_wp**(k - 1)
                if (k > 1) call find_changed_rows(up, one, h)
                if (side == 0) call find_changed_rows(down, one, -h)
-               call record_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, &
-                  merge(of_both_sides(k), of_one_side(k), side == 0))
+               factor = merge(of_both_sides(k), of_one_side(k), side == 0)*one%unit/(merge(2.0_wp, 1.0_wp, side == 0)*h)
+               where (min(up%known, down%known) < 2) found%known = -1
+               do i = 1, size(m%requests)
+                  if (found%known(i) >= 0) &
+                     found%of(:, :, d, i) = found%of(:, :, d, i) + factor*(up(i)%value - down(i)%value)
+               end do
             end do
             do i = 1, size(m%requests)
                found%known(i) = min(found%known(i), order)
@@ -126,20 +130,6 @@ contains
       estimator%perturbed(0)%is_ready = .false.
 
    contains
-
-      !> Adds a part of the slopes from the rows `down` to the rows `up` to the sensitivities to number `d`.
-      subroutine record_slopes(apart, part)
-         real(wp), intent(in) :: apart       !< difference of the numbers of `up` and `down`, in their unit
-         real(wp), intent(in) :: part        !< of the slopes; without a unit
-         integer :: i
-
-         do i = 1, size(m%requests)
-            if (min(up(i)%known, down(i)%known) < 2) found%known(i) = -1
-            if (found%known(i) < 0) cycle
-            found%of(:, :, d, i) = found%of(:, :, d, i) &
-               + (up(i)%value - down(i)%value)*(part*m%tolerances(d)%unit/apart)
-         end do
-      end subroutine record_slopes
 
       !> Finds the rows of a mechanism of the same structure.
       subroutine find_rows(rows, changed)

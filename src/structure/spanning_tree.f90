@@ -43,58 +43,14 @@ contains
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t) :: t
-      integer :: last, k       ! last: the links that a walk has come to so far
+      integer :: last, k       ! last: the links that are in the tree so far
 
       t%near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
       t%near%member = (t%near%member + 1)/2
-      call find_orientations()
+      call find_orientations(m, t)
       call grow()
 
    contains
-
-      !> Finds the orientations by a walk over prismatic pairs only, first from the ground links, then from every link
-      !> not yet seen.
-      subroutine find_orientations()
-         integer :: first, next, link, far, i, k
-         logical :: used(size(m%pairs))
-
-         t%orientation = merge(0, -1, m%links%ground)
-         allocate (t%by_angle(size(m%links)), t%angle_pair(size(m%links)), source=0)
-         allocate (t%surplus(0))
-         used = .false.
-         last = count(m%links%ground)
-         t%by_angle(:last) = pack([(i, i=1, size(m%links))], m%links%ground)
-
-         next = 1
-         do first = 0, size(m%links)
-            if (first > 0) then
-               if (t%orientation(first) >= 0) cycle
-               t%orientations = t%orientations + 1
-               t%orientation(first) = t%orientations
-               last = last + 1
-               t%by_angle(last) = first
-            end if
-
-            do while (next <= last)
-               link = t%by_angle(next)
-               next = next + 1
-               do i = t%near%first(link), t%near%first(link + 1) - 1
-                  k = t%near%member(i)
-                  if (.not. has_guide(m%pairs(k)%kind) .or. used(k)) cycle
-                  used(k) = .true.
-                  far = other_link(m, k, link)
-                  if (t%orientation(far) >= 0) then
-                     t%surplus = [t%surplus, k]
-                     cycle
-                  end if
-                  t%orientation(far) = t%orientation(link)
-                  t%angle_pair(far) = k
-                  last = last + 1
-                  t%by_angle(last) = far
-               end do
-            end do
-         end do
-      end subroutine find_orientations
 
       !> Joins every link to the tree, breadth first. A prismatic pair is taken only if no revolute pair reaches on.
       subroutine grow()
@@ -170,6 +126,52 @@ contains
          t%root(link) = t%root(parent)
       end subroutine attach
    end function new_tree
+
+   !> Finds the orientations by a walk over prismatic pairs only, first from the ground links, then from every link
+   !> not yet seen.
+   subroutine find_orientations(m, tree)
+      type(mechanism_t), intent(in) :: m
+      type(spanning_tree_t), intent(inout) :: tree   !< with the pairs of each link; then also with the orientations
+      integer :: first, next, last, link, far, i, k   ! last: the links that the walk has come to so far
+      logical :: used(size(m%pairs))
+
+      tree%orientation = merge(0, -1, m%links%ground)
+      allocate (tree%by_angle(size(m%links)), tree%angle_pair(size(m%links)), source=0)
+      allocate (tree%surplus(0))
+      used = .false.
+      last = count(m%links%ground)
+      tree%by_angle(:last) = pack([(i, i=1, size(m%links))], m%links%ground)
+
+      next = 1
+      do first = 0, size(m%links)
+         if (first > 0) then
+            if (tree%orientation(first) >= 0) cycle
+            tree%orientations = tree%orientations + 1
+            tree%orientation(first) = tree%orientations
+            last = last + 1
+            tree%by_angle(last) = first
+         end if
+
+         do while (next <= last)
+            link = tree%by_angle(next)
+            next = next + 1
+            do i = tree%near%first(link), tree%near%first(link + 1) - 1
+               k = tree%near%member(i)
+               if (.not. has_guide(m%pairs(k)%kind) .or. used(k)) cycle
+               used(k) = .true.
+               far = other_link(m, k, link)
+               if (tree%orientation(far) >= 0) then
+                  tree%surplus = [tree%surplus, k]
+                  cycle
+               end if
+               tree%orientation(far) = tree%orientation(link)
+               tree%angle_pair(far) = k
+               last = last + 1
+               tree%by_angle(last) = far
+            end do
+         end do
+      end do
+   end subroutine find_orientations
 
    !> Gives the number of the link at the other end of a pair.
    pure integer function other_link(m, k, link) result(other)
