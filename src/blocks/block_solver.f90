@@ -574,8 +574,7 @@ contains
             first = 0.0_wp
             second = 0.0_wp
             do k = g%first_own, g%last_vector
-               associate (length => hypot(x%d(k)%x, x%d(k)%y), &
-                  turn => change(b%body_vectors(k)%column))
+               associate (length => hypot(x%d(k)%x, x%d(k)%y), turn => change(b%body_vectors(k)%column))
                   first = first + length*turn
                   second = second + length*turn**2
                end associate

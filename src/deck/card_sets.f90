@@ -121,10 +121,10 @@ contains
          call define_name(set, request_link, n)
       end do
       do n = 1, size(set%named(request_point)%card)
-         call build_point()
+         call build_point(set, n)
       end do
       do n = 1, size(set%named(request_link)%card)
-         if (any(set%cards(set%named(request_link)%card(n))%label(label_b:) /= '')) call find_bar()
+         if (any(set%cards(set%named(request_link)%card(n))%label(label_b:) /= '')) call find_bar(set, n)
       end do
       associate (m => set%mechanism)
          call set_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
@@ -136,71 +136,6 @@ contains
       end do
 
    contains
-
-      !> Builds point number `n`, of a POINT card, or one of the two points of a JOINT card, which gives their place in
-      !> the drawing. Both points have the name of the card, which stands for the point of the first link that is not
-      !> ground. The links are there.
-      subroutine build_point()
-         integer :: k, link
-         logical :: is_first, is_ground
-
-         k = set%named(request_point)%card(n)
-         if (set%cards(k)%form /= form_joint) then
-            call define_name(set, request_point, n)
-            call look_up(set, request_link, k, label_b, link)
-            set%mechanism%points(n) = point_t(set%cards(k)%label(label_a), link, set%cards(k)%real(1:2))
-            return
-         end if
-         is_first = set%cards(k)%subject == 0
-         if (is_first) set%cards(k)%subject = n
-         call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
-         associate (m => set%mechanism, place => set%cards(k)%real(1:2))
-            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, place=place, drawn=.true.)
-            link = m%points(set%cards(k)%subject)%link
-            is_ground = .false.
-            if (link > 0) is_ground = m%links(link)%ground
-         end associate
-         if (is_first .neqv. is_ground) call define_name(set, request_point, n)
-      end subroutine build_point
-
-      !> Finds the joints of link number `n` at which its axes begin and to which they point; numbers on its card come
-      !> first. The points are there.
-      subroutine find_bar()
-         integer :: ends(2), k, label, one, i
-
-         k = set%named(request_link)%card(n)
-         if (set%cards(k)%form /= form_link .or. .not. set%cards(k)%valid) return
-         ends = 0
-         do label = label_b, label_c
-            if (set%cards(k)%label(label) == '') then
-               cycle
-            else if (.not. has_drawing(set)) then
-               if (set%names_certain) call add_card_error(set, bar_drawing, k, label)
-               return
-            else
-               call look_up(set, request_point, k, label, one)
-               if (one == 0) cycle
-               associate (list => joint_points(set, one), end_of => ends(label - label_a), m => set%mechanism)
-                  do i = 1, size(list)
-                     if (m%points(list(i))%link == n .and. m%points(list(i))%drawn) end_of = list(i)
-                  end do
-                  if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
-               end associate
-            end if
-         end do
-         ! A long name goes on in the field of FROM: it has an error of its own.
-         label = findloc(set%cards(k)%label(label_b:), '        ', dim=1)
-         if (label > 0 .and. set%names_certain) call add_card_error(set, field_blank, k, label_a + label)
-         if (any(ends == 0)) return
-         associate (link => set%mechanism%links(n), p => set%mechanism%points(ends(1))%place, &
-            q => set%mechanism%points(ends(2))%place)
-            if (norm2(q - p) <= same_place_tolerance*(norm2(p) + norm2(q))) &
-               call add_card_error(set, bar_place, k, label_c)
-            link%from = ends(1)
-            link%to = ends(2)
-            link%along = .not. set%cards(k)%given
-         end associate
-      end subroutine find_bar
 
       !> Builds pair number `n`, of a REVOLUTE, PRISM, SLOT, CYLINDER or JOINT card. The points are there. A pair that
       !> does not join two links, or joins two ground links, is an error.
@@ -273,6 +208,75 @@ contains
          end associate
       end subroutine build_block
    end subroutine build_bodies
+
+   !> Builds a point, of a POINT card, or one of the two points of a JOINT card, which gives their place in
+   !> the drawing. Both points have the name of the card, which stands for the point of the first link that is not
+   !> ground. The links are there.
+   subroutine build_point(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n               !< number of the point
+      integer :: k, link
+      logical :: is_first, is_ground
+
+      k = set%named(request_point)%card(n)
+      if (set%cards(k)%form /= form_joint) then
+         call define_name(set, request_point, n)
+         call look_up(set, request_link, k, label_b, link)
+         set%mechanism%points(n) = point_t(set%cards(k)%label(label_a), link, set%cards(k)%real(1:2))
+         return
+      end if
+      is_first = set%cards(k)%subject == 0
+      if (is_first) set%cards(k)%subject = n
+      call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
+      associate (m => set%mechanism, place => set%cards(k)%real(1:2))
+         m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, place=place, drawn=.true.)
+         link = m%points(set%cards(k)%subject)%link
+         is_ground = .false.
+         if (link > 0) is_ground = m%links(link)%ground
+      end associate
+      if (is_first .neqv. is_ground) call define_name(set, request_point, n)
+   end subroutine build_point
+
+   !> Finds the joints of a link at which its axes begin and to which they point; numbers on its card come
+   !> first. The points are there.
+   subroutine find_bar(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n               !< number of the link
+      integer :: ends(2), k, label, one, i
+
+      k = set%named(request_link)%card(n)
+      if (set%cards(k)%form /= form_link .or. .not. set%cards(k)%valid) return
+      ends = 0
+      do label = label_b, label_c
+         if (set%cards(k)%label(label) == '') then
+            cycle
+         else if (.not. has_drawing(set)) then
+            if (set%names_certain) call add_card_error(set, bar_drawing, k, label)
+            return
+         else
+            call look_up(set, request_point, k, label, one)
+            if (one == 0) cycle
+            associate (list => joint_points(set, one), end_of => ends(label - label_a), m => set%mechanism)
+               do i = 1, size(list)
+                  if (m%points(list(i))%link == n .and. m%points(list(i))%drawn) end_of = list(i)
+               end do
+               if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
+            end associate
+         end if
+      end do
+      ! A long name goes on in the field of FROM: it has an error of its own.
+      label = findloc(set%cards(k)%label(label_b:), '        ', dim=1)
+      if (label > 0 .and. set%names_certain) call add_card_error(set, field_blank, k, label_a + label)
+      if (any(ends == 0)) return
+      associate (link => set%mechanism%links(n), p => set%mechanism%points(ends(1))%place, &
+         q => set%mechanism%points(ends(2))%place)
+         if (norm2(q - p) <= same_place_tolerance*(norm2(p) + norm2(q))) &
+            call add_card_error(set, bar_place, k, label_c)
+         link%from = ends(1)
+         link%to = ends(2)
+         link%along = .not. set%cards(k)%given
+      end associate
+   end subroutine find_bar
 
    !> Finds the points of the card of a point: of a JOINT card both points, otherwise the point itself.
    pure function joint_points(set, n) result(points)

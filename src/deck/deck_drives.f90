@@ -30,10 +30,10 @@ contains
       call number_cards()
       do k = 1, set%count
          if (set%cards(k)%form == form_drive) then
-            call build_drive()
+            call build_drive(set, k)
          else if (is_term(set%cards(k))) then
             if (set%cards(k)%subject > 0) then
-               call build_term()
+               call build_term(set, k)
             else if (all(form_above(k) /= [form_add, form_rise, form_unknown])) then
                ! A card with a wrong name may have been a DRIVE card.
                call add_card_error(set, card_alone, k, card_name)
@@ -97,91 +97,96 @@ contains
          form_above = form_end
          if (set%cards(k)%below > 0) form_above = set%cards(set%cards(k)%below)%form
       end function form_above
-
-      !> Builds the drive of the DRIVE card `k`: its kind, its coordinate, and its polynomial.
-      subroutine build_drive()
-         real(wp) :: minute
-         integer :: kind, links(3), label, before
-         logical :: takes_rpm
-
-         associate (card => set%cards(k), m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
-            call match_word(set, k, drive_words, kind)
-            if (kind == 0) return
-            drive%kind = kind
-            drive%polynomial = card%real*unit_of(drive)
-            takes_rpm = kind == drive_angle .and. card%label(label_c) == turns_a_minute
-            if (takes_rpm) then
-               minute = minute_in(m%time_unit)
-               drive%turns = minute > 0.0_wp
-               if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
-               if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
-            end if
-            before = set%errors%count
-            call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
-            if (card%label(label_c) /= '' .and. .not. (kind == drive_relangle .or. takes_rpm) .and. card%valid .and. &
-               set%errors%count == before) call refuse_field(card, label_c, set%errors)
-            if (kind == drive_relangle) then
-               call look_up(set, driven_kinds(kind), k, label_c, drive%second)
-               if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
-            end if
-
-            ! What it drives must be something that can be driven, as far as it is known.
-            if (drive%subject == 0) return
-            label = merge(label_c, label_b, kind == drive_relangle)
-            if (kind == drive_slide) then
-               if (.not. has_guide(m%pairs(drive%subject)%kind)) call add_card_error(set, drive_revolute, k, label)
-            else if (drive%second == drive%subject) then
-               call add_card_error(set, drive_one_link, k, label)
-            else
-               links = drive_links(m, drive)
-               if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
-               if (all(m%links(links)%ground)) call add_card_error(set, is_ground, k, label)
-            end if
-         end associate
-      end subroutine build_drive
-
-      !> Gives the unit of the coordinate of a drive: the deck's unit of angles in radians, or 1 for lengths.
-      pure real(wp) function unit_of(drive) result(unit)
-         type(drive_t), intent(in) :: drive
-
-         unit = merge(angle_in_radians(set%mechanism), 1.0_wp, .not. is_length(drive))
-      end function unit_of
-
-      !> Builds the term of the ADD or RISE card `k`, or the row of its table.
-      subroutine build_term()
-         integer :: kind
-
-         associate (card => set%cards(k), above => set%cards(set%cards(k)%below), row => set%cards(k)%row, &
-            drive => set%mechanism%drives(set%cards(k)%subject), &
-            term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
-            if (card%form == form_rise) then
-               call match_word(set, k, pack(term_kinds%word, term_kinds%is_rise), kind)
-               term%kind = term_cycloid + max(kind, 1) - 1
-               term%r = card%real*[1.0_wp, 1.0_wp, unit_of(drive)]
-               if (card%valid .and. card%real(2) <= 0.0_wp) &
-                  call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
-               if (term_kinds(term%kind)%jumps) call add_card_remark(set, remark_jumps, k, label_a)
-               return
-            end if
-
-            if (card%valid .and. .not. any(card%given)) call add_card_error(set, field_blank, k, real_1)
-            if (is_row(card)) then
-               term%kind = term_table
-               term%table%x(row) = card%real(1)
-               term%table%y(row) = card%real(2)*unit_of(drive)
-               if (row > 1 .and. card%valid .and. any(card%given) .and. above%valid .and. &
-                   card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
-               if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
-            else
-               call match_word(set, k, pack(term_kinds%word, .not. term_kinds%is_rise), kind)
-               if (kind == term_harmonic) &
-                  term%r = card%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
-               if (kind == term_power) term%r = card%real*[unit_of(drive), 1.0_wp, 1.0_wp]
-               if (kind == term_power) term%kind = term_power
-            end if
-         end associate
-      end subroutine build_term
    end subroutine build_drives
+
+   !> Builds the drive of a DRIVE card: its kind, its coordinate, and its polynomial.
+   subroutine build_drive(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k               !< number of the card
+      real(wp) :: minute
+      integer :: kind, links(3), label, before
+      logical :: takes_rpm
+
+      associate (card => set%cards(k), m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
+         call match_word(set, k, drive_words, kind)
+         if (kind == 0) return
+         drive%kind = kind
+         drive%polynomial = card%real*unit_of(m, drive)
+         takes_rpm = kind == drive_angle .and. card%label(label_c) == turns_a_minute
+         if (takes_rpm) then
+            minute = minute_in(m%time_unit)
+            drive%turns = minute > 0.0_wp
+            if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
+            if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
+         end if
+         before = set%errors%count
+         call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
+         if (card%label(label_c) /= '' .and. .not. (kind == drive_relangle .or. takes_rpm) .and. card%valid .and. &
+            set%errors%count == before) call refuse_field(card, label_c, set%errors)
+         if (kind == drive_relangle) then
+            call look_up(set, driven_kinds(kind), k, label_c, drive%second)
+            if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
+         end if
+
+         ! What it drives must be something that can be driven, as far as it is known.
+         if (drive%subject == 0) return
+         label = merge(label_c, label_b, kind == drive_relangle)
+         if (kind == drive_slide) then
+            if (.not. has_guide(m%pairs(drive%subject)%kind)) call add_card_error(set, drive_revolute, k, label)
+         else if (drive%second == drive%subject) then
+            call add_card_error(set, drive_one_link, k, label)
+         else
+            links = drive_links(m, drive)
+            if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
+            if (all(m%links(links)%ground)) call add_card_error(set, is_ground, k, label)
+         end if
+      end associate
+   end subroutine build_drive
+
+   !> Builds the term of an ADD or RISE card, or the row of its table.
+   subroutine build_term(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k               !< number of the card
+      integer :: kind
+
+      associate (card => set%cards(k), above => set%cards(set%cards(k)%below), row => set%cards(k)%row, &
+         drive => set%mechanism%drives(set%cards(k)%subject), &
+         term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
+         if (card%form == form_rise) then
+            call match_word(set, k, pack(term_kinds%word, term_kinds%is_rise), kind)
+            term%kind = term_cycloid + max(kind, 1) - 1
+            term%r = card%real*[1.0_wp, 1.0_wp, unit_of(set%mechanism, drive)]
+            if (card%valid .and. card%real(2) <= 0.0_wp) &
+               call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
+            if (term_kinds(term%kind)%jumps) call add_card_remark(set, remark_jumps, k, label_a)
+            return
+         end if
+
+         if (card%valid .and. .not. any(card%given)) call add_card_error(set, field_blank, k, real_1)
+         if (is_row(card)) then
+            term%kind = term_table
+            term%table%x(row) = card%real(1)
+            term%table%y(row) = card%real(2)*unit_of(set%mechanism, drive)
+            if (row > 1 .and. card%valid .and. any(card%given) .and. above%valid .and. &
+                card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
+            if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
+         else
+            call match_word(set, k, pack(term_kinds%word, .not. term_kinds%is_rise), kind)
+            if (kind == term_harmonic) &
+               term%r = card%real*[unit_of(set%mechanism, drive), spread(angle_in_radians(set%mechanism), 1, 2)]
+            if (kind == term_power) term%r = card%real*[unit_of(set%mechanism, drive), 1.0_wp, 1.0_wp]
+            if (kind == term_power) term%kind = term_power
+         end if
+      end associate
+   end subroutine build_term
+
+   !> Gives the unit of the coordinate of a drive: the deck's unit of angles in radians, or 1 for lengths.
+   pure real(wp) function unit_of(m, drive) result(unit)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: drive
+
+      unit = merge(angle_in_radians(m), 1.0_wp, .not. is_length(drive))
+   end function unit_of
 
    !> Puts the last instant of a TIME card that counts turns: the drive of constant rate has then turned so often. Other
    !> drives must rest; a drive of another kind or law is an error.

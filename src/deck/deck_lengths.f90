@@ -34,7 +34,7 @@ contains
          if (set%cards(k)%form /= form_length .or. .not. set%cards(k)%valid) cycle
          n = n + 1
          card_of(n) = k
-         call read_length(k, lengths(n))
+         call read_length(set, k, lengths(n))
       end do
       if (set%errors%count > 0) return
 
@@ -79,61 +79,6 @@ contains
       end associate
 
    contains
-
-      !> Reads a LENGTH card: its points on one body, and its length. Errors are added.
-      subroutine read_length(k, one)
-         integer, intent(in) :: k            !< number of the card in the set
-         type(length_t), intent(inout) :: one
-         integer :: ends(2), link, i, label, common
-         integer, allocatable :: p(:), q(:)
-
-         associate (card => set%cards(k), m => set%mechanism)
-            do label = label_a, label_b
-               call look_up(set, request_point, k, label, ends(label - label_a + 1))
-            end do
-            link = 0
-            if (card%label(label_c) /= '') call look_up(set, request_link, k, label_c, link)
-            if (.not. card%given(1)) then
-               call add_card_error(set, field_blank, k, real_1)
-            else if (card%real(1) <= 0.0_wp) then
-               call add_card_error(set, number_range, k, real_1, 'ABOVE 0.0')
-            end if
-            one%length = card%real(1)
-            one%link = card%label(label_c)
-            if (any(ends == 0) .or. (link == 0 .and. one%link /= '')) return
-            if (ends(1) == ends(2)) then
-               call add_card_error(set, point_twice, k, label_b)
-               return
-            end if
-
-            p = joint_points(set, ends(1))
-            q = joint_points(set, ends(2))
-            if (any(m%points([p, q])%link == 0)) return
-            common = 0
-            do i = 1, size(p)
-               do label = 1, size(q)
-                  if (body_of(m, p(i)) /= body_of(m, q(label))) cycle
-                  if (link > 0) then
-                     if (body_of(m, p(i)) /= merge(0, link, m%links(link)%ground)) cycle
-                  end if
-                  common = common + 1
-                  one%point = [p(i), q(label)]
-               end do
-            end do
-
-            if (common == 0 .and. link > 0) then
-               call add_card_error(set, length_off, k, label_c)
-            else if (common == 0) then
-               call add_card_error(set, length_apart, k, label_b)
-            else if (common > 1) then
-               call add_card_error(set, length_several, k, label_c)
-            else
-               do i = 1, 2
-                  if (.not. is_movable(m, one%point(i))) call add_card_error(set, length_exact, k, label_a + i - 1)
-               end do
-            end if
-         end associate
-      end subroutine read_length
 
       !> Checks a length in its order: its points are two holes, no length has used Q before it moves, and Q has at
       !> most two lengths, from two holes.
@@ -180,4 +125,60 @@ contains
          text = drawn_text(value)//' '//trim(set%mechanism%length_unit)
       end function amount
    end subroutine build_lengths
+
+   !> Reads a LENGTH card: its points on one body, and its length. Errors are added.
+   subroutine read_length(set, k, one)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k            !< number of the card in the set
+      type(length_t), intent(inout) :: one
+      integer :: ends(2), link, i, label, common
+      integer, allocatable :: p(:), q(:)
+
+      associate (card => set%cards(k), m => set%mechanism)
+         do label = label_a, label_b
+            call look_up(set, request_point, k, label, ends(label - label_a + 1))
+         end do
+         link = 0
+         if (card%label(label_c) /= '') call look_up(set, request_link, k, label_c, link)
+         if (.not. card%given(1)) then
+            call add_card_error(set, field_blank, k, real_1)
+         else if (card%real(1) <= 0.0_wp) then
+            call add_card_error(set, number_range, k, real_1, 'ABOVE 0.0')
+         end if
+         one%length = card%real(1)
+         one%link = card%label(label_c)
+         if (any(ends == 0) .or. (link == 0 .and. one%link /= '')) return
+         if (ends(1) == ends(2)) then
+            call add_card_error(set, point_twice, k, label_b)
+            return
+         end if
+
+         p = joint_points(set, ends(1))
+         q = joint_points(set, ends(2))
+         if (any(m%points([p, q])%link == 0)) return
+         common = 0
+         do i = 1, size(p)
+            do label = 1, size(q)
+               if (body_of(m, p(i)) /= body_of(m, q(label))) cycle
+               if (link > 0) then
+                  if (body_of(m, p(i)) /= merge(0, link, m%links(link)%ground)) cycle
+               end if
+               common = common + 1
+               one%point = [p(i), q(label)]
+            end do
+         end do
+
+         if (common == 0 .and. link > 0) then
+            call add_card_error(set, length_off, k, label_c)
+         else if (common == 0) then
+            call add_card_error(set, length_apart, k, label_b)
+         else if (common > 1) then
+            call add_card_error(set, length_several, k, label_c)
+         else
+            do i = 1, 2
+               if (.not. is_movable(m, one%point(i))) call add_card_error(set, length_exact, k, label_a + i - 1)
+            end do
+         end if
+      end associate
+   end subroutine read_length
 end module deck_lengths

@@ -20,7 +20,7 @@ contains
    subroutine build_measures(set)
       type(card_set_t), intent(inout) :: set
       integer :: states(size(set%named(request_measure)%card))   ! of sums: 0 to do, 1 begun, 2 done
-      integer :: n
+      integer :: n, i
 
       if (size(states) == 0) return
       allocate (set%mechanism%measures(size(states)))
@@ -36,19 +36,21 @@ contains
       end do
       ! All names are there.
       do n = 1, size(states)
-         associate (k => set%named(request_measure)%card(n))
-            select case (set%mechanism%measures(n)%kind)
-            case (measure_distance, measure_line)
-               call find_subjects([request_point, request_point])
-               if (set%cards(k)%label(label_a) == set%cards(k)%label(label_b) .and. set%cards(k)%valid) &
+         associate (k => set%named(request_measure)%card(n), one => set%mechanism%measures(n))
+            if (one%kind == measure_angle) then
+               call find_sides(set, n)
+            else if (one%kind == measure_sum) then
+               call find_summands(set, n)
+            else
+               one%subjects = [subject_t(kind=request_point), subject_t(kind=request_point)]
+               if (any(one%kind == [measure_xi, measure_eta])) one%subjects(2)%kind = request_link
+               do i = 1, 2
+                  call look_up(set, one%subjects(i)%kind, k, label_a + i - 1, one%subjects(i)%number)
+               end do
+               if (one%subjects(2)%kind == request_point .and. set%cards(k)%valid .and. &
+                  set%cards(k)%label(label_a) == set%cards(k)%label(label_b)) &
                   call add_card_error(set, point_twice, k, label_b)
-            case (measure_xi, measure_eta)
-               call find_subjects([request_point, request_link])
-            case (measure_angle)
-               call find_sides()
-            case default
-               call find_summands()
-            end select
+            end if
          end associate
       end do
       states = 0
@@ -58,70 +60,11 @@ contains
 
    contains
 
-      !> Finds the two subjects of measure number `n`.
-      subroutine find_subjects(kinds)
-         integer, intent(in) :: kinds(2)     !< request_link, ...
-         type(subject_t) :: subjects(2)
-         integer :: i
-
-         do i = 1, 2
-            subjects(i)%kind = kinds(i)
-            call look_up(set, kinds(i), set%named(request_measure)%card(n), label_a + i - 1, subjects(i)%number)
-         end do
-         set%mechanism%measures(n)%subjects = subjects
-      end subroutine find_subjects
-
-      !> Finds the lines or links of ANGLE, measure number `n`.
-      subroutine find_sides()
-         type(subject_t) :: sides(2)
-         integer :: i, k, link
-
-         k = set%named(request_measure)%card(n)
-         do i = 1, 2
-            associate (one => sides(i), name => set%cards(k)%label(label_a + i - 1))
-               link = find_name(set%named(request_link)%table, name)
-               one = subject_t(request_measure, find_name(set%named(request_measure)%table, name))
-               if (one%number > 0) then
-                  if (set%mechanism%measures(one%number)%kind /= measure_line) one%number = 0
-               end if
-               if (one%number > 0 .and. link > 0) then
-                  call add_card_error(set, side_twofold, k, label_a + i - 1)
-               else if (one%number == 0) then
-                  call look_up_kinds(set, [request_link], side_unknown, k, label_a + i - 1, one%kind, one%number)
-               end if
-            end associate
-         end do
-
-         if (all(sides%number > 0) .and. set%cards(k)%label(label_a) == set%cards(k)%label(label_b)) &
-            call add_card_error(set, drive_one_link, k, label_b)
-         associate (measure => set%mechanism%measures(n))
-            measure%subjects = sides
-            measure%continues = any(sides%kind == request_measure)
-         end associate
-      end subroutine find_sides
-
-      !> Finds the summands of SUM, measure number `n`, one or two, as its card names them.
-      subroutine find_summands()
-         type(subject_t) :: summands(2)
-         integer :: i, k
-
-         k = set%named(request_measure)%card(n)
-         associate (card => set%cards(k))
-            do i = 1, 2
-               call look_up_kinds(set, [request_measure, request_pair], summand_unknown, k, label_a + i - 1, &
-                  summands(i)%kind, summands(i)%number)
-               if (card%given(i)) summands(i)%factor = card%real(i)
-            end do
-            set%mechanism%measures(n)%subjects = pack(summands, summands%number > 0)
-            if (card%label(label_b) == '' .and. card%given(2)) call add_card_error(set, field_unused, k, real_2)
-         end associate
-      end subroutine find_summands
-
       !> Puts the terms of other sums in their place in a sum. A sum that contains itself, or adds a length and an
       !> angle, is an error.
       recursive subroutine add_up(i)
          integer, intent(in) :: i            !< number of the measure
-         type(subject_t), allocatable :: own(:), terms(:)
+         type(subject_t), allocatable :: own(:), terms(:), further(:)
          logical :: is_angle(2)
          integer :: j, k
 
@@ -140,17 +83,21 @@ contains
             own = measure%subjects
             allocate (terms(0))
             do j = 1, size(own)
+               further = own(j:j)
                if (own(j)%kind == request_pair) then
                   is_angle(j) = .not. has_guide(set%mechanism%pairs(own(j)%number)%kind)
-                  call add_term(own(j), terms)
                else
                   associate (one => set%mechanism%measures(own(j)%number))
-                     if (one%kind == measure_sum) call add_up(own(j)%number)
+                     if (one%kind == measure_sum) then
+                        call add_up(own(j)%number)
+                        further = one%subjects
+                        further%factor = own(j)%factor*further%factor
+                     end if
                      is_angle(j) = one%is_angle
-                     call add_term(own(j), terms)
                      measure%constant = measure%constant + own(j)%factor*one%constant
                   end associate
                end if
+               call add_terms(further, terms)
             end do
 
             if (states(i) == 2) return
@@ -164,34 +111,73 @@ contains
                + set%cards(k)%real(3)*merge(angle_in_radians(set%mechanism), 1.0_wp, measure%is_angle)
          end associate
       end subroutine add_up
-
-      !> Adds a summand to the terms of a sum; of a summand that is a sum, its terms. Each subject has one term.
-      recursive subroutine add_term(one, terms)
-         type(subject_t), intent(in) :: one
-         type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number)
-         type(subject_t) :: part
-         integer :: j
-
-         if (one%kind == request_measure) then
-            if (set%mechanism%measures(one%number)%kind == measure_sum) then
-               do j = 1, size(set%mechanism%measures(one%number)%subjects)
-                  part = set%mechanism%measures(one%number)%subjects(j)
-                  part%factor = one%factor*part%factor
-                  call add_term(part, terms)
-               end do
-               return
-            end if
-         end if
-         do j = 1, size(terms)
-            if (terms(j)%kind == one%kind .and. terms(j)%number == one%number) exit
-         end do
-         if (j > size(terms)) then
-            terms = [terms, one]
-         else
-            terms(j)%factor = terms(j)%factor + one%factor
-         end if
-      end subroutine add_term
    end subroutine build_measures
+
+   !> Finds the lines or links of an ANGLE card.
+   subroutine find_sides(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n               !< number of the measure
+      type(subject_t) :: sides(2)
+      integer :: i, k, link
+
+      k = set%named(request_measure)%card(n)
+      do i = 1, 2
+         associate (one => sides(i), name => set%cards(k)%label(label_a + i - 1))
+            link = find_name(set%named(request_link)%table, name)
+            one = subject_t(request_measure, find_name(set%named(request_measure)%table, name))
+            if (one%number > 0) then
+               if (set%mechanism%measures(one%number)%kind /= measure_line) one%number = 0
+            end if
+            if (one%number > 0 .and. link > 0) then
+               call add_card_error(set, side_twofold, k, label_a + i - 1)
+            else if (one%number == 0) then
+               call look_up_kinds(set, [request_link], side_unknown, k, label_a + i - 1, one%kind, one%number)
+            end if
+         end associate
+      end do
+
+      if (all(sides%number > 0) .and. set%cards(k)%label(label_a) == set%cards(k)%label(label_b)) &
+         call add_card_error(set, drive_one_link, k, label_b)
+      associate (measure => set%mechanism%measures(n))
+         measure%subjects = sides
+         measure%continues = any(sides%kind == request_measure)
+      end associate
+   end subroutine find_sides
+
+   !> Finds the summands of a SUM card, one or two.
+   subroutine find_summands(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n               !< number of the measure
+      type(subject_t) :: summands(2)
+      integer :: i, k
+
+      k = set%named(request_measure)%card(n)
+      associate (card => set%cards(k))
+         do i = 1, 2
+            call look_up_kinds(set, [request_measure, request_pair], summand_unknown, k, label_a + i - 1, &
+               summands(i)%kind, summands(i)%number)
+            if (card%given(i)) summands(i)%factor = card%real(i)
+         end do
+         set%mechanism%measures(n)%subjects = pack(summands, summands%number > 0)
+         if (card%label(label_b) == '' .and. card%given(2)) call add_card_error(set, field_unused, k, real_2)
+      end associate
+   end subroutine find_summands
+
+   !> Adds terms to a list, in which each subject has one term.
+   subroutine add_terms(further, terms)
+      type(subject_t), intent(in) :: further(:)   !< (any number)
+      type(subject_t), allocatable, intent(inout) :: terms(:)   !< (any number)
+      integer :: i, j
+
+      do i = 1, size(further)
+         j = findloc(terms%kind == further(i)%kind .and. terms%number == further(i)%number, .true., dim=1)
+         if (j == 0) then
+            terms = [terms, further(i)]
+         else
+            terms(j)%factor = terms(j)%factor + further(i)%factor
+         end if
+      end do
+   end subroutine add_terms
 
    !> Checks, in a set without errors, that all links of each measure are ground or of one independent mechanism. A link
    !> that nothing uses is ground by now.

@@ -9,7 +9,6 @@ module deck_variants
    use parameters, only: unit_t, takes_tolerance, parameter_name, parameter_unit, set_parameter
    use card_sets, only: card_set_t, begin_mechanism, has_drawing, look_up, add_card_error, real_text
    use drawn_lengths, only: join_hole
-   use card_reader, only: parsed_card_t
    use cards
    use input_errors
    use numbers, only: read_whole
@@ -272,7 +271,7 @@ contains
                call add_card_error(set, vary_number, i, label_a)
                return
             end if
-            call read_values(card)
+            call read_values(set, i, one)
             if (one%count == 0) return
             n = findloc(variation%numbers%card == above .and. variation%numbers%place == one%place, .true., dim=1)
             ! More values of the list on the VARY card above it.
@@ -308,13 +307,17 @@ contains
             end if
          end associate
       end subroutine read_variation
+   end subroutine build_variation
 
-      !> Gives `one` the values on a VARY card. If there is an error, its count stays 0.
-      subroutine read_values(card)
-         type(parsed_card_t), intent(in) :: card   !< a VARY card
-         type(error_code_t) :: error
-         integer :: count_given, place
+   !> Gives a number that varies the values on its VARY card. If there is an error, its count stays 0.
+   subroutine read_values(set, i, one)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: i               !< number of the card
+      type(varied_t), intent(inout) :: one
+      type(error_code_t) :: error
+      integer :: count_given, place
 
+      associate (card => set%cards(i))
          if (card%label(label_b) == list_word) then
             one%list = pack(card%real, card%given)
             one%count = size(one%list)
@@ -336,8 +339,8 @@ contains
             one%first = card%real(1)
             one%last = card%real(2)
          end if
-      end subroutine read_values
-   end subroutine build_variation
+      end associate
+   end subroutine read_values
 
    !> Tells whether nothing else in the mechanism depends on a number of a card. Other parts can depend on it:
    !>
