@@ -23,7 +23,6 @@ release_single := -O1
 release_quad   := -O0
 level_double   := 1
 RELEASE ?= $(release_$(KIND))
-DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived -DASSERTIONS
 # Links in two seconds instead of ten.
 no_lto  := -fno-lto -fno-use-linker-plugin
 
@@ -39,9 +38,8 @@ quiet    := $(if $(V),,@)
 note      = $(filter-out double release,$(KIND) $(1))
 say       = $(quiet)$(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,echo '$(1) $(2:src/%=%)$(if $(call note,$(3)), ($(call note,$(3))))'; )
 # Builds, a directory each, and commands that use the flags of the target's build and those of the file.
-builds   := release debug
+builds   := release
 release  := $(RELEASE)
-debug    := $(DEBUG)
 build     = $(notdir $(@D))
 compile   = $(call say,FC,$<,$(build))$(FC) $(COMMON) $($(build)) $(extra) $(if $(filter %.F90,$<),$(macros_$(KIND)) $(addprefix -I,$(sort $(dir $(included))))) -J$(@D) -c -o $@ $<
 link      = $(call say,LD,$(@F),$(build))$(FC) $(COMMON) $($(build)) $(1) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS)
@@ -62,23 +60,18 @@ run: $(BUILD)/kinmat
 	@$(BUILD)/kinmat docs/first.deck
 	@echo ' THE WHOLE MOTION: $(BUILD)/kinmat input/yoke.deck   ITS PICTURE: $(BUILD)/kinmat --no-listing --svg yoke.svg input/yoke.deck'
 
-# docs.mk makes texts of documents; tests.mk lists what tests/ needs, and reads which object needs which; optimization.mk
-# has flags of single sources.
-include docs/tools/docs.mk tests/tests.mk src/optimization.mk
-vpath %.f90 $(sort $(dir $(sources) $(helpers)) $(BUILD))
-vpath %.F90 $(sort $(dir $(sources)))
+# Tests, their builds, and which object needs which; texts of documents; flags of single sources.
+include tests/tests.mk docs/tools/docs.mk src/optimization.mk
+# Sources, whose names end in .f90 or .F90.
+vpath %90 $(sort $(dir $(sources) $(helpers)) $(BUILD))
 define build_in
-$(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
-	$$(compile)
-$(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
-	$$(compile)
-$(BUILD)/$(1)/command_line.o: $(BUILD)/$(1)/document_texts.o
+$(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1); $$(compile)
+$(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1); $$(compile)
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
 	$$(link)
-$(BUILD)/$(1):
-	$$(quiet)mkdir -p $$@
+$(BUILD)/$(1): ; $$(quiet)mkdir -p $$@
 endef
 $(foreach name,$(builds),$(eval $(call build_in,$(name))))
 
@@ -96,7 +89,7 @@ $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
 documents := README.md CHANGELOG.md LICENSE src/README.md $(wildcard docs/*.* docs/howto/* docs/pictures/* input/*.deck)
 place     := $(DESTDIR)$(PREFIX)
 put        = install -D -m $(1) -t $(place)/$(2) $(3)
-fill       = sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$($< --version | sed 's/^KINMAT //; s/,.*//')|" $(1) > $(place)/$(2) && chmod 644 $(place)/$(2)
+fill       = install -d $(place)/$(dir $(2)) && sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$($< --version | sed 's/^KINMAT //; s/,.*//')|" $(1) > $(place)/$(2) && chmod 644 $(place)/$(2)
 #: install          install command, libraries, documents under PREFIX (/usr/local)
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	$(call put,755,bin,$(BUILD)/kinmat $(wildcard contrib/kinmat-*))
@@ -105,7 +98,6 @@ install: $(BUILD)/kinmat $(BUILD)/kinmat.1 $(BUILD)/libkinmat.so.2
 	$(call put,755,lib,$(BUILD)/libkinmat.so.2)
 	$(call put,644,lib,$(BUILD)/release/libkinmat.a contrib/libkinmat.so)
 	$(call put,644,share/kinmat,contrib/kinmat.py)
-	install -d $(place)/lib/pkgconfig $(place)/share/man/man1
 	$(call fill,contrib/kinmat.pc.in,lib/pkgconfig/kinmat.pc)
 	$(call fill,$(BUILD)/kinmat.1,share/man/man1/kinmat.1)
 	for file in $(documents); do install -D -m 644 $$file $(place)/share/doc/kinmat/$$file || exit 1; done
@@ -115,5 +107,4 @@ install-kinds: install kinds
 	$(call put,755,bin,$(BUILD)/kinmat-quad $(BUILD)/kinmat-single)
 
 #: clean            remove build/
-clean:
-	rm -rf $(BUILD)
+clean: ; rm -rf $(BUILD)

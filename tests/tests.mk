@@ -4,11 +4,14 @@
 decks   := $(sort $(wildcard input/*.deck))
 helpers := $(filter-out $(sources),$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
-# Builds for tests: with sanitizers for `make fuzz`; for programs that measure time, optimized at the link as kinmat is.
+# Builds for tests: with all run-time checks; with sanitizers for `make fuzz`; for programs that measure time, optimized at the
+# link as kinmat is.
+DEBUG    ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived -DASSERTIONS
 SANITIZE ?= -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
+debug    := $(DEBUG)
 fuzz     := $(DEBUG) $(SANITIZE)
 timed    := $(RELEASE)
-builds   += fuzz timed
+builds   += debug fuzz timed
 # The rules of the programs of tests/, and which object needs which, from the use statements.
 $(BUILD)/depends.mk: Makefile tests/tests.mk $(sources) $(helpers) $(suites) tests/depends.awk
 	@mkdir -p $(BUILD)

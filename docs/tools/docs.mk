@@ -4,6 +4,7 @@
 $(BUILD)/document_texts.f90: docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md
 	@mkdir -p $(BUILD)
 	@awk -f docs/tools/texts.awk docs/messages.md docs/cards.md docs/command.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+$(builds:%=$(BUILD)/%/command_line.o): $(BUILD)/%/command_line.o: $(BUILD)/%/document_texts.o
 
 # The man page: the text of --help in another form.
 $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/tools/man.awk
