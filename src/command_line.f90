@@ -81,11 +81,11 @@ contains
             options%share = whole_of(word(:max(0, k - 1)))
             options%shares = whole_of(word(k + 1:))
             if (options%share < 1 .or. options%share > options%shares) &
-               call reject('OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
+               call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
          case ('--jobs')
             options%jobs = whole_of(next_word())
             if (options%jobs < 1 .or. options%jobs > max_jobs) &
-               call reject('OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
+               call fail(failure, status_rejected, 'OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
 
          case ('--errors')
             options%errors = .true.
@@ -119,15 +119,15 @@ contains
             end do
             options%deck = trim(adjustl(options%deck))
             if (len(explained(options%deck)) == 0) &
-               call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+               call fail(failure, status_rejected, 'OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
 
          case default
             if (len(word) == 0) then
-               call reject('THE NAME OF THE DECK IS EMPTY')
+               call fail(failure, status_rejected, 'THE NAME OF THE DECK IS EMPTY')
             else if (word(1:1) == '-' .and. word /= '-') then
-               call reject('OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+               call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
             else if (has_deck) then
-               call reject('MORE THAN ONE DECK IS NAMED: '//options%deck//' AND '//word)
+               call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//options%deck//' AND '//word)
             else
                options%deck = word
                if (word == '-') options%deck = ''
@@ -136,50 +136,11 @@ contains
          end select
       end do
 
-      call refuse_combinations()
+      if (.not. allocated(failure)) call refuse_combinations(options, failure)
       if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
          .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
 
    contains
-
-      !> Rejects options that exclude each other, or that lack what they need.
-      subroutine refuse_combinations()
-         ! A study and times are no listing; a study reads its deck more than once.
-         if ((options%study .or. options%time) .and. len(options%show) == 0) then
-            if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
-               .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
-               .or. (options%study .and. options%time)) then
-               call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
-                  //' CAN ONLY BE COMBINED WITH -o AND --quiet')
-            else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-               call reject('OPTION --study NEEDS THE DECK AS A FILE')
-            end if
-         end if
-
-         ! Two outputs on standard output could not be told apart; without motion there is nothing to draw.
-         if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-            call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
-         if (count(to_standard_output(options%files)) > 1) call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT')
-         do k = 1, out_last
-            if (options%check .and. k > out_log .and. allocated(options%files(k)%text)) &
-               call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k))//' NEEDS')
-         end do
-
-         if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
-            word = ''
-            do k = 1, size(card_forms)
-               word = word//' '//trim(form_name(k))
-            end do
-            call reject('OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//word)
-         end if
-      end subroutine refuse_combinations
-
-      !> Makes `failure` hold a sentence, if there is no failure yet.
-      subroutine reject(text)
-         character(*), intent(in) :: text    !< the fault of the command
-
-         if (.not. allocated(failure)) call fail(failure, status_rejected, text)
-      end subroutine reject
 
       !> Takes the name of a file from the word after `word`, its option: `-` is standard output.
       subroutine read_file_name(file)
@@ -189,9 +150,9 @@ contains
          path = next_word()
          ! A file whose name begins with - is ./-NAME.
          if (len(path) == 0 .or. (index(path, '-') == 1 .and. path /= '-')) then
-            call reject('OPTION '//word//' NEEDS A FILE NAME')
+            call fail(failure, status_rejected, 'OPTION '//word//' NEEDS A FILE NAME')
          else if (allocated(file%text)) then
-            call reject('OPTION '//word//' IS GIVEN TWICE')
+            call fail(failure, status_rejected, 'OPTION '//word//' IS GIVEN TWICE')
          end if
          if (path == '-') path = ''
          file%text = path
@@ -207,16 +168,51 @@ contains
          allocate (character(length) :: next)
          if (length > 0) call get_command_argument(i, next)
       end function next_word
-
-      !> Gives the value of a word; 0 if it is no whole number, or has too many digits.
-      pure integer function whole_of(word) result(number)
-         character(*), intent(in) :: word    !< at most `max_option_digits` digits without a sign
-
-         number = 0
-         if (len(word) > 0 .and. len(word) <= max_option_digits .and. verify(word, '0123456789') == 0) &
-            read (word, *) number
-      end function whole_of
    end subroutine read_command
+
+   !> Rejects options that exclude each other, or that lack what they need: the first fault that is found.
+   subroutine refuse_combinations(options, failure)
+      type(options_t), intent(in) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: names
+      logical :: asked(out_last), is_study
+      integer :: k
+
+      asked = [(allocated(options%files(k)%text), k=1, out_last)]
+      is_study = (options%study .or. options%time) .and. len(options%show) == 0
+      ! A study and times are no listing; a study reads its deck more than once. Two outputs on standard output could
+      ! not be told apart. Without motion there is nothing to draw.
+      if (is_study .and. (any(asked(out_listing + 1:)) .or. options%errors .or. options%check .or. options%no_listing &
+         .or. options%shares > 1 .or. options%jobs > 0 .or. (options%study .and. options%time))) then
+         call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
+            //' CAN ONLY BE COMBINED WITH -o AND --quiet')
+      else if (is_study .and. options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
+         call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
+      else if (options%no_listing .and. asked(out_listing)) then
+         call fail(failure, status_rejected, 'OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
+      else if (count(to_standard_output(options%files)) > 1) then
+         call fail(failure, status_rejected, 'ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT')
+      else if (options%check .and. any(asked(out_log + 1:))) then
+         call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
+            //trim(file_options(out_log + findloc(asked(out_log + 1:), .true., dim=1)))//' NEEDS')
+      else if (options%show == 'RULER' .and. len(options%deck) > 0 .and. find_form(options%deck) == form_unknown) then
+         names = ''
+         do k = 1, size(card_forms)
+            names = names//' '//trim(form_name(k))
+         end do
+         call fail(failure, status_rejected, &
+            'OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE'//names)
+      end if
+   end subroutine refuse_combinations
+
+   !> Gives the value of a word; 0 if it is no whole number, or has too many digits.
+   pure integer function whole_of(word) result(number)
+      character(*), intent(in) :: word       !< at most `max_option_digits` digits without a sign
+
+      number = 0
+      if (len(word) > 0 .and. len(word) <= max_option_digits .and. verify(word, '0123456789') == 0) &
+         read (word, *) number
+   end function whole_of
 
    !> Tells whether an output is asked for on standard output.
    elemental logical function to_standard_output(file)

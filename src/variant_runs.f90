@@ -90,7 +90,7 @@ contains
             count = min(lane_count, last - n + 1)
             do k = 1, count
                rows(k) = new_row(summary, variation, n + k - 1)
-               call start(runs(k), rows(k))
+               call start(variation, runs(k), rows(k))
             end do
             call run_lanes(runs(:count), lanes)
 
@@ -107,39 +107,6 @@ contains
             end do
          end do
       end subroutine run_together
-
-      !> Makes the variant of a row ready for the lanes. A variant that is rejected is over, and its row has the reason.
-      subroutine start(run, row)
-         type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
-         type(variant_row_t), intent(inout) :: row
-         type(structure_report_t) :: structure_report
-         logical :: is_done
-
-         call build_variant(variation, row%number, run%m, row%rejected)
-         run%is_over = row%rejected /= ''
-         if (run%is_over) return
-         ! A variant with the structure of the one before takes over what that has made.
-         call reuse_set_analysis(run%m, run%s, is_done)
-         if (.not. is_done) then
-            call check_variant(run%m, structure_report, row)
-            run%is_over = row%rejected /= ''
-            if (run%is_over) return
-            call analyze_set(run%m, structure_report, run%s)
-         end if
-         call begin_run(run)
-      end subroutine start
-
-      !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
-      subroutine check_variant(variant, structure_report, row)
-         type(mechanism_t), intent(in) :: variant
-         type(structure_report_t), intent(out) :: structure_report
-         type(variant_row_t), intent(inout) :: row
-         character(:), allocatable :: faults
-
-         structure_report = find_structure(variant)
-         faults = faults_text(variant, structure_report, variant%set_number)
-         row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
-      end subroutine check_variant
 
       !> Makes the variant of a row, solves it and fills the row. If it is rejected, the row has the reason.
       subroutine run_variant(variant, row)
@@ -172,6 +139,40 @@ contains
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') writers%status = status_flagged
       end subroutine write_row
    end subroutine run_variants
+
+   !> Makes the variant of a row ready for the lanes. A variant that is rejected is over, and its row has the reason.
+   subroutine start(variation, run, row)
+      type(variation_t), intent(inout) :: variation
+      type(lane_run_t), intent(inout) :: run   !< new, or of an earlier variant, whose structure may be used again
+      type(variant_row_t), intent(inout) :: row
+      type(structure_report_t) :: structure_report
+      logical :: is_done
+
+      call build_variant(variation, row%number, run%m, row%rejected)
+      run%is_over = row%rejected /= ''
+      if (run%is_over) return
+      ! A variant with the structure of the one before takes over what that has made.
+      call reuse_set_analysis(run%m, run%s, is_done)
+      if (.not. is_done) then
+         call check_variant(run%m, structure_report, row)
+         run%is_over = row%rejected /= ''
+         if (run%is_over) return
+         call analyze_set(run%m, structure_report, run%s)
+      end if
+      call begin_run(run)
+   end subroutine start
+
+   !> Finds the structure of a variant. If a check fails, the row of the variant has the first line of its sentence.
+   subroutine check_variant(variant, structure_report, row)
+      type(mechanism_t), intent(in) :: variant
+      type(structure_report_t), intent(out) :: structure_report
+      type(variant_row_t), intent(inout) :: row
+      character(:), allocatable :: faults
+
+      structure_report = find_structure(variant)
+      faults = faults_text(variant, structure_report, variant%set_number)
+      row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
+   end subroutine check_variant
 
    !> Tells whether the variants of a set are solved together, as many as there are lanes: only rows are asked for.
    pure logical function are_together(settings, not_have, outputs)

@@ -89,7 +89,7 @@ contains
       type(curve_t), intent(inout) :: curve
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
-      type(curve_point_t) :: a, b, again
+      type(curve_point_t) :: a, b, again, change
       real(wp) :: h
       integer :: n, sure, k
       logical :: ok, closes, leaves
@@ -112,7 +112,9 @@ contains
                h = 0.5_wp*h
             end do
          else
-            call pass_change_point(b)
+            ok = n > 1
+            if (ok) call pass_change_point(curve, circuit%points(n - 1), a, change, b, ok)
+            if (ok) call append(change)
             leaves = .true.
          end if
          if (.not. ok .or. signal_received() > 0) exit
@@ -127,7 +129,7 @@ contains
             if (ok) b = again
             ! Nothing is passed there.
             if (circuit%points(n)%is_change) n = n - 1
-            call find_value_at_0(b%value(of_value))
+            call find_value_at_0(curve, circuit%points(:n), b)
          else if (b%value(of_size) > curve%far) then
             circuit%ends(2) = end_far
             call find_root(curve, a, b, of_size, curve%far, again, ok)
@@ -153,61 +155,6 @@ contains
       circuit%points = circuit%points(:n)
 
    contains
-
-      !> Finds the drive's value at which the length of a cylinder becomes 0, by the parabola through the values at
-      !> three lengths before it. The direction of the barrel is free there, and a point of the curve is known to half
-      !> its digits. If the parabola cannot be made, the value stays.
-      subroutine find_value_at_0(value)
-         real(wp), intent(inout) :: value    !< rad or lengths of the curve
-         type(curve_point_t) :: p
-         real(wp) :: x(3)
-         integer :: from, k
-
-         from = findloc(circuit%points(:n)%value(of_cylinder) > 3.0_wp*short_cylinder*curve%closure%length, .true., &
-            dim=1, back=.true.)
-         if (from > 0) then
-            do k = 1, 3
-               call find_root(curve, circuit%points(from), b, of_cylinder, &
-                  real(k, wp)*short_cylinder*curve%closure%length, p, ok)
-               if (.not. ok) return
-               x(k) = p%value(of_value)
-            end do
-            value = 3.0_wp*(x(1) - x(2)) + x(3)
-         end if
-         ! The driven cylinder itself has the length 0; another one may reach 0 before it.
-         if (curve%drives_cylinder .and. abs(value) < short_cylinder*curve%closure%length) value = 0.0_wp
-      end subroutine find_value_at_0
-
-      !> Passes the change point ahead of the last of the `n` points of the circuit, and appends it. The new point is
-      !> as far after it: certified steps shrink in proportion to the distance from a change point. Without it `ok` is
-      !> false.
-      subroutine pass_change_point(point)
-         type(curve_point_t), intent(out) :: point
-         type(curve_point_t) :: change
-         real(wp) :: shrinks, h
-
-         ok = .false.
-         if (n < 2) return
-         change = circuit%points(n)
-         associate (before => circuit%points(n - 1), a => circuit%points(n))
-            shrinks = a%room/before%room
-            if (shrinks >= 1.0_wp) return
-            h = 2.0_wp*step_between(curve, before, a)*shrinks/(1.0_wp - shrinks)
-            call step_along(curve, a, h, point, ok)
-            if (.not. ok) return
-            ok = point%room < max_step_ratio*a%room .and. a%room < max_step_ratio*point%room &
-               .and. norm2(point%tangent - a%tangent) < max_tangent_turn
-            if (.not. ok) return
-            ! Halfway on the cubic through both with their tangents: this may be a dead point of the drive.
-            call add_to_links(curve%closure, &
-               0.5_wp*offset_from(curve, a%q, point%q, .false.) + 0.125_wp*h*(a%tangent - point%tangent), change%q)
-            change%value(of_value) = 0.5_wp*(a%value(of_value) + point%value(of_value)) &
-               + 0.125_wp*h*(a%value(of_slope) - point%value(of_slope))
-         end associate
-         change%room = 0.0_wp
-         change%is_change = .true.
-         call append(change)
-      end subroutine pass_change_point
 
       !> Appends the dead points between the last of the `n` points and another one: one if the drive's derivative
       !> changes its sign; two, about the place at which the derivative is least, if it changes its sign and back.
@@ -245,6 +192,62 @@ contains
          circuit%points(n) = point
       end subroutine append
    end subroutine follow
+
+   !> Passes the change point ahead of a point. The next point is as far after it: certified steps shrink in proportion
+   !> to the distance from a change point.
+   subroutine pass_change_point(curve, before, last, change, next, ok)
+      type(curve_t), intent(inout) :: curve
+      type(curve_point_t), intent(in) :: before, last   !< the last two points ahead of the change point
+      type(curve_point_t), intent(out) :: change, next  !< the change point, and the point after it
+      logical, intent(out) :: ok             !< it is passed
+      real(wp) :: shrinks, h
+
+      change = last
+      shrinks = last%room/before%room
+      ok = shrinks < 1.0_wp
+      if (.not. ok) return
+      h = 2.0_wp*step_between(curve, before, last)*shrinks/(1.0_wp - shrinks)
+      call step_along(curve, last, h, next, ok)
+      if (.not. ok) return
+      ok = next%room < max_step_ratio*last%room .and. last%room < max_step_ratio*next%room &
+         .and. norm2(next%tangent - last%tangent) < max_tangent_turn
+      if (.not. ok) return
+
+      ! Halfway on the cubic through both with their tangents: this may be a dead point of the drive.
+      call add_to_links(curve%closure, &
+         0.5_wp*offset_from(curve, last%q, next%q, .false.) + 0.125_wp*h*(last%tangent - next%tangent), change%q)
+      change%value(of_value) = 0.5_wp*(last%value(of_value) + next%value(of_value)) &
+         + 0.125_wp*h*(last%value(of_slope) - next%value(of_slope))
+      change%room = 0.0_wp
+      change%is_change = .true.
+   end subroutine pass_change_point
+
+   !> Finds the drive's value at which the length of a cylinder becomes 0, by the parabola through the values at three
+   !> lengths before it. The direction of the barrel is free there, and a point of the curve is known to half its
+   !> digits. If the parabola cannot be made, the value stays.
+   subroutine find_value_at_0(curve, points, at_0)
+      type(curve_t), intent(inout) :: curve
+      type(curve_point_t), intent(in) :: points(:)   !< (any number) the circuit so far
+      type(curve_point_t), intent(inout) :: at_0     !< its end, about there; gets the value
+      type(curve_point_t) :: p
+      real(wp) :: x(3)
+      integer :: from, k
+      logical :: ok
+
+      from = findloc(points%value(of_cylinder) > 3.0_wp*short_cylinder*curve%closure%length, .true., dim=1, back=.true.)
+      if (from > 0) then
+         do k = 1, 3
+            call find_root(curve, points(from), at_0, of_cylinder, real(k, wp)*short_cylinder*curve%closure%length, &
+               p, ok)
+            if (.not. ok) return
+            x(k) = p%value(of_value)
+         end do
+         at_0%value(of_value) = 3.0_wp*(x(1) - x(2)) + x(3)
+      end if
+      ! The driven cylinder itself has the length 0; another one may reach 0 before it.
+      if (curve%drives_cylinder .and. abs(at_0%value(of_value)) < short_cylinder*curve%closure%length) &
+         at_0%value(of_value) = 0.0_wp
+   end subroutine find_value_at_0
 
    !> Tells whether the sense in which the drive moves is known at a point.
    pure elemental logical function is_sure(point)

@@ -66,9 +66,9 @@ contains
       link_part = part_of_links(m)
       set%count = maxval([1, link_part])
       if (set%count == 1) link_part = 1
-      pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
-      drive_part = [(part_of(drive_links(m, m%drives(i))), i=1, size(m%drives))]
-      row_part = [(part_of(request_links(m, m%requests(i))), i=1, size(m%requests))]
+      pair_part = [(part_of(link_part, pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
+      drive_part = [(part_of(link_part, drive_links(m, m%drives(i))), i=1, size(m%drives))]
+      row_part = [(part_of(link_part, request_links(m, m%requests(i))), i=1, size(m%requests))]
       point_part = 0
       do i = 1, size(m%pairs)
          point_part([m%pairs(i)%point_i, m%pairs(i)%point_j]) = pair_part(i)
@@ -80,7 +80,7 @@ contains
       pairs = sorted(pair_part, set%count)
       drives = sorted(drive_part, set%count)
       rows = sorted(row_part, set%count)
-      call find_measured()
+      call find_measured(m, link_part, measured, measuring)
       measures = sorted_numbers(pack(measured%number, measured%kind == request_measure), &
          pack(measuring, measured%kind == request_measure), set%count)
 
@@ -131,13 +131,6 @@ contains
 
    contains
 
-      !> Gives the part to which a pair, drive, row or measure with these links belongs.
-      pure integer function part_of(links)
-         integer, intent(in) :: links(:)     !< (any number) numbers of the links
-
-         part_of = maxval([1, link_part(links)])
-      end function part_of
-
       !> Lets every part use the ground points of lengths, if a length has a tolerance: these points move one another.
       subroutine add_lengths()
          integer :: i, k
@@ -150,30 +143,42 @@ contains
             user = [user, (k, k, k=1, set%count)]
          end do
       end subroutine add_lengths
-
-      !> Finds each measure, with the measures of which it is made, and all their subjects: `measured` and `measuring`.
-      !> They belong to the part of the links of the measure; subjects of the ground belong to several parts.
-      subroutine find_measured()
-         integer, allocatable :: list(:)
-         integer :: last, n, j, pass
-
-         do pass = 1, 2
-            last = 0
-            do n = 1, measure_count(m)
-               list = measures_within(m, n)
-               do j = 1, size(list)
-                  associate (subjects => m%measures(list(j))%subjects, first => last + 1)
-                     last = last + 1 + size(subjects)
-                     if (pass == 1) cycle
-                     measured(first:last) = [subject_t(request_measure, list(j)), subjects]
-                     measuring(first:last) = part_of(measure_links(m, m%measures(n)))
-                  end associate
-               end do
-            end do
-            if (pass == 1) allocate (measured(last), measuring(last))
-         end do
-      end subroutine find_measured
    end subroutine divide
+
+   !> Finds each measure, with the measures of which it is made, and all their subjects. They belong to the part of the
+   !> links of the measure; subjects of the ground belong to several parts.
+   subroutine find_measured(m, link_part, measured, measuring)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link_part(:)    !< (links) the part of each
+      type(subject_t), allocatable, intent(out) :: measured(:)   !< (any number) all measures and their subjects
+      integer, allocatable, intent(out) :: measuring(:)   !< (measured) the part of each
+      integer, allocatable :: list(:)
+      integer :: last, n, j, pass
+
+      do pass = 1, 2
+         last = 0
+         do n = 1, measure_count(m)
+            list = measures_within(m, n)
+            do j = 1, size(list)
+               associate (subjects => m%measures(list(j))%subjects, first => last + 1)
+                  last = last + 1 + size(subjects)
+                  if (pass == 1) cycle
+                  measured(first:last) = [subject_t(request_measure, list(j)), subjects]
+                  measuring(first:last) = part_of(link_part, measure_links(m, m%measures(n)))
+               end associate
+            end do
+         end do
+         if (pass == 1) allocate (measured(last), measuring(last))
+      end do
+   end subroutine find_measured
+
+   !> Gives the part to which a pair, drive, row or measure with these links belongs.
+   pure integer function part_of(link_part, links)
+      integer, intent(in) :: link_part(:) !< (all links) the part of each
+      integer, intent(in) :: links(:)     !< (any number) numbers of the links
+
+      part_of = maxval([1, link_part(links)])
+   end function part_of
 
    !> Finds the number of the part of each link (links), in the order of the deck; 0 for a ground link.
    pure function part_of_links(m) result(part)

@@ -108,7 +108,7 @@ contains
             if (only_times) then
                call write_times(sets(i))
             else
-               call study_set(sets(i), structure_report(i)%redundant > 0)
+               call study_set(o, path, sets(i), size(sets), structure_report(i)%redundant > 0)
             end if
             call flush_output(o)
             if (o%error /= 0) exit
@@ -145,104 +145,108 @@ contains
          end if
          call put(o, trim(line))
       end subroutine write_times
-
-      !> Prints the study of a set.
-      subroutine study_set(m, redundant)
-         type(mechanism_t), intent(in) :: m
-         logical, intent(in) :: redundant    !< it has too many equations
-         integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
-         type(trial_t), allocatable :: trials(:)
-         type(mechanism_t), allocatable :: tried(:)
-         type(truth_t) :: truth
-         integer :: i, k, last, standard, equations
-
-         if (m%set_number > 1) call put(o, '')
-         call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
-         last = min(instant_count(m) - 1, max(8, max_solved/size(m%links)))
-         if (last == 0) then
-            call put(o, ' NOT STUDIED: ONE INSTANT')
-            return
-         end if
-         ! Each method with each tolerance, then the predictors of METHOD NEWTON. The first one without a tolerance is
-         ! the default.
-         equations = 3*count(.not. m%links%ground)
-         trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
-            i=1, merge(size(methods), 1, .not. redundant .and. equations <= max_equations)), &
-            (trial_t(predictor=k), k=0, 3)]
-         allocate (tried(size(trials)))
-         call read_truth(m, last, path, size(sets), truth)
-         do i = 1, size(trials)
-            ! The mechanism as the trial solves it: of the deck's requests only its rows.
-            tried(i) = m
-            tried(i)%method = trials(i)%method
-            tried(i)%tolerance = real(trials(i)%tolerance, wp)
-            tried(i)%predictor = trials(i)%predictor
-            tried(i)%assemblies = .false.
-            call solve(tried(i), last, trials(i), truth)
-         end do
-         ! All trials take turns, so that other work of the machine meets all of them.
-         do k = 1, repeats
-            do i = 1, size(trials)
-               if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
-            end do
-         end do
-
-         call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, ' &
-            //whole(count(.not. m%links%hidden))//' LINKS, '//wp_name)
-         if (truth%is_reference) then
-            call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-               //' INSTANTS')
-         else
-            call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-               //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
-         end if
-
-         if (redundant) then
-            call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
-         else if (equations > max_equations) then
-            call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(equations)//' EQUATIONS')
-         end if
-         call put(o, '')
-         call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
-         call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION' &
-            //'   VELOCITY   ACCELER.')
-
-         standard = findloc(trials%tolerance, 0.0_dp, dim=1)
-         do i = 1, size(trials)
-            call write_trial(trials(i), median(trials(standard)%time))
-         end do
-      end subroutine study_set
-
-      !> Prints the row of a trial.
-      subroutine write_trial(trial, unit)
-         type(trial_t), intent(in) :: trial
-         real(dp), intent(in) :: unit        !< microseconds of a step by default; 0: the default misses a position
-         character(120) :: line
-         integer :: d
-
-         line = ' '//method_words(trial%method)
-         line(10:) = 'OWN'
-         if (trial%predictor /= own_predictor) line(10:) = 'ORDER '//whole(trial%predictor)
-         line(21:) = 'ROUNDING'
-         if (trial%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') trial%tolerance
-         if (trial%missed > 0) then
-            line(32:) = 'NOT SOLVED AT '//whole(trial%missed)//' INSTANTS OR MORE'
-         else
-            write (line(30:), '(3f10.3)') median(trial%time), minval(trial%time), maxval(trial%time)
-            if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(trial%time)/unit
-            write (line(68:), '(f7.2)') trial%iterations
-         end if
-
-         do d = 0, merge(2, -1, trial%missed == 0)
-            if (trial%error(d) < 1.0e-3_dp*nothing_known) then
-               write (line(75 + 11*d:), '(es11.1)') trial%error(d)
-            else
-               line(75 + 11*d:) = '    UNKNOWN'
-            end if
-         end do
-         call put(o, trim(line))
-      end subroutine write_trial
    end subroutine run_study
+
+   !> Prints the study of a set.
+   subroutine study_set(o, path, m, sets, redundant)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: path       !< the file of the deck
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: sets            !< how many sets the deck has
+      logical, intent(in) :: redundant    !< it has too many equations
+      integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
+      type(trial_t), allocatable :: trials(:)
+      type(mechanism_t), allocatable :: tried(:)
+      type(truth_t) :: truth
+      integer :: i, k, last, standard, equations
+
+      if (m%set_number > 1) call put(o, '')
+      call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
+      last = min(instant_count(m) - 1, max(8, max_solved/size(m%links)))
+      if (last == 0) then
+         call put(o, ' NOT STUDIED: ONE INSTANT')
+         return
+      end if
+      ! Each method with each tolerance, then the predictors of METHOD NEWTON. The first one without a tolerance is
+      ! the default.
+      equations = 3*count(.not. m%links%ground)
+      trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
+         i=1, merge(size(methods), 1, .not. redundant .and. equations <= max_equations)), &
+         (trial_t(predictor=k), k=0, 3)]
+      allocate (tried(size(trials)))
+      call read_truth(m, last, path, sets, truth)
+      do i = 1, size(trials)
+         ! The mechanism as the trial solves it: of the deck's requests only its rows.
+         tried(i) = m
+         tried(i)%method = trials(i)%method
+         tried(i)%tolerance = real(trials(i)%tolerance, wp)
+         tried(i)%predictor = trials(i)%predictor
+         tried(i)%assemblies = .false.
+         call solve(tried(i), last, trials(i), truth)
+      end do
+      ! All trials take turns, so that other work of the machine meets all of them.
+      do k = 1, repeats
+         do i = 1, size(trials)
+            if (trials(i)%missed == 0) trials(i)%time(k) = step_time(tried(i), last, trials(i)%seconds)
+         end do
+      end do
+
+      call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, ' &
+         //whole(count(.not. m%links%hidden))//' LINKS, '//wp_name)
+      if (truth%is_reference) then
+         call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+            //' INSTANTS')
+      else
+         call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+            //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
+      end if
+
+      if (redundant) then
+         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
+      else if (equations > max_equations) then
+         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(equations)//' EQUATIONS')
+      end if
+      call put(o, '')
+      call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
+      call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION' &
+         //'   VELOCITY   ACCELER.')
+
+      standard = findloc(trials%tolerance, 0.0_dp, dim=1)
+      do i = 1, size(trials)
+         call write_trial(o, trials(i), median(trials(standard)%time))
+      end do
+   end subroutine study_set
+
+   !> Prints the row of a trial.
+   subroutine write_trial(o, trial, unit)
+      type(output_t), intent(inout) :: o
+      type(trial_t), intent(in) :: trial
+      real(dp), intent(in) :: unit        !< microseconds of a step by default; 0: the default misses a position
+      character(120) :: line
+      integer :: d
+
+      line = ' '//method_words(trial%method)
+      line(10:) = 'OWN'
+      if (trial%predictor /= own_predictor) line(10:) = 'ORDER '//whole(trial%predictor)
+      line(21:) = 'ROUNDING'
+      if (trial%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') trial%tolerance
+      if (trial%missed > 0) then
+         line(32:) = 'NOT SOLVED AT '//whole(trial%missed)//' INSTANTS OR MORE'
+      else
+         write (line(30:), '(3f10.3)') median(trial%time), minval(trial%time), maxval(trial%time)
+         if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(trial%time)/unit
+         write (line(68:), '(f7.2)') trial%iterations
+      end if
+
+      do d = 0, merge(2, -1, trial%missed == 0)
+         if (trial%error(d) < 1.0e-3_dp*nothing_known) then
+            write (line(75 + 11*d:), '(es11.1)') trial%error(d)
+         else
+            line(75 + 11*d:) = '    UNKNOWN'
+         end if
+      end do
+      call put(o, trim(line))
+   end subroutine write_trial
 
    !> Solves a set by one trial, and finds its missed instants, iterations and seconds, and its errors if something is
    !> compared.
