@@ -193,13 +193,14 @@ contains
 
       call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, ' &
          //whole(count(.not. m%links%hidden))//' LINKS, '//wp_name)
-      if (truth%is_reference) then
-         call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-            //' INSTANTS')
-      else
-         call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
-            //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
-      end if
+      associate (instants => whole(count(truth%due(:truth%compared)))//' OF '//whole(last + 1)//' INSTANTS')
+         if (truth%is_reference) then
+            call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//instants)
+         else
+            call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//instants &
+               //'; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
+         end if
+      end associate
 
       if (redundant) then
          call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
@@ -336,7 +337,6 @@ contains
       allocate (truth%value(size(truth%table%columns), 0:truth%compared - 1))
       read (unit, '()', iostat=status)
       do k = 0, truth%compared - 1
-         if (.not. truth%due(1 + k)) cycle
          read (unit, *, iostat=status) before, truth%value(:, k)
          if (status /= 0) exit
          truth%is_reference = .true.

@@ -52,6 +52,14 @@ all 'the matrix leaves of its tolerance what its rate says' '$1 == "MATRIX" && $
 all 'a better predictor takes fewer iterations' '$2 ~ /^ORD/ { if ($2 != "ORD0") { n++; if ($6 > last) bad = bad " " $0 } last = $6 } '"$told"
 all 'the default is the measure' '$1 == "NEWTON" && $2 == "OWN" && $3 == "ROUNDING" { n++; if ($5 != 1) bad = bad " " $0 } '"$told"
 
+# Rows that are printed at every second instant only: the table of kinmat-quad has all instants.
+awk '/^PRINT/ { next } /^END/ { printf "%-8s%-16s%s\n", "PRINT", "ALL", "2" } { print }' "$w/four_bar.deck" > "$w/second.deck"
+"$kinmat" --study "$w/second.deck" > "$w/second.txt" 2> "$w/err"
+equal 'every second instant: what errors are compared with' ' ERRORS: AGAINST kinmat-quad (REAL128), AT 20 OF 39 INSTANTS' \
+   "$(sed -n 3p "$w/second.txt")"
+equal 'every second instant: to rounding the methods agree with the truth' '7 0' "$(rows "$w/second.txt" | awk '$3 == "ROUNDING" { n++
+   for (k = 7; k <= 9; k++) bad += !($k < 1e-13) } END { print n, bad + 0 }')"
+
 # Beside no reference: the estimates, which are never below the true errors to rounding. MIN is printed with two digits.
 mkdir -p "$w/alone" && cp "$BUILD/kinmat" "$w/alone/"
 PATH=$w:$PATH "$w/alone/kinmat" --study "$w/four_bar.deck" > "$w/estimates.txt" 2> "$w/err"
