@@ -126,7 +126,7 @@ contains
          integer :: i
 
          associate (track => extremes%tracks(part), t1 => extremes%tracks(part)%last%t)
-            call find_ends(set%now%motions(part), t1, extremes%way, ends, is_limit)
+            call find_ends(extremes, set%now%motions(part), t1, ends, is_limit)
             if (set%now%motions(part)%known >= 0) ends = [ends, t]
             if (track%is_lost) ends = [real(wp) ::]
             times = times_between(track%joints, track%longest, extremes%run, t1, t)
@@ -141,35 +141,6 @@ contains
          end associate
       end subroutine search_step
 
-      !> Finds the times at which a change point was passed, or the limit of the motion was reached, which is the last
-      !> one. A change point that is later only by rounding is the one before, or the last instant itself.
-      pure subroutine find_ends(q, from, way, ends, is_limit)
-         type(motion_t), intent(in) :: q     !< at the end of the step: has diagnostics
-         real(wp), intent(in) :: from        !< time of the last instant
-         real(wp), intent(in) :: way         !< the direction of the run: 1 or -1
-         real(wp), allocatable, intent(out) :: ends(:)   !< (any number) times, in the run's order
-         logical, intent(out) :: is_limit    !< the last one is a limit of the motion
-         real(wp) :: last
-         integer :: i
-
-         allocate (ends(0))
-         is_limit = .false.
-         if (.not. allocated(q%diagnostics)) return
-         last = from
-         do i = 1, size(q%diagnostics)
-            associate (d => q%diagnostics(i))
-               if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-               if ((d%t - last)*way <= merge(joint_margin(extremes%run, last), 0.0_wp, &
-                  d%kind == diagnostic_change)) cycle
-               is_limit = d%kind == diagnostic_limit
-               if ((q%t - d%t)*way <= 0.0_wp .and. .not. is_limit) cycle
-               ! A limit at the instant itself is later only by rounding.
-               last = way*min(way*d%t, way*q%t)
-               ends = [ends, last]
-            end associate
-         end do
-      end subroutine find_ends
-
       !> Searches a piece of a step, with nodes at the times that are inside.
       subroutine search_piece(times, from, to)
          real(wp), intent(in) :: times(:)    !< (any number) of nodes, in the run's order
@@ -183,7 +154,7 @@ contains
          if (from%is_open) then
             call search_waiting(extremes, set, part)
             extremes%tracks(part)%filled = 0
-            call accept_limits(from, to%t, near)
+            call accept_limits(extremes, set, part, from, to%t, near)
             low = near(places)
             call evaluate_at(near(1), .true.)
             call add_interval(extremes%open, extremes%way, from%t, &
@@ -191,7 +162,7 @@ contains
             call evaluate_at(low, .true.)
          end if
          if (to%is_open) then
-            call accept_limits(to, from%t, near)
+            call accept_limits(extremes, set, part, to, from%t, near)
             high = near(places)
          end if
 
@@ -209,68 +180,6 @@ contains
          call add_interval(extremes%open, extremes%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
-      !> Offers the one-sided limits at an end of a piece as extremes, by the motion at times near the end. Of the times
-      !> that were tried those count from which the limits are known best.
-      subroutine accept_limits(at, other, near)
-         type(piece_end_t), intent(in) :: at
-         real(wp), intent(in) :: other       !< time of the other end of the piece
-         real(wp), intent(out) :: near(places)   !< the times that count, the nearest first
-         type(node_t) :: nodes(places)
-         type(extreme_t), dimension(0:2, size(extremes%tracks(part)%coordinates)) :: limits, best
-         real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
-         integer :: i, k, n, try
-
-         five = at_zero(:, 1, merge(1, 2, at%is_change))
-         four = at_zero(:, 2, merge(1, 2, at%is_change))
-         least_error = huge(1.0_wp)
-         do try = 0, merge(max_nearer, max_farther, at%is_change)
-            ! The nearest first, on the side of `other`.
-            nearest = merge(nearer_by**try*from_change_point, farther_by**try*from_limit, at%is_change)*extremes%step
-            nearest = min(nearest, abs(other - at%t)/(2*places**2))
-            times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
-            do i = 1, places
-               call find_node(set, extremes%tracks(part), times(i), errors_always, nodes(i))
-               if (.not. nodes(i)%is_known) exit
-            end do
-            if (i <= places) cycle
-
-            ! The largest error of the limits that have a bound, in characteristic values or as a part of larger ones.
-            ! A limit that is badly known does not exist.
-            error = 0.0_wp
-            do k = 1, size(limits, 2)
-               do i = 0, 2
-                  associate (one => limits(i, k), size_of => extremes%tracks(part)%coordinates(k)%size_of(i))
-                     one = extreme_t()
-                     ! Points of a measure coincide.
-                     if (any([(nodes(n)%samples(k)%known < 2, n=1, places)])) cycle
-                     f = [(nodes(n)%samples(k)%f(i), n=1, places)]
-                     one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
-                     one%error = 2.0_wp*abs(dot_product(five - four, f)) &
-                        + maxval([(nodes(n)%samples(k)%error(i), n=1, places)])
-                     one%has_bound = at%is_change .or. abs(f(1)) < unbounded_growth*abs(f(2)) &
-                        .or. abs(f(1)) < bounded_part*size_of
-                     if (.not. one%has_bound) one%value = f(1)
-                     one%exists = .not. one%has_bound .or. one%error <= badly_known*max(size_of, abs(one%value))
-                     if (one%has_bound) error = max(error, one%error/max(size_of, abs(one%value)))
-                  end associate
-               end do
-            end do
-            if (error < least_error) then
-               least_error = error
-               best = limits
-               near = times
-            end if
-            if (least_error < well_known_limit) exit
-         end do
-
-         if (least_error >= huge(1.0_wp)) near = times
-         do k = 1, size(best, 2)
-            do i = 0, 2
-               if (best(i, k)%exists) call offer(extremes%tracks(part)%coordinates(k), i, best(i, k), 0.0_wp)
-            end do
-         end do
-      end subroutine accept_limits
-
       !> Takes a node at a time, and searches up to it. If its motion is not known, the time is a gap.
       subroutine evaluate_at(t, always)
          real(wp), intent(in) :: t           !< time
@@ -286,6 +195,100 @@ contains
          end associate
       end subroutine evaluate_at
    end subroutine search_instant
+
+   !> Finds the times at which a change point was passed, or the limit of the motion was reached, which is the last
+   !> one. A change point that is later only by rounding is the one before, or the last instant itself.
+   pure subroutine find_ends(extremes, q, from, ends, is_limit)
+      type(extremes_t), intent(in) :: extremes
+      type(motion_t), intent(in) :: q     !< at the end of the step: has diagnostics
+      real(wp), intent(in) :: from        !< time of the last instant
+      real(wp), allocatable, intent(out) :: ends(:)   !< (any number) times, in the run's order
+      logical, intent(out) :: is_limit    !< the last one is a limit of the motion
+      real(wp) :: last
+      integer :: i
+
+      allocate (ends(0))
+      is_limit = .false.
+      if (.not. allocated(q%diagnostics)) return
+      last = from
+      do i = 1, size(q%diagnostics)
+         associate (d => q%diagnostics(i))
+            if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
+            if ((d%t - last)*extremes%way <= merge(joint_margin(extremes%run, last), 0.0_wp, &
+               d%kind == diagnostic_change)) cycle
+            is_limit = d%kind == diagnostic_limit
+            if ((q%t - d%t)*extremes%way <= 0.0_wp .and. .not. is_limit) cycle
+            ! A limit at the instant itself is later only by rounding.
+            last = extremes%way*min(extremes%way*d%t, extremes%way*q%t)
+            ends = [ends, last]
+         end associate
+      end do
+   end subroutine find_ends
+
+   !> Offers the one-sided limits at an end of a piece as extremes, by the motion at times near the end. Of the times
+   !> that were tried those count from which the limits are known best.
+   subroutine accept_limits(extremes, set, part, at, other, near)
+      type(extremes_t), intent(inout) :: extremes
+      type(set_analysis_t), intent(inout) :: set
+      integer, intent(in) :: part            !< number of the mechanism
+      type(piece_end_t), intent(in) :: at
+      real(wp), intent(in) :: other       !< time of the other end of the piece
+      real(wp), intent(out) :: near(places)   !< the times that count, the nearest first
+      type(node_t) :: nodes(places)
+      type(extreme_t), dimension(0:2, size(extremes%tracks(part)%coordinates)) :: limits, best
+      real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
+      integer :: i, k, n, try
+
+      five = at_zero(:, 1, merge(1, 2, at%is_change))
+      four = at_zero(:, 2, merge(1, 2, at%is_change))
+      least_error = huge(1.0_wp)
+      do try = 0, merge(max_nearer, max_farther, at%is_change)
+         ! The nearest first, on the side of `other`.
+         nearest = merge(nearer_by**try*from_change_point, farther_by**try*from_limit, at%is_change)*extremes%step
+         nearest = min(nearest, abs(other - at%t)/(2*places**2))
+         times = at%t + sign(nearest, other - at%t)*[(i**2, i=1, places)]
+         do i = 1, places
+            call find_node(set, extremes%tracks(part), times(i), errors_always, nodes(i))
+            if (.not. nodes(i)%is_known) exit
+         end do
+         if (i <= places) cycle
+
+         ! The largest error of the limits that have a bound, in characteristic values or as a part of larger ones.
+         ! A limit that is badly known does not exist.
+         error = 0.0_wp
+         do k = 1, size(limits, 2)
+            do i = 0, 2
+               associate (one => limits(i, k), size_of => extremes%tracks(part)%coordinates(k)%size_of(i))
+                  one = extreme_t()
+                  ! Points of a measure coincide.
+                  if (any([(nodes(n)%samples(k)%known < 2, n=1, places)])) cycle
+                  f = [(nodes(n)%samples(k)%f(i), n=1, places)]
+                  one = extreme_t(is_located=.true., t=at%t, value=dot_product(five, f))
+                  one%error = 2.0_wp*abs(dot_product(five - four, f)) &
+                     + maxval([(nodes(n)%samples(k)%error(i), n=1, places)])
+                  one%has_bound = at%is_change .or. abs(f(1)) < unbounded_growth*abs(f(2)) &
+                     .or. abs(f(1)) < bounded_part*size_of
+                  if (.not. one%has_bound) one%value = f(1)
+                  one%exists = .not. one%has_bound .or. one%error <= badly_known*max(size_of, abs(one%value))
+                  if (one%has_bound) error = max(error, one%error/max(size_of, abs(one%value)))
+               end associate
+            end do
+         end do
+         if (error < least_error) then
+            least_error = error
+            best = limits
+            near = times
+         end if
+         if (least_error < well_known_limit) exit
+      end do
+
+      if (least_error >= huge(1.0_wp)) near = times
+      do k = 1, size(best, 2)
+         do i = 0, 2
+            if (best(i, k)%exists) call offer(extremes%tracks(part)%coordinates(k), i, best(i, k), 0.0_wp)
+         end do
+      end do
+   end subroutine accept_limits
 
    !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive.
    pure subroutine settle_ratios(coordinates)

@@ -104,10 +104,12 @@ contains
 
       call find_place(b, x, state, q, estimator%place)
       estimator%place%stays = estimator%place%is_singular
-      call find_changed(0, many_roundings, 0.0_wp, found%solved)
+      call find_changed(estimator, m, b, x, q%t, 0, many_roundings, 0.0_wp, found%solved)
       estimator%place%stays = .false.
-      call find_largest_changes(many_roundings, estimator%place%is_singular, is_small)
-      if (.not. is_small) call find_largest_changes(few_roundings, .true., is_small)
+      call find_largest_changes(many_roundings, 0.0_wp, 1.0_wp/ratio_of_rows(many_roundings), &
+         estimator%place%is_singular, found%changes, is_small)
+      if (.not. is_small) call find_largest_changes(few_roundings, 0.0_wp, 1.0_wp/ratio_of_rows(few_roundings), &
+         .true., found%changes, is_small)
       found%own = safety_factor*min(found%changes, nothing_known/safety_factor)
       if (prints_errors .and. .not. estimator%place%is_singular) then
          call find_own_changes()
@@ -117,34 +119,16 @@ contains
                calculation_safety_factor*sqrt(max(own - by_numbers, 0.0_wp))*sqrt(own + min(by_numbers, own)))
          end associate
       end if
-      call add_sums()
+      call add_sums(m, b, q, found)
       found%by_closure = 0.0_wp
-      if (estimator%closure > 0.0_wp) call find_changes_by_closure()
+      if (estimator%closure > 0.0_wp) then
+         ! A much smaller part of it would show how the weights of equations change, which goes with the error.
+         call find_largest_changes(estimator%closure/(closure_parts*epsilon(1.0_wp)), estimator%sizes%length, &
+            closure_caution*ratio_of_rows(closure_parts), .true., found%by_closure, is_small)
+         found%by_closure = min(found%by_closure, nothing_known)
+      end if
 
    contains
-
-      !> Finds the rows near the motion with all numbers off by roundings in a direction.
-      subroutine find_changed(k, roundings, length, rows)
-         integer, intent(in) :: k            !< the direction; 0: no number is off
-         real(wp), intent(in) :: roundings   !< so many; below 0: in the opposite direction
-         real(wp), intent(in) :: length      !< each length is off as if it were so large; 0: by its own size
-         type(row_t), intent(inout) :: rows(:)   !< (requests)
-         integer :: i
-
-         call make_ready(estimator%perturbed, k, m, x, i)
-         associate (p => estimator%perturbed(i))
-            if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
-               associate (axes => x%equations%axes)
-                  call perturb_numbers(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
-               end associate
-               call assign_changes(b, p, by_roundings=.true.)
-               p%direction = k
-               p%roundings = roundings
-               p%length = length
-            end if
-            call rows_with(b, p, q%t + p%time_off*q%t, estimator%place, rows)
-         end associate
-      end subroutine find_changed
 
       !> Replaces each row that has lost numbers by `find_changed` with the row of the opposite change. Both changes are
       !> equally likely and large, and on a dead point only one of the two has a position.
@@ -156,30 +140,38 @@ contains
          type(row_t) :: other(size(rows))
 
          if (all(rows%known >= found%solved%known)) return
-         call find_changed(k, -roundings, length, other)
+         call find_changed(estimator, m, b, x, q%t, k, -roundings, length, other)
          where (rows%known < found%solved%known) rows = other
       end subroutine use_opposite
 
-      !> Finds the largest changes of the rows by a rounding, from changes by several. At the first change that is not
-      !> of first order it ends, unless all are wanted.
-      subroutine find_largest_changes(roundings, anyway, is_small)
+      !> Gives the ratio of two changes of the rows for a ratio of two changes of the numbers: its root, if the Jacobian
+      !> has no inverse.
+      pure real(wp) function ratio_of_rows(ratio)
+         real(wp), intent(in) :: ratio       !< 1 or more
+
+         ratio_of_rows = merge(sqrt(ratio), ratio, estimator%place%is_singular)
+      end function ratio_of_rows
+
+      !> Finds the largest changes of the rows from changes by several roundings. At the first change that is not of
+      !> first order it ends, unless all are wanted.
+      subroutine find_largest_changes(roundings, length, part, anyway, changes, is_small)
          real(wp), intent(in) :: roundings   !< numbers are off by so many
+         real(wp), intent(in) :: length      !< as in `find_changed`
+         real(wp), intent(in) :: part        !< of the changes of the rows: the changes that are wanted
          logical, intent(in) :: anyway       !< all are wanted, of first order or not
+         real(wp), intent(out) :: changes(3, 0:2, size(found%solved))   !< the largest ones, in the units of the rows
          logical, intent(out) :: is_small    !< all changes are of first order, or all were wanted
          type(row_t) :: rows(size(found%solved))
-         real(wp) :: part
          integer :: k, i
 
-         ! If the Jacobian has no inverse, a position changes with the root of the change of the deck.
-         part = 1.0_wp/merge(sqrt(roundings), roundings, estimator%place%is_singular)
-         found%changes = 0.0_wp
+         changes = 0.0_wp
          do k = 1, directions
-            call find_changed(k, roundings, 0.0_wp, rows)
+            call find_changed(estimator, m, b, x, q%t, k, roundings, length, rows)
             is_small = anyway .or. (estimator%place%ratio <= linear_ratio .and. all(rows%known >= found%solved%known))
             if (.not. is_small) return
-            call use_opposite(k, roundings, 0.0_wp, rows)
+            call use_opposite(k, roundings, length, rows)
             do i = 1, size(rows)
-               found%changes(:, :, i) = max(found%changes(:, :, i), change(rows(i), found%solved(i), part))
+               changes(:, :, i) = max(changes(:, :, i), change(rows(i), found%solved(i), part))
             end do
          end do
       end subroutine find_largest_changes
@@ -191,7 +183,7 @@ contains
 
          found%own = 0.0_wp
          do k = directions + 1, directions + own_directions
-            call find_changed(k, 1.0_wp, 0.0_wp, rows)
+            call find_changed(estimator, m, b, x, q%t, k, 1.0_wp, 0.0_wp, rows)
             call use_opposite(k, 1.0_wp, 0.0_wp, rows)
             do i = 1, size(rows)
                found%own(:, :, i) = min(nothing_known, hypot(found%own(:, :, i), &
@@ -199,80 +191,96 @@ contains
             end do
          end do
       end subroutine find_own_changes
-
-      !> Finds the largest changes of the rows by lengths and directions that are off by the closure error, from changes
-      !> by a part of it. A much smaller part would show how the weights of equations change, which goes with the error.
-      subroutine find_changes_by_closure()
-         type(row_t) :: rows(size(found%solved))
-         real(wp) :: roundings, times
-         integer :: k, i
-
-         roundings = estimator%closure/(closure_parts*epsilon(1.0_wp))
-         times = closure_caution*merge(sqrt(closure_parts), closure_parts, estimator%place%is_singular)
-         do k = 1, directions
-            call find_changed(k, roundings, estimator%sizes%length, rows)
-            call use_opposite(k, roundings, estimator%sizes%length, rows)
-            do i = 1, size(rows)
-               found%by_closure(:, :, i) = max(found%by_closure(:, :, i), change(rows(i), found%solved(i), times))
-            end do
-         end do
-         found%by_closure = min(found%by_closure, nothing_known)
-      end subroutine find_changes_by_closure
-
-      !> Adds the changes by a rounding of sums to both kinds of changes: the motion and its rows are sums.
-      subroutine add_sums()
-         real(wp) :: of_sums(3, 0:2, size(m%requests))
-         type(motion_t) :: other
-         type(row_t) :: one, rows(size(m%requests))
-         integer :: k, i
-
-         do i = 1, size(rows)
-            call find_row(m, q, m%requests(i), rows(i))
-         end do
-         of_sums = 0.0_wp
-         do k = 1, directions
-            other = q
-            ! The roundings of the rows could hide the changes by one rounding.
-            call perturb_sums(b%tree, estimator%sizes%length, k, few_roundings, other)
-            if (allocated(q%by)) call perturb_ratios(k, other)
-            do i = 1, size(rows)
-               call find_row(m, other, m%requests(i), one)
-               ! No sum moves a centre from infinity.
-               if (rows(i)%state /= centre_finite) one%state = rows(i)%state
-               of_sums(:, :, i) = max(of_sums(:, :, i), change(one, rows(i), roundings_of_sum/few_roundings))
-            end do
-         end do
-
-         found%own = min(hypot(found%own, of_sums), nothing_known)
-         ! For the tables a rate that is zero, and that no change of the numbers changes, is no sum.
-         do i = 1, size(rows)
-            of_sums(:, 1:, i) = merge(of_sums(:, 1:, i), 0.0_wp, abs(rows(i)%value(:, 1:)) > 0.0_wp &
-               .or. found%changes(:, 1:, i) > 0.0_wp)
-         end do
-         found%changes = min(hypot(found%changes, of_sums), nothing_known)
-      end subroutine add_sums
-
-      !> Changes the unit motions of a motion, of which ratios are made, by roundings of the sums that they are.
-      subroutine perturb_ratios(k, other)
-         integer, intent(in) :: k            !< the direction
-         type(motion_t), intent(inout) :: other   !< its unit motions are changed
-         type(motion_t) :: unit
-         integer :: d
-
-         do d = 1, size(other%by)
-            if (.not. allocated(q%by(d)%velocity)) cycle
-            unit%position = q%position
-            unit%velocity = q%by(d)%velocity
-            unit%acceleration = q%by(d)%acceleration
-            unit%known = 2
-            unit%link_known = merge(2, -1, q%by(d)%is_known)
-            unit%origin = q%origin
-            call perturb_sums(b%tree, estimator%sizes%length, k, few_roundings, unit)
-            other%by(d)%velocity = unit%velocity
-            other%by(d)%acceleration = unit%acceleration
-         end do
-      end subroutine perturb_ratios
    end subroutine estimate_errors
+
+   !> Adds the changes by a rounding of sums to both kinds of changes: the motion and its rows are sums.
+   subroutine add_sums(m, b, q, found)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(motion_t), intent(in) :: q
+      type(error_estimate_t), intent(inout) :: found   !< the changes are those by numbers; then also those by sums
+      real(wp) :: of_sums(3, 0:2, size(m%requests))
+      type(motion_t) :: other
+      type(row_t) :: one, rows(size(m%requests))
+      integer :: k, i
+
+      do i = 1, size(rows)
+         call find_row(m, q, m%requests(i), rows(i))
+      end do
+      of_sums = 0.0_wp
+      do k = 1, directions
+         other = q
+         ! The roundings of the rows could hide the changes by one rounding.
+         call perturb_sums(b%tree, found%sizes%length, k, few_roundings, other)
+         if (allocated(q%by)) call perturb_ratios(b, q, found%sizes%length, k, other)
+         do i = 1, size(rows)
+            call find_row(m, other, m%requests(i), one)
+            ! No sum moves a centre from infinity.
+            if (rows(i)%state /= centre_finite) one%state = rows(i)%state
+            of_sums(:, :, i) = max(of_sums(:, :, i), change(one, rows(i), roundings_of_sum/few_roundings))
+         end do
+      end do
+
+      found%own = min(hypot(found%own, of_sums), nothing_known)
+      ! For the tables a rate that is zero, and that no change of the numbers changes, is no sum.
+      do i = 1, size(rows)
+         of_sums(:, 1:, i) = merge(of_sums(:, 1:, i), 0.0_wp, abs(rows(i)%value(:, 1:)) > 0.0_wp &
+            .or. found%changes(:, 1:, i) > 0.0_wp)
+      end do
+      found%changes = min(hypot(found%changes, of_sums), nothing_known)
+   end subroutine add_sums
+
+   !> Changes the unit motions of a motion, of which ratios are made, by roundings of the sums that they are.
+   subroutine perturb_ratios(b, q, length, k, other)
+      type(blocks_t), intent(in) :: b
+      type(motion_t), intent(in) :: q
+      real(wp), intent(in) :: length         !< characteristic length
+      integer, intent(in) :: k               !< the direction
+      type(motion_t), intent(inout) :: other   !< its unit motions are changed
+      type(motion_t) :: unit
+      integer :: d
+
+      do d = 1, size(other%by)
+         if (.not. allocated(q%by(d)%velocity)) cycle
+         unit%position = q%position
+         unit%velocity = q%by(d)%velocity
+         unit%acceleration = q%by(d)%acceleration
+         unit%known = 2
+         unit%link_known = merge(2, -1, q%by(d)%is_known)
+         unit%origin = q%origin
+         call perturb_sums(b%tree, length, k, few_roundings, unit)
+         other%by(d)%velocity = unit%velocity
+         other%by(d)%acceleration = unit%acceleration
+      end do
+   end subroutine perturb_ratios
+
+   !> Finds the rows near the motion with all numbers off by roundings in a direction.
+   subroutine find_changed(estimator, m, b, x, t, k, roundings, length, rows)
+      type(estimator_t), intent(inout) :: estimator   !< at the place of the motion
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(geometry_t), intent(in) :: x
+      real(wp), intent(in) :: t              !< time of the motion
+      integer, intent(in) :: k               !< the direction; 0: no number is off
+      real(wp), intent(in) :: roundings      !< so many; below 0: in the opposite direction
+      real(wp), intent(in) :: length         !< each length is off as if it were so large; 0: by its own size
+      type(row_t), intent(inout) :: rows(:)   !< (requests)
+      integer :: i
+
+      call make_ready(estimator%perturbed, k, m, x, i)
+      associate (p => estimator%perturbed(i))
+         if (p%direction /= k .or. abs(p%roundings - roundings) + abs(p%length - length) > 0.0_wp) then
+            associate (axes => x%equations%axes)
+               call perturb_numbers(m, b%tree, axes, k, roundings, length, p%m, p%time_off)
+            end associate
+            call assign_changes(b, p, by_roundings=.true.)
+            p%direction = k
+            p%roundings = roundings
+            p%length = length
+         end if
+         call rows_with(b, p, t + p%time_off*t, estimator%place, rows)
+      end associate
+   end subroutine find_changed
 
    !> Gives the change (3, 0:2) of a row by a rounding; `nothing_known` for numbers that the changed row has lost.
    pure function change(one, middle, part) result(x)

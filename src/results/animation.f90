@@ -57,15 +57,15 @@ contains
       call open_group(canvas%output, 'class="film" data-frames="'//whole(size(frame))//'" data-end="' &
          //full(drawing%frame(drawing%films)%t)//'"', '')
       call draw_moving_links()
-      call draw_centres()
+      call draw_centres(canvas, frame)
       call close_group(canvas%output, 'g')
       call close_group(canvas%output, 'svg')
       do i = 1, size(list)
          if (is_fixed(i) .and. .not. list(i)%is_below) call draw_shape(canvas, list(i))
       end do
 
-      call draw_names()
-      call draw_clock()
+      call draw_names(canvas, list, frame, smooth)
+      call draw_clock(canvas, frame)
       call draw_foot(canvas)
 
    contains
@@ -121,11 +121,11 @@ contains
             name = trim(canvas%mechanism%links(link)%name)
             call open_group(canvas%output, 'class="link" '//attribute('data-link', name)//' transform="translate(' &
                //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', name)
-            call draw_moving(shift_element, place, smooth)
-            if (.not. all(known)) call draw_moving('animate attributeName="opacity"', &
+            call draw_moving(canvas, shift_element, place, smooth)
+            if (.not. all(known)) call draw_moving(canvas, 'animate attributeName="opacity"', &
                reshape(merge(1.0_wp, pale_opacity, known), [1, size(known)]), .false.)
             call open_group(canvas%output, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-            call draw_moving(turn_element, angle, smooth)
+            call draw_moving(canvas, turn_element, angle, smooth)
             do k = 1, size(list)
                if (list(k)%link == link) call draw_shape(axes, list(k))
             end do
@@ -133,100 +133,110 @@ contains
             call close_group(canvas%output, 'g')
          end do
       end subroutine draw_moving_links
-
-      !> Draws the ring of each instant centre, which is hidden at frames at which the centre is at infinity.
-      subroutine draw_centres()
-         real(wp) :: place(2, size(frame))
-         logical :: has(size(frame))
-         integer :: i, k
-
-         do i = 1, size(drawing%poles)
-            has = [(drawing%frame(frame(k))%has_centre(i), k=1, size(frame))]
-            if (.not. any(has)) cycle
-            do k = 1, size(frame)
-               place(:, k) = to_pixels(canvas, drawing%frame(frame(k))%centre(:, i))
-            end do
-            call open_group(canvas%output, 'class="pole" transform="translate(' &
-               //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', pole_name(canvas%mechanism, drawing%poles(i)))
-            call draw_moving(shift_element, place, .false.)
-            if (.not. all(has)) call draw_moving('animate attributeName="opacity"', &
-               reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
-            call draw_circle(canvas%output, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
-               //link_color(canvas%mechanism, canvas%mechanism%requests(drawing%poles(i))%subject)//'"')
-            call close_group(canvas%output, 'g')
-         end do
-      end subroutine draw_centres
-
-      !> Writes the names of points and links at their best places in the first frame. Each name keeps its distance from
-      !> its point or link.
-      subroutine draw_names()
-         type(label_t), allocatable :: labels(:)
-         real(wp) :: by(2, size(frame)), offset(2)
-         integer :: i, k, last
-
-         canvas%snapshot = drawing%frame(1)
-         do i = 1, size(list)
-            call record_shape(canvas, list(i))
-         end do
-         call labels_of(canvas, labels)
-
-         do i = 1, size(labels)
-            associate (link => labels(i)%link)
-               call open_group(canvas%output, 'class="label"', '')
-               if (.not. canvas%mechanism%links(link)%ground) then
-                  ! The place of the pixel in the axes of the link.
-                  offset = (labels(i)%of - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
-                  associate (place => canvas%snapshot%place(:, link))
-                     offset = rotated(offset - place(:2), direction(-place(3)))
-                  end associate
-                  last = 1
-                  do k = 1, size(frame)
-                     if (drawing%frame(frame(k))%known(link)) last = frame(k)
-                     by(:, k) = to_pixels(canvas, point_of(drawing%frame(last)%place(:, link), offset)) - labels(i)%of
-                  end do
-                  call draw_moving(shift_element, by, smooth)
-               end if
-               call draw_label(canvas, labels(i))
-               call close_group(canvas%output, 'g')
-            end associate
-         end do
-      end subroutine draw_names
-
-      !> Writes the time, in red with the reason if the instant is flagged: a column of lines in a window of one line.
-      subroutine draw_clock()
-         real(wp) :: up(2, size(frame))
-         character(:), allocatable :: words
-         integer :: k, y
-
-         y = nint(canvas%high(2)) + 33
-         call draw_window(canvas%output, real([14, y - line_height], wp), real([page_width - 14, y], wp))
-         call open_group(canvas%output, 'class="clock"', '')
-         up(1, :) = 0.0_wp
-         up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
-         call draw_moving(shift_element, up, .false.)
-         do k = 1, size(frame)
-            associate (s => drawing%frame(frame(k)))
-               words = caption(canvas, s%t)
-               if (s%mark /= flag_none) &
-                  words = words//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
-               call draw_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
-                  trim(merge('class="time flag"', 'class="time"     ', s%mark /= flag_none)), words)
-            end associate
-         end do
-         call close_group(canvas%output, 'g')
-         call close_group(canvas%output, 'svg')
-      end subroutine draw_clock
-
-      !> Writes an animated attribute; nothing if it has one value only.
-      subroutine draw_moving(element, values, smooth)
-         character(*), intent(in) :: element   !< of SVG, with the name of the attribute
-         real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute, in turn: pixels, degrees or opacity
-         logical, intent(in) :: smooth       !< values between keys are interpolated
-
-         if (size(values, 2) < 2) return
-         call draw_columns(canvas%output, element//' calcMode="' &
-            //trim(merge('linear  ', 'discrete', smooth))//'" dur="'&
-            //duration//'" repeatCount="indefinite" values="', values, ' ', ';')
-      end subroutine draw_moving
    end subroutine draw_animation
+
+   !> Draws the ring of each instant centre, which is hidden at frames at which the centre is at infinity.
+   subroutine draw_centres(canvas, frame)
+      type(canvas_t), intent(in) :: canvas
+      integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
+      real(wp) :: place(2, size(frame))
+      logical :: has(size(frame))
+      integer :: i, k
+
+      do i = 1, size(canvas%drawing%poles)
+         has = [(canvas%drawing%frame(frame(k))%has_centre(i), k=1, size(frame))]
+         if (.not. any(has)) cycle
+         do k = 1, size(frame)
+            place(:, k) = to_pixels(canvas, canvas%drawing%frame(frame(k))%centre(:, i))
+         end do
+         call open_group(canvas%output, 'class="pole" transform="translate(' &
+            //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', pole_name(canvas%mechanism, canvas%drawing%poles(i)))
+         call draw_moving(canvas, shift_element, place, .false.)
+         if (.not. all(has)) call draw_moving(canvas, 'animate attributeName="opacity"', &
+            reshape(merge(1.0_wp, 0.0_wp, has), [1, size(has)]), .false.)
+         call draw_circle(canvas%output, [0.0_wp, 0.0_wp], 4.0_wp, 'class="centre" style="stroke:' &
+            //link_color(canvas%mechanism, canvas%mechanism%requests(canvas%drawing%poles(i))%subject)//'"')
+         call close_group(canvas%output, 'g')
+      end do
+   end subroutine draw_centres
+
+   !> Writes the names of points and links at their best places in the first frame. Each name keeps its distance from
+   !> its point or link.
+   subroutine draw_names(canvas, list, frame, smooth)
+      type(canvas_t), intent(inout) :: canvas
+      type(element_t), intent(in) :: list(:)   !< (any number) all shapes
+      integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
+      logical, intent(in) :: smooth          !< places between keys are interpolated
+      type(label_t), allocatable :: labels(:)
+      real(wp) :: by(2, size(frame)), offset(2)
+      integer :: i, k, last
+
+      canvas%snapshot = canvas%drawing%frame(1)
+      do i = 1, size(list)
+         call record_shape(canvas, list(i))
+      end do
+      call labels_of(canvas, labels)
+
+      do i = 1, size(labels)
+         associate (link => labels(i)%link)
+            call open_group(canvas%output, 'class="label"', '')
+            if (.not. canvas%mechanism%links(link)%ground) then
+               ! The place of the pixel in the axes of the link.
+               offset = (labels(i)%of - canvas%shift)/canvas%scale*[1.0_wp, -1.0_wp]
+               associate (place => canvas%snapshot%place(:, link))
+                  offset = rotated(offset - place(:2), direction(-place(3)))
+               end associate
+               last = 1
+               do k = 1, size(frame)
+                  if (canvas%drawing%frame(frame(k))%known(link)) last = frame(k)
+                  by(:, k) = to_pixels(canvas, point_of(canvas%drawing%frame(last)%place(:, link), offset)) &
+                     - labels(i)%of
+               end do
+               call draw_moving(canvas, shift_element, by, smooth)
+            end if
+            call draw_label(canvas, labels(i))
+            call close_group(canvas%output, 'g')
+         end associate
+      end do
+   end subroutine draw_names
+
+   !> Writes the time, in red with the reason if the instant is flagged: a column of lines in a window of one line.
+   subroutine draw_clock(canvas, frame)
+      type(canvas_t), intent(in) :: canvas
+      integer, intent(in) :: frame(:)        !< (keys) at equal steps of time
+      real(wp) :: up(2, size(frame))
+      character(:), allocatable :: words
+      integer :: k, y
+
+      y = nint(canvas%high(2)) + 33
+      call draw_window(canvas%output, real([14, y - line_height], wp), real([page_width - 14, y], wp))
+      call open_group(canvas%output, 'class="clock"', '')
+      up(1, :) = 0.0_wp
+      up(2, :) = [(-real(line_height*(k - 1), wp), k=1, size(frame))]
+      call draw_moving(canvas, shift_element, up, .false.)
+      do k = 1, size(frame)
+         associate (s => canvas%drawing%frame(frame(k)))
+            words = caption(canvas, s%t)
+            if (s%mark /= flag_none) &
+               words = words//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
+            call draw_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
+               trim(merge('class="time flag"', 'class="time"     ', s%mark /= flag_none)), words)
+         end associate
+      end do
+      call close_group(canvas%output, 'g')
+      call close_group(canvas%output, 'svg')
+   end subroutine draw_clock
+
+   !> Writes an animated attribute; nothing if it has one value only.
+   subroutine draw_moving(canvas, element, values, smooth)
+      type(canvas_t), intent(in) :: canvas
+      character(*), intent(in) :: element   !< of SVG, with the name of the attribute
+      real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute, in turn: pixels, degrees or opacity
+      logical, intent(in) :: smooth          !< values between keys are interpolated
+
+      if (size(values, 2) < 2) return
+      call draw_columns(canvas%output, element//' calcMode="' &
+         //trim(merge('linear  ', 'discrete', smooth))//'" dur="'&
+         //duration//'" repeatCount="indefinite" values="', values, ' ', ';')
+   end subroutine draw_moving
 end module animation
