@@ -30,6 +30,8 @@ module deck_options
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
+   !> The cards of requests, in the order in which they are read.
+   integer, parameter :: in_turn(*) = [form_print, form_column, form_extremes, form_pole, form_curve]
    !> The words of PRINT: 0 for everything, then the kinds request_link to request_measure.
    character(*), parameter :: print_words(0:request_measure) = &
       [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS', 'MEASURES']
@@ -145,7 +147,7 @@ contains
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
       integer, allocatable :: column_cards(:)       ! (columns) their cards
       integer, allocatable :: part(:)               ! (links) their independent mechanisms, where ratios need them
-      integer :: k, n, i, form
+      integer :: k, n, i, j
 
       associate (sizes => [(size(set%named(k)%card), k=request_link, request_measure)])
          allocate (requests(sum(sizes) + sum(set%number_of([form_pole, form_curve]))))
@@ -168,47 +170,42 @@ contains
          call request_all(request_t(request_measure, every=merge(0, 1, set%number_of(form_vary) > 0)))
       end if
 
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
-         call read_subjects(k, request_t(every=every(k)))
-      end do
-      do k = 1, set%count
-         if (set%cards(k)%form == form_column .and. set%cards(k)%valid) call read_column(k)
-      end do
-      if (size(columns) > 0) set%mechanism%columns = columns
-
-      seen = name_table_t()
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
-         if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0 .and. set%names_certain) &
-            call add_card_error(set, extremes_time, k, card_name)
-         associate (dwell => set%cards(k)%real(1:2))
-            do i = 1, 2
-               if (dwell(i) < 0.0_wp) call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
-            end do
-            call read_subjects(k, request_t(every=0, extremes=.true., &
-               dwell=dwell*[1.0_wp, angle_in_radians(set%mechanism)]))
-         end associate
-      end do
-
-      do form = form_pole, form_curve
+      do i = 1, size(in_turn)
+         seen = name_table_t()
          do k = 1, set%count
-            if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
-            n = n + 1
-            associate (one => requests(n))
-               one = request_t(request_pole, every=every(k))
-               if (form == form_pole) then
-                  call look_up(set, request_link, k, label_a, one%second)
-                  call look_up(set, request_link, k, label_b, one%subject)
-               else
-                  one%kind = request_curve
-                  call look_up(set, request_point, k, label_a, one%subject)
-                  call look_up(set, request_link, k, label_b, one%second)
-               end if
-            end associate
-            set%cards(k)%subject = n
+            if (set%cards(k)%form /= in_turn(i) .or. .not. set%cards(k)%valid) cycle
+            select case (in_turn(i))
+            case (form_print)
+               call read_subjects(k, request_t(every=every(k)))
+            case (form_column)
+               call read_column(k)
+            case (form_extremes)
+               if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0 .and. set%names_certain) &
+                  call add_card_error(set, extremes_time, k, card_name)
+               do j = 1, 2
+                  if (set%cards(k)%real(j) < 0.0_wp) &
+                     call add_card_error(set, number_range, k, real_1 + j - 1, '0.0 AND UP')
+               end do
+               call read_subjects(k, request_t(every=0, extremes=.true., &
+                  dwell=set%cards(k)%real(:2)*[1.0_wp, angle_in_radians(set%mechanism)]))
+
+            case default
+               n = n + 1
+               requests(n) = request_t(merge(request_pole, request_curve, in_turn(i) == form_pole), every=every(k))
+               associate (one => requests(n))
+                  if (one%kind == request_pole) then
+                     call look_up(set, request_link, k, label_a, one%second)
+                     call look_up(set, request_link, k, label_b, one%subject)
+                  else
+                     call look_up(set, request_point, k, label_a, one%subject)
+                     call look_up(set, request_link, k, label_b, one%second)
+                  end if
+               end associate
+               set%cards(k)%subject = n
+            end select
          end do
       end do
+      if (size(columns) > 0) set%mechanism%columns = columns
       set%mechanism%requests = requests(:n)
 
    contains
@@ -268,7 +265,7 @@ contains
                   if (size(links) > 0 .and. all(set%mechanism%links(links)%ground)) &
                      call add_card_error(set, is_ground, k, label_b)
                end if
-               call add_request(one)
+               call add_request(one, place)
             end if
          end associate
       end subroutine read_subjects
@@ -277,7 +274,7 @@ contains
       subroutine request_all(request)
          type(request_t), intent(in) :: request   !< of this kind; its subject does not count
          type(request_t) :: one
-         integer :: i
+         integer :: i, j
 
          one = request
          do i = 1, size(set%named(one%kind)%card)
@@ -291,30 +288,39 @@ contains
             one%sought = .true.
             ! The places of axes that nobody has placed are no question.
             if (one%kind == request_link .and. has_drawing(set)) one%sought(:2, :) = has_axes(i)
-            call add_request(one)
+            call add_request(one, j)
          end do
       end subroutine request_all
 
-      !> Adds a request. If its subject has a request already, that request gets its extremes: of the numbers that it
-      !> seeks, and of the numbers that COLUMN cards name.
-      subroutine add_request(request)
+      !> Adds a request. If its row has a request already, that request gets its extremes: of the numbers that it seeks,
+      !> and of the numbers that COLUMN cards name.
+      subroutine add_request(request, i)
          type(request_t), intent(in) :: request
+         integer, intent(out) :: i           !< the number of the request of that row
 
-         associate (i => number(request%subject, request%kind))
-            if (i == 0) then
-               n = n + 1
-               i = n
-               requests(i) = request
-               requests(i)%extremes = .false.
-            end if
-            if (.not. request%extremes) return
-            if (.not. requests(i)%extremes) then
-               requests(i)%dwell = request%dwell
-               requests(i)%sought = numbers_in_columns(i, 3)
-            end if
-            requests(i)%extremes = .true.
-            requests(i)%sought = requests(i)%sought .or. request%sought
-         end associate
+         if (request%drive == 0) then
+            i = number(request%subject, request%kind)
+         else
+            i = findloc(requests(:n)%drive == request%drive .and. requests(:n)%kind == request%kind .and. &
+               requests(:n)%subject == request%subject, .true., dim=1)
+         end if
+         if (i == 0) then
+            ! All other requests keep their room.
+            if (request%drive > 0) requests = [requests, request]
+            n = n + 1
+            i = n
+            requests(i) = request
+            requests(i)%extremes = .false.
+            if (request%drive == 0) number(request%subject, request%kind) = i
+         end if
+         if (.not. request%extremes) return
+
+         if (.not. requests(i)%extremes) then
+            requests(i)%dwell = request%dwell
+            requests(i)%sought = numbers_in_columns(i, 3)
+         end if
+         requests(i)%extremes = .true.
+         requests(i)%sought = requests(i)%sought .or. request%sought
       end subroutine add_request
 
       !> Tells whether the card of a link gives the place of its axes.
@@ -341,8 +347,7 @@ contains
          request = request_t(place, every=0)
          call look_up(set, place, k, label_b, request%subject)
          if (request%subject == 0) return
-         call add_request(request)
-         i = number(request%subject, place)
+         call add_request(request, i)
          requests(i)%in_columns = .true.
 
          first = size(columns)
@@ -394,7 +399,7 @@ contains
          integer, intent(in) :: subject      !< number of the pair or measure
          integer, allocatable, intent(inout) :: list(:)   !< (any number) gets the numbers of the requests
          type(request_t) :: one
-         integer :: i
+         integer :: i, j
 
          ! The links of the quantity are sure in a deck without errors.
          if (set%errors%count > 0) return
@@ -409,7 +414,8 @@ contains
             end if
             do i = 1, size(drives)
                one%drive = drives(i)
-               call add_ratio(one, list)
+               call add_request(one, j)
+               list = [list, j]
             end do
          end associate
       end subroutine add_ratios
@@ -427,27 +433,6 @@ contains
                [(own > 0 .and. maxval(part(drive_links(m, m%drives(i)))) == own, i=1, size(m%drives))])
          end associate
       end function drives_of
-
-      !> Adds a request for a ratio. If the ratio has a request already, that request gets its extremes.
-      subroutine add_ratio(request, list)
-         type(request_t), intent(in) :: request
-         integer, allocatable, intent(inout) :: list(:)   !< (any number) gets the number of the request
-         integer :: i
-
-         i = findloc(requests(:n)%drive == request%drive .and. requests(:n)%kind == request%kind .and. &
-            requests(:n)%subject == request%subject, .true., dim=1)
-         if (i == 0) then
-            ! All other requests keep their room.
-            requests = [requests, request]
-            n = n + 1
-            i = n
-            requests(i) = request
-         else if (request%extremes) then
-            requests(i)%extremes = .true.
-            requests(i)%sought = .true.
-         end if
-         list = [list, i]
-      end subroutine add_ratio
 
       !> Reads a COLUMN card of ratios: VALUE, or the derivative DERIV, by each drive.
       subroutine read_ratio_columns(k)
