@@ -31,7 +31,7 @@ parts() {
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|185|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
-   units|786|tests/system/units.sh
+   units|340|tests/system/units.sh
    tolerances|49|tests/system/tolerances.sh
    what is as drawn|90|tests/system/as_drawn.sh
    slots|10|tests/system/slots.sh

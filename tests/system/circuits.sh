@@ -65,14 +65,15 @@ done
 # Dyads at their limits together. rows DECK LINES: of each table the range, one for all branches, by the law of cosines for
 # the dyads; branches, circuits, and assemblies, each of which is on a branch of its own.
 rows() {
-   with "$1" "$(card CIRCUITS)" > "$w/deck"
-   equal "dyads at one limit: $1" "$2" "$("$kinmat" "$w/deck" 2>&1 | awk '
+   with "$1" "$(card CIRCUITS)" "$(card ASSEMBLY)" > "$w/$1.deck"
+   "$kinmat" "$w/$1.deck" > "$w/$1.lst" 2>&1
+   equal "dyads at one limit: $1" "$2" "$(awk '
       / RANGE OF / { t++ }
       /^ [0-9]+ +[0-9]+ .* [.][.] / {
          rows[t]++; circuits[t] += !seen[t, 1, $1]++; assemblies[t] += !seen[t, 3, $3]++
          if (!seen[t, 0, $4, $6]++) range[t] = range[t] $4 " .. " $6
       }
-      END { for (i = 1; i <= t; i++) print range[i], rows[i], circuits[i], assemblies[i] }')"
+      END { for (i = 1; i <= t; i++) print range[i], rows[i], circuits[i], assemblies[i] }' "$w/$1.lst")"
 }
 arccosine() { awk -v x="$1" 'BEGIN { printf "%.12f", 360/atan2(0, -1)*atan2(sqrt(1 - x^2), x) }'; }
 end=$(limit "$(arccosine 0.4)")
@@ -89,8 +90,8 @@ rows scissor '-2.000000000 .. 2.000000000 16 8 16'
 
 # The assembly in which the run begins has a row in every table of circuits; the decks left out take seconds.
 for deck in $(cd input && ls ./*.deck | sed 's/^..//; s/[.]deck$//' | grep -vE '^(excavator|ten_plates|jansen|andrews)$'); do
-   with "$deck" "$(card CIRCUITS)" "$(card ASSEMBLY)" > "$w/deck"
-   "$kinmat" "$w/deck" 2>&1 | awk -v deck="$deck" '
+   [ -e "$w/$deck.lst" ] || { with "$deck" "$(card CIRCUITS)" "$(card ASSEMBLY)" > "$w/deck"; "$kinmat" "$w/deck" > "$w/$deck.lst" 2>&1; }
+   awk -v deck="$deck" '
       /^ SET OF COMPUTATIONS/ { own = 0; parts = 0 }
       /^ ASSEMBLIES/ { parts++ }
       /^ ASSEMBLY [0-9].* CHOSEN/ { own = $2 }
@@ -98,7 +99,7 @@ for deck in $(cd input && ls ./*.deck | sed 's/^..//; s/[.]deck$//' | grep -vE '
       /^ CIRCUITS AND/ { wait = parts == 1 ? own : 0 }
       /REDUNDANT EQUATIONS/ { wait = 0 }
       wait && /^ [0-9]+ +[0-9]+ +[0-9]/ { n = split(substr($0, 17, 14), number, /[ ,]+/); for (i = 1; i <= n; i++) if (number[i] == own) { wait = 0; print "own" } }
-      /^ (DEAD POINTS|CHANGE POINTS|CONTINUATION)/ && wait { print deck; wait = 0 }'
+      /^ (DEAD POINTS|CHANGE POINTS|CONTINUATION)/ && wait { print deck; wait = 0 }' "$w/$deck.lst"
 done > "$w/own"
 equal 'no table without the own row' '' "$(grep -v '^own$' "$w/own")"
 equal 'tables with the own row' yes "$([ "$(grep -c '^own$' "$w/own")" -ge 60 ] && echo yes)"

@@ -22,8 +22,9 @@ export PATH PYTHONPATH LIBKINMAT PYTHONDONTWRITEBYTECODE
 "${MAKE:-make}" --no-print-directory BUILD="$BUILD" shared > "$w/out" 2>&1
 equal 'the library that the documents use' 0 $?
 w=$(cd "$w" && pwd)
-missing=
-for module in numpy pandas scipy; do python3 -c "import $module" 2> /dev/null || missing="$missing $module"; done
+missing=$(python3 -c 'import importlib.util
+for name in "numpy", "pandas", "scipy":
+   if not importlib.util.find_spec(name): print(end=" " + name)')
 [ -z "$missing" ] || echo "skipped: programs in the documents with what python3 has not:$missing"
 
 # in_order PRINTED FOUND: the lines of PRINTED stand in FOUND, next to one another but for `...`; tells the first that does not
@@ -114,16 +115,19 @@ done
 equal 'CITATION.cff: the version' "$("$kinmat" --version | sed 's/^KINMAT //; s/,.*//')" "$(sed -n 's/^version: "\(.*\)"$/\1/p' CITATION.cff)"
 equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make run' README.md)"
 
-# Every card, option and message that the sources have: has FILE WHAT WORDS.
+# Every card, option and message that the sources have. has FILE WHAT: each line of standard input stands in FILE.
 cat docs/cards.md docs/outputs.md docs/messages.md docs/limits.md docs/glossary.md | tr '\n' ' ' | tr -s ' ' > "$w/reference"
-has() { if grep -qF -- "$3" "$1"; then pass; else miss "${1#"$w"/} lacks $2: $3"; fi; }
+has() {
+   awk -v counts="$counts" 'NR == FNR { text = $0; next } index(text, $0) { print "passed" >> counts; next } 1' RS='\001' "$1" RS='\n' - > "$w/lacking"
+   while IFS= read -r line; do miss "${1#"$w"/} lacks $2: $line"; done < "$w/lacking"
+}
 sources=$(find src -name '*.[fF]90')
 sed -n "s/^ *form_t('[-LlWw]*', .*'\([A-Z]\{2,8\}\).*/\1/p" $sources | sort -u > "$w/cards"
 equal 'cards are found' yes "$([ "$(wc -l < "$w/cards")" -ge 16 ] && echo yes)"
 equal 'docs/cards.md: the ruler' yes "$(grep -qxF -- "$("$kinmat" --ruler | head -n 1)" docs/cards.md && echo yes)"
 # The section of a card: its layout, a deck that has it or a link to one, and what to see also.
+sed 's/^/## /' "$w/cards" | has docs/cards.md 'the section of the card'
 while read -r card; do
-   has docs/cards.md 'the section of the card' "## $card"
    awk -v card="$card" '/^## / { on = $2 == card } on' docs/cards.md > "$w/section"
    equal "docs/cards.md, $card: its layout" 1 "$(grep -cxF -- "\`\`\`layout $card" "$w/section")"
    equal "docs/cards.md, $card: a row for each of its fields" "$("$kinmat" --ruler "$card" | awk -v card="$card" '
@@ -141,28 +145,28 @@ for kind in ANGLE X Y RELANGLE SLIDE; do
       | cut -c 1-16 | sed 's/ *$//' | grep -qxF "DRIVE   $kind" && echo yes)"
 done
 "$kinmat" --help | grep -oE '^ *-(-[a-z]+|o)' | tr -d ' ' > "$w/options"
-while read -r option; do has docs/command.md 'the option' "| \`$option"; done < "$w/options"
+sed 's/^/| `/' "$w/options" | has docs/command.md 'the option'
 sed -n "s/.*code_t(\([0-9]*\), '\([^']*\)'.*/\1 \2/p" $sources > "$w/codes"
 equal 'codes are found' yes "$([ "$(wc -l < "$w/codes")" -ge 55 ] && echo yes)"
-while read -r number sentence; do has docs/messages.md 'the code' "| E$(printf '%03d' "$number") | $sentence"; done < "$w/codes"
+awk '{ number = $1; sub(/^[0-9]+ /, ""); printf "| E%03d | %s\n", number, $0 }' "$w/codes" | has docs/messages.md 'the code'
 equal 'codes of docs/messages.md that no source has' '' "$(grep -oE '^[|] E0[0-9]+' docs/messages.md | tr -d '| E' | sed 's/^0*//' \
    | while read -r number; do grep -q "^$number " "$w/codes" || echo "$number"; done)"
 grep -ohE "'E1[0-9][0-9]  " $sources | tr -d "' " | sort -u > "$w/faults"
 equal 'faults are found' yes "$([ "$(wc -l < "$w/faults")" -ge 4 ] && echo yes)"
-while read -r fault; do has docs/messages.md 'the code' "| $fault |"; done < "$w/faults"
+sed 's/.*/| & |/' "$w/faults" | has docs/messages.md 'the code'
 # The English of each phrase of the listing stands before its Polish.
 sed -n "s/.*= phrase_t('\([^']*\)'.*/\1/p" $sources > "$w/phrases"
 equal 'phrases are found' yes "$([ "$(wc -l < "$w/phrases")" -ge 60 ] && echo yes)"
-while IFS= read -r phrase; do has "$w/reference" 'the phrase' "$phrase"; done < "$w/phrases"
+has "$w/reference" 'the phrase' < "$w/phrases"
 # So do the heads of columns and the words of cells; a head with the name of a link ends with -I or -J.
 grep -oE "(row_column|cell_word)_t[(]'[^']+'" src/mechanism/columns.f90 | cut -d "'" -f 2 | sort -u > "$w/heads"
 equal 'heads of columns are found' yes "$([ "$(wc -l < "$w/heads")" -ge 20 ] && echo yes)"
-while IFS= read -r head; do has "$w/reference" 'the head' "$head"; done < "$w/heads"
+has "$w/reference" 'the head' < "$w/heads"
 # Sentences of failures: the words in quotation marks behind `call fail` and `call reject`, those of two words and more.
 awk '/call (fail|reject)\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i] } !/&$/ { on = 0 }' $sources \
    | sed -e 's/^ *//' -e 's/["( ]*$//' | grep -E '^[-A-Za-z]+ .*[A-Z]' | grep -v '^[*]' | sort -u > "$w/sentences"
 equal 'sentences are found' yes "$([ "$(wc -l < "$w/sentences")" -ge 20 ] && echo yes)"
-while IFS= read -r sentence; do has docs/messages.md 'the sentence' "$sentence"; done < "$w/sentences"
+has docs/messages.md 'the sentence' < "$w/sentences"
 
 # Each how-to has a deck, a command that runs, and a picture.
 for document in docs/howto/*.md; do
@@ -184,31 +188,34 @@ for document in $documents CHANGELOG.md src/README.md; do
 done
 equal 'docs/messages.md: errors without cause or cure' '' "$(grep -E '^[|] E[0-9]+ ' docs/messages.md | grep -E '[|] *[|]')"
 
-# Links: the file exists and, in a Markdown file, the heading. They are relative, so that they live where they are installed.
-headings() { sed -n 's/^##* //p' "$1" | tr 'A-Z' 'a-z' | sed -e 's/[^a-z0-9 _-]//g' -e 's/ /-/g'; }
-links() { grep -oE '(\]\([^)]*\)|src="[^"]*")' "$1" | sed -e 's/^](//' -e 's/)$//' -e 's/^src="//' -e 's/"$//' | sort -u; }
-for document in $documents src/README.md; do
-   links "$document" | while read -r link; do
-      case $link in http*) continue ;; esac
-      file=${link%%#*}
-      target=$document
-      [ -n "$file" ] && target=$(dirname "$document")/$file
-      equal "$document: link $link" yes "$([ -s "$target" ] && echo yes)"
-      case $link in *'#'*) equal "$document: heading of $link" yes "$(headings "$target" | grep -qxF -- "${link#*#}" && echo yes)" ;; esac
-   done
-done
+# Links: the file exists and, in a Markdown file, the heading. They are relative, so that they live where they are installed. Of each
+# link a row: its document, itself, the file, the heading.
+grep -oHE '(\]\([^)]*\)|src="[^"]*")' $documents src/README.md | sed -e 's/:](/ /' -e 's/)$//' -e 's/:src="/ /' -e 's/"$//' | sort -u | awk '
+   $2 ~ /^http/ { next }
+   {
+      file = $2; sub(/#.*/, "", file); heading = index($2, "#") ? substr($2, index($2, "#") + 1) : "-"
+      folder = $1; if (!sub(/[^\/]*$/, "", folder)) folder = ""
+      file = file == "" ? $1 : folder file
+      while (sub(/[^\/.]+\/[.][.]\//, "", file)) continue
+      print $1, $2, file, heading
+   }' > "$w/links"
+equal 'links are found' yes "$([ "$(wc -l < "$w/links")" -ge 300 ] && echo yes)"
+while read -r document link file heading; do
+   if [ -s "$file" ]; then pass; else miss "$document: link $link"; fi
+done < "$w/links"
+awk 'NR == FNR { if ($4 != "-") asked[$3]; next } FILENAME in asked && /^##* / { sub(/^#* /, ""); $0 = tolower($0); gsub(/[^a-z0-9 _-]/, ""); gsub(/ /, "-"); print FILENAME, $0 }' \
+   "$w/links" $documents src/README.md > "$w/headings"
+awk -v counts="$counts" 'NR == FNR { has[$0]; next } $4 != "-" { if (($3 " " $4) in has) print "passed" >> counts; else print $1 ": heading of " $2 }' \
+   "$w/headings" "$w/links" > "$w/lacking"
+while IFS= read -r line; do miss "$line"; done < "$w/lacking"
 
 # Every document is reached from the README by links alone.
-echo README.md > "$w/reached"
-while :; do
-   before=$(wc -l < "$w/reached")
-   while read -r document; do
-      links "$document" | sed -n 's/#.*//; /[.]md$/p' | while read -r file; do realpath --relative-to=. "$(dirname "$document")/$file"; done
-   done < "$w/reached" > "$w/further"
-   sort -u "$w/reached" "$w/further" > "$w/both" && mv "$w/both" "$w/reached"
-   [ "$(wc -l < "$w/reached")" -eq "$before" ] && break
+awk '$3 ~ /[.]md$/ && $2 !~ /^#/ { n++; from[n] = $1; to[n] = $3 }
+   END { reached["README.md"]; do { more = 0; for (i = 1; i <= n; i++) if (from[i] in reached && !(to[i] in reached)) { reached[to[i]]; more = 1 } } while (more)
+      for (file in reached) print file }' "$w/links" > "$w/reached"
+for document in $documents; do
+   if grep -qxF -- "$document" "$w/reached"; then pass; else miss "$document: reached from README.md"; fi
 done
-for document in $documents; do equal "$document: reached from README.md" yes "$(grep -qxF -- "$document" "$w/reached" && echo yes)"; done
 
 # The example of the modules, against the angles of the rocker in the listing that closed forms have printed.
 equal 'make example' "$(awk '/END OF SET/ { exit } /^ ROCKER / && $2 != "" && NF > 8 { x = $4*atan2(0, -1)/180

@@ -20,44 +20,47 @@ function is_due(  k) {
 # The row at hand of a link whose axes are others: its own origin is not at (xi, eta, turn) of the old ones but there.
 function to_old_axes(  key, phi, x, y, s, c, w, reach, e, ew) {
    key = $1 " " $5
-   $8 -= turn[key]; phi = $8*unit
+   there[8] -= turn[key]; phi = there[8]*unit
    x = xi[key]*cos(phi) - eta[key]*sin(phi); y = xi[key]*sin(phi) + eta[key]*cos(phi)
    # A rounding of the angle moves what is so far away.
-   reach = size(x) + size(y); e = $18*unit + 1e-16*(1 + size(phi))
-   $6 -= x; $7 -= y; $16 += reach*e; $17 += reach*e
-   if ($11 == "") return
-   w = $11*unit; ew = $21*unit
-   $9 += w*y; $10 -= w*x
-   $19 += reach*(ew + size(w)*e); $20 += reach*(ew + size(w)*e)
-   if ($14 == "") return
-   $12 += $14*unit*y + w*w*x; $13 += w*w*y - $14*unit*x
-   e = reach*($24*unit + size($14*unit)*e + 2*size(w)*ew + w*w*e)
-   $22 += e; $23 += e
+   reach = size(x) + size(y); e = there[18]*unit + 1e-16*(1 + size(phi))
+   there[6] -= x; there[7] -= y; there[16] += reach*e; there[17] += reach*e
+   if (!has[11]) return
+   w = there[11]*unit; ew = there[21]*unit
+   there[9] += w*y; there[10] -= w*x
+   there[19] += reach*(ew + size(w)*e); there[20] += reach*(ew + size(w)*e)
+   if (!has[14]) return
+   there[12] += there[14]*unit*y + w*w*x; there[13] += w*w*y - there[14]*unit*x
+   e = reach*(there[24]*unit + size(there[14]*unit)*e + 2*size(w)*ew + w*w*e)
+   there[22] += e; there[23] += e
 }
 # The row at hand of an assembly has the errors that are allowed, and the full turns of the deck's.
 function compare_assembly(  c, turns) {
    for (c = 6; c <= 8; c++) {
-      if ($c == "") continue
-      $(c + 10) = a[c + 10] = of_assembly*(size(a[c]) + 1)/(2*factor)
+      if (!has[c]) continue
+      there[c + 10] = a[c + 10] = of_assembly*(size(a[c]) + 1)/(2*factor)
       if (c == 8 || kind == "PAIR" && !(($1 " " $5) in slides)) {
-         turns = (a[c] - $c)*unit/(2*atan2(0, -1))
-         $c += int(turns + (turns < 0 ? -0.5 : 0.5))*2*atan2(0, -1)/unit
+         turns = (a[c] - there[c])*unit/(2*atan2(0, -1))
+         there[c] += int(turns + (turns < 0 ? -0.5 : 0.5))*2*atan2(0, -1)/unit
       }
    }
 }
-# The row at hand as it would be in the deck.
+# The row at hand as it would be in the deck: its columns `there`, and whether it `has` a number in them. (A field of the row that
+# is assigned to, and a number that is compared with a text, are printed each time.)
 function back_to_deck(  c, f) {
    for (c = 6; c <= 14; c++) {
-      if ($c == "") continue
+      has[c] = $c != ""
+      there[c] = $c; there[c + 10] = $(c + 10)
+      if (!has[c] || change !~ /^(units|mirrored|moved)$/) continue
       f = 1
       if (change == "units") f = (kind == "PAIR" && !(($1 " " $5) in slides) || (c - 6) % 3 == 2 ? 1 : 25.4)/60^int((c - 6)/3)
-      $c /= f; $(c + 10) = $(c + 10)/f
+      there[c] /= f; there[c + 10] = there[c + 10]/f
       # A relative angle is turned round, a slide is not.
-      if (change == "mirrored" && (kind == "PAIR" ? !(($1 " " $5) in slides) : (c - 6) % 3 > 0)) $c = -$c
-      if (change == "moved" && kind != "PAIR" && c < 8) $c -= c == 6 ? 3 : -2
+      if (change == "mirrored" && (kind == "PAIR" ? !(($1 " " $5) in slides) : (c - 6) % 3 > 0)) there[c] = -there[c]
+      if (change == "moved" && kind != "PAIR" && c < 8) there[c] -= c == 6 ? 3 : -2
    }
-   if (change == "axes" && kind == "LINK" && $6 != "") to_old_axes()
-   if (change == "axes" && kind == "PAIR" && $6 != "") $6 -= pair_turn[$1 " " $5]
+   if (change == "axes" && kind == "LINK" && has[6]) to_old_axes()
+   if (change == "axes" && kind == "PAIR" && has[6]) there[6] -= pair_turn[$1 " " $5]
 }
 
 FILENAME != file { file = FILENAME; n_files++ }
@@ -95,14 +98,14 @@ n_files == 2 { if (is_due()) row[$1 "," $2 "," $4 "," $5] = $0; if ($15 == "NO-P
    back_to_deck()
    if ($4 ~ / ASSEMBLY /) compare_assembly()
    for (c = 6; c <= 14; c++) {
-      if ($c a[c] == "") continue
+      if (!has[c] && a[c] == "") continue
       # A row may say that numbers have no digit. Those that differ from 0 by few times their error may have one.
-      if (($c == "" || a[c] == "") && !(a[15] $15 ~ /UNKNOWN/ && size($c + a[c]) <= factor*(a[c + 10] + $(c + 10)))) \
-         print "blank: " key " column " c ": " a[c] " " $c
-      if ($c == "" || a[c] == "") continue
+      if ((!has[c] || a[c] == "") && !(a[15] $15 ~ /UNKNOWN/ && size(there[c] + a[c]) <= factor*(a[c + 10] + there[c + 10]))) \
+         print "blank: " key " column " c ": " a[c] " " there[c]
+      if (!has[c] || a[c] == "") continue
       numbers++
-      if (size($c - a[c]) > factor*(a[c + 10] + $(c + 10)) + rounding*(size($c) + (change == "moved" && c < 8 ? 5 : 0))) \
-         print key " column " c ": " a[c] " " $c " " a[c + 10] " " $(c + 10)
+      if (size(there[c] - a[c]) > factor*(a[c + 10] + there[c + 10]) + rounding*(size(there[c]) + (change == "moved" && c < 8 ? 5 : 0))) \
+         print key " column " c ": " a[c] " " there[c] " " a[c + 10] " " there[c + 10]
    }
 }
 END {

@@ -234,12 +234,15 @@ equal 'in millimetres: shares' "$(sed -n 's/^ *\([0-9.]* %\).*/\1/p' "$w/small.l
 # By chance, at two instants behind one beside the estimates, which choose the assembly: the variance of each quantity over
 # the square of its root of squares is 1, within five standard errors of a variance of so many numbers. What is of second
 # order in the tolerances is a thousandth of it at most.
-for deck in tolerances guide_tolerances four_bar five_bar dixon parallelogram_at; do
+for deck in tolerances guide_tolerances four_bar five_bar parallelogram_at dixon; do
    case $deck in
    *_tolerances | tolerances) cat "input/$deck.deck" ;;
    dixon) toleranced 'GROUND DRIVE' < input/dixon.deck ;;
    *) toleranced 'GROUND POINT DRIVE' < "input/$deck.deck" ;;
    esac | at 0.0 2.0 5.0 > "$w/base.deck"
+   # A set of Dixon's nine bars takes as long as ten others: a third of them. Their limit, 0.6, sees a root that is wrong by 1.7; each
+   # sensitivity is compared above.
+   [ $deck = dixon ] && sets=$((sets/3))
    awk -v n="$sets" -f tests/system/perturbed_sets.awk "$w/base.deck" > "$w/sets.deck"
    "$kinmat" --no-listing --quiet --csv "$w/base.csv" "$w/base.deck"
    "$kinmat" --no-listing --quiet --csv "$w/sets.csv" "$w/sets.deck"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # A deck with all its lengths times a power of ten prints the same digits: every deck of input/, from millionths to
-# millions. So do the answers of the cards EXTREMES, RANGE, POLE, CURVE and TOLER, by NEWTON and DENSE, with other units of
+# millions: by these two powers and one between them, by turns; units.sh all: by six. So do the answers of the cards EXTREMES, RANGE, POLE, CURVE and TOLER, by NEWTON and DENSE, with other units of
 # time as well; in radians they are the same numbers.
 . tests/counting.sh
 
@@ -15,21 +15,27 @@ digits() {
       print line }' "$1"
 }
 
+between='-3 -1 2 3'
 for deck in $(grep -L '^VARY' input/*.deck); do
    name=$(basename "$deck" .deck)
    digits "expected/$name.lst" > "$w/wanted"
    equal "$name: rows are compared" yes "$([ "$(wc -l < "$w/wanted")" -gt 10 ] && echo yes)"
-   powers='-6 -3 -1 2 3 6'
    # Their largest numbers take all the room of a column; in tenths and hundreds there is none for as many decimals.
-   case $name in far_small|dead_point_*) powers='-6 -3 3 6' ;; esac
+   case $name in far_small|dead_point_*) some='-3 3'; turn=$some ;; *) some=$between; turn=${between%% *}; between="${between#* } $turn" ;; esac
+   powers="-6 6 $([ "$1" = all ] && echo "$some" || echo "$turn")"
+   # One deck, one run: its sets times each of these powers.
    for k in $powers; do
-      awk -v long=$k -f tests/system/other_units.awk "$deck" > "$w/deck"
-      "$BUILD/kinmat" "$w/deck" > "$w/lst" 2> "$w/err"
-      status=$?
-      equal "$name times 10**$k: status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
-      digits "$w/lst" > "$w/out"
-      same "$name times 10**$k: the same digits" "$w/wanted" "$w/out"
-   done
+      awk -v long=$k -f tests/system/other_units.awk "$deck"
+      cat "$w/wanted" >&3
+   done > "$w/deck" 3> "$w/all_wanted"
+   "$BUILD/kinmat" "$w/deck" > "$w/lst" 2> "$w/err"
+   status=$?
+   flagged=$(grep -cE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst")
+   equal "$name times 10**($powers): status" "$([ "$flagged" -gt 0 ] && echo 2 || echo 0)" $status
+   equal "$name times 10**($powers): sets with flagged instants" $((flagged*$(echo $powers | wc -w))) \
+      "$(grep -cE ' (FLAGGED|ZAZNACZONE) [1-9]' "$w/lst")"
+   digits "$w/lst" > "$w/out"
+   same "$name times 10**($powers): the same digits" "$w/all_wanted" "$w/out"
 done
 
 # A crank at 150 degrees, of 1E-4 to 1E7: the same digits of x, and a power of ten only where they have no room without one.
