@@ -65,27 +65,27 @@ two_dyads() {
    point R31 "R3$mark"; point R32 "R3$mark" 3.0; joint A2 C31 P3; joint C32 R32 P4; joint R31 G3 P5
 }
 
-# of_instant K LISTING: which sentences on singular positions stand under instant K
+# of_instant K LISTING [SETS]: which sentences on singular positions stand under instant K; SETS: a line for each set before them
 of_instant() {
-   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 }
-      /^ [*][*][*] (JACOBIAN|CHANGE POINT[,:]|DEAD|JAKOBIAN|PUNKT [A-Z]*[,:])/ && at == k { print substr($0, 6) }' "$2"
+   awk -v k="$1" -v sets="$3" '/^ (INSTANT|CHWILA) / { at = $2 }
+      /^ SET OF COMPUTATIONS/ && sets { print "SET" } /^ [*][*][*] (JACOBIAN|CHANGE POINT[,:]|DEAD|JAKOBIAN|PUNKT [A-Z]*[,:])/ && at == k { print substr($0, 6) }' "$2"
 }
 
 change=': VELOCITIES NOT UNIQUE'
 dead=': NO FINITE VELOCITIES'
 unclear=': NO UNIQUE VELOCITIES'
 
-# says K WORDS NAME...: by these METHODS, in m, mm and km
+# says K WORDS NAME...: by these METHODS, in m, mm and km, a set each of one run
 says() {
    k=$1; words=$2; shift 2
+   deck NEWTON +00 EN "$@" > "$w/one.deck"
    for method in $METHODS; do
-      for unit in 0 -3 3; do
-         deck "$method" $unit EN "$@" > "$w/deck"
-         "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-         equal "$*, METHOD $method, 1E$unit m: standard error" '' "$(cat "$w/err")"
-         equal "$*, METHOD $method, 1E$unit m" "$words" "$(of_instant "$k" "$w/out")"
-      done
-   done
+      for unit in +00 -03 +03; do sed "s/E+00/E$unit/g; s/^\(METHOD  \).*/\1$method/" "$w/one.deck"; done
+   done > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+   equal "$*: standard error" '' "$(cat "$w/err")"
+   equal "$*, METHOD $METHODS, each in m, mm and km" "$(for method in $METHODS; do for unit in m mm km; do echo "SET"; echo "$words"; done; done)" \
+      "$(of_instant "$k" "$w/out" 1)"
 }
 
 METHODS='NEWTON DENSE MATRIX'
@@ -115,7 +115,7 @@ says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ COLLINEAR$unclear
 CHANGE POINT, LINKS CO++, RO++ COLLINEAR$change
 CHANGE POINT, LINKS CO+++, RO+++ COLLINEAR$change
 DEAD POINT, LINKS CR++++, RD++++ COLLINEAR$dead" rocker_turns_out parallelogram parallelogram far_end
-deck NEWTON 0 PL rocker_turns_out parallelogram far_end > "$w/deck"
+deck NEWTON +00 PL rocker_turns_out parallelogram far_end > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
 equal 'in Polish' 'JAKOBIAN OSOBLIWY, OGNIWA CR+, CO+ WSPOLLINIOWE: BRAK JEDNOZNACZNYCH PREDKOSCI
 PUNKT ZMIANY, OGNIWA CO++, RO++ WSPOLLINIOWE: PREDKOSCI NIEJEDNOZNACZNE
@@ -132,7 +132,7 @@ parallelogram_begun() { four_bar 2.0 4.0 2.0 4.0 10.0 0.0 10.0; angle CR 10.0 10
 rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
 # angles K WORDS NAME: the angles of its three links at instant K, in degrees
 angles() {
-   deck NEWTON 0 EN "$3" > "$w/deck"
+   deck NEWTON +00 EN "$3" > "$w/deck"
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
    equal "$3: angles" "$2" \
       "$(awk -v k="$1" '/^ INSTANT/ { at = $2 } /^ CONTINUATION/ { exit } at "" == k && NF == 10 && $4 ~ /[0-9]/ { printf "%s ", $4 }' "$w/out")"
@@ -147,7 +147,7 @@ angles 0 '36.869898 36.869898 36450.00000 ' rocker_after_turns
 # driven K WORDS NAME LINK
 driven() {
    for method in NEWTON DENSE; do
-      deck "$method" 0 EN "$3" > "$w/deck"
+      deck "$method" +00 EN "$3" > "$w/deck"
       equal "$3, METHOD $method: rate and acceleration of $4" "$2" "$("$kinmat" "$w/deck" 2> "$w/err" |
          awk -v k="$1" -v link="$4+" '/^ INSTANT/ { at = $2 } at "" == k && $1 == link { printf "%.9g %.9g", $7, $10; exit }')"
    done
