@@ -41,7 +41,7 @@ parts() {
    extremes|42|tests/system/answers.sh
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
-   circuits of twins|40|"$BUILD/release/twins_by_chance" 40
+   circuits of twins|20|"$BUILD/release/twins_by_chance" 20 24
    cylinders by chance|40|tests/oracle/cylinders.sh 40
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
@@ -52,7 +52,7 @@ parts() {
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250
    relations between runs|260|tests/system/relations.sh --short
    assemblies and runs|450|tests/system/assembly_relations.sh
-   mechanisms of a known motion|68|tests/fuzz/fuzz_mechanisms.sh 60
+   mechanisms of a known motion|52|tests/fuzz/fuzz_mechanisms.sh 40 21
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short
    the tool of mutants|8|tests/mutants/self_test.sh
