@@ -4,11 +4,13 @@
 . tests/counting.sh
 
 # link, point, joint, drive: cards of one mechanism, whose names end in
-# $mark and whose lengths are in units of 10**$unit
-long() { case $1 in '' | 0.0) echo 0.0 ;; *) printf '%.8fE%d\n' "$1" "$unit" ;; esac; }
-ground() { card GROUND "$1$mark" '' '' "$(long "$2")" "$(long "$3")" 0.0; }
-link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }
-point() { card POINT "$1$mark" "$2$mark" '' "$(long "$3")" "$(long "$4")"; }
+# $mark and whose lengths are in units of 10**$unit, of two digits
+long() { case $1 in '' | 0.0) length=0.0 ;; *) length=${1}E$unit ;; esac; }
+# long_card NAME A B X Y Z: X and Y are lengths
+long_card() { long "$4"; x=$length; long "$5"; card "$1" "$2" "$3" '' "$x" "$length" "$6"; }
+ground() { long_card GROUND "$1$mark" '' "$2" "$3" 0.0; }
+link() { long_card LINK "$1$mark" '' "$2" "$3" "$4"; }
+point() { long_card POINT "$1$mark" "$2$mark" "$3" "$4"; }
 joint() { card REVOLUTE "$1$mark" "$2$mark" "$3$mark"; }
 angle() { card DRIVE ANGLE "$1$mark" '' "$2" "$3" "${4:-0.0}"; }
 
@@ -47,7 +49,7 @@ slider() {
    point O G; point H G 0.0 0.2; point O1 CR; point A1 CR 1.0; point A2 RO; point B2 RO 3.0; point B PI
    joint O O1 PO; joint A1 A2 PA; joint B2 B PB
    card PRISM "H$mark" "B$mark" "GU$mark" 0.0 0.0 0.0
-   card DRIVE SLIDE "GU$mark" '' "$(long 3.5)" "$(long -0.4)" 0.0
+   card DRIVE SLIDE "GU$mark" '' "3.5E$unit" "-0.4E$unit" 0.0
 }
 dead_point() { chain 1.0 3.5 3.0 4.0 0.25 0.9 1.9; angle RO 1.9 -0.1; }
 
@@ -69,10 +71,10 @@ run() { "$kinmat" "$1.deck" -o "$1.lst" --csv "$1.csv" --errors 2> "$1.err"; }
 
 # beside NAME POWER: NAME alone and a copy of 10**POWER times its size alone, and the two in one deck
 beside() {
-   echo "$1 + 0" | deck > "$w/alone.deck"; run "$w/alone"
+   echo "$1 + +00" | deck > "$w/alone.deck"; run "$w/alone"
    echo "$1 - $2" | deck > "$w/copy.deck"; run "$w/copy"
-   printf '%s\n' "$1 + 0" "$1 - $2" | deck > "$w/before.deck"; run "$w/before"
-   printf '%s\n' "$1 - $2" "$1 + 0" | deck > "$w/after.deck"; run "$w/after"
+   printf '%s\n' "$1 + +00" "$1 - $2" | deck > "$w/before.deck"; run "$w/before"
+   printf '%s\n' "$1 - $2" "$1 + +00" | deck > "$w/after.deck"; run "$w/after"
    rows "$w/alone.csv" + > "$w/alone.rows"; rows "$w/copy.csv" - > "$w/copy.rows"
    for order in before after; do
       rows "$w/$order.csv" + > "$w/a.rows"; rows "$w/$order.csv" - > "$w/b.rows"
@@ -83,14 +85,14 @@ beside() {
 }
 
 method=NEWTON
-for k in -12 -6 6 12; do beside four_bar $k; done
-for kind in limit change redundant; do beside $kind -12; beside $kind 6; done
-for kind in branch at_start contradiction slider dead_point; do beside $kind -6; done
-for method in DENSE MATRIX; do beside four_bar -12; beside limit 6; done
+for k in -12 -06 +06 +12; do beside four_bar $k; done
+for kind in limit change redundant; do beside $kind -12; beside $kind +06; done
+for kind in branch at_start contradiction slider dead_point; do beside $kind -06; done
+for method in DENSE MATRIX; do beside four_bar -12; beside limit +06; done
 method=NEWTON
 
 # The listing: each has its own power of ten, so that the small one has its seven digits too.
-printf '%s\n' 'four_bar + 0' 'four_bar - -12' | deck > "$w/two.deck"; run "$w/two"
+printf '%s\n' 'four_bar + +00' 'four_bar - -12' | deck > "$w/two.deck"; run "$w/two"
 equal 'the large one of two' ' RO+         4.000000' "$(grep -m 1 '^ RO+ ' "$w/two.lst" | cut -c 1-21)"
 equal 'the small one of two' ' RO-         4.000000' "$(grep -m 1 '^ RO- ' "$w/two.lst" | cut -c 1-21)"
 equal 'its power of ten' '               1.E-12      1.E-12                  1.E-12      1.E-12                  1.E-12      1.E-12' \
@@ -98,7 +100,7 @@ equal 'its power of ten' '               1.E-12      1.E-12                  1.E
 equal 'lines over 120 columns' '' "$(awk 'length > 120' "$w/two.lst")"
 
 # One that is at its limit, or that contradicts itself, flags the instant, and not the rows of the other.
-printf '%s\n' 'four_bar + 0' 'contradiction - -10' | deck > "$w/gap.deck"; run "$w/gap"
+printf '%s\n' 'four_bar + +00' 'contradiction - -10' | deck > "$w/gap.deck"; run "$w/gap"
 equal 'a contradiction in a small mechanism: status' 2 "$("$kinmat" "$w/gap.deck" -o "$w/gap.lst"; echo $?)"
 equal 'a contradiction in a small mechanism: marks' '11 OPEN' \
    "$(rows "$w/gap.csv" - | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
@@ -109,8 +111,8 @@ equal 'a contradiction in a small mechanism: the other' '11 ' \
 # on_a_large_link LENGTH: three cranks on the coupler of a four-bar linkage
 on_a_large_link() {
    card TITLE 'SMALL ON LARGE'
-   mark=; unit=3; four_bar
-   mark==; unit=-3
+   mark=; unit=+03; four_bar
+   mark==; unit=-03
    link CR 0.0 0.0 0.9; link R2 0.0 0.0 0.9; link R3 0.0 0.0 0.9; link CO 0.0 0.0 0.4
    card POINT A0= CO; card POINT B0= CO '' 0.004 0.0; card POINT C0= CO '' 0.002 0.001
    point A1 CR; point A2 CR 1.5; point B1 R2; point B2 R2 1.5; point C1 R3; point C2 R3 "$1"
@@ -128,9 +130,9 @@ equal 'small cranks on a large link, one too long' ' *** REDUNDANT EQUATIONS ARE
    "$(grep -m 1 'INCONSISTENT' "$w/open.lst")"
 
 # A point in no pair changes no digit of the links.
-{ card TITLE 'FAR POINT'; mark=+; unit=0; four_bar; card TIME 10 '' '' 0.0 2.0; } > "$w/set"
+{ card TITLE 'FAR POINT'; mark=+; unit=+00; four_bar; card TIME 10 '' '' 0.0 2.0; } > "$w/set"
 { cat "$w/set"; card PRINT LINKS; card PRINT POINTS P+; card END; } > "$w/near.deck"; "$kinmat" "$w/near.deck" --csv "$w/near.csv" > "$w/out"
-{ sed 's/^\(POINT   P+ .*\)1.70000000E0 /\14.70000000E2 /' "$w/set"; card PRINT LINKS; card PRINT POINTS P+; card END; } > "$w/far.deck"
+{ sed 's/^\(POINT   P+ .*\)1.7E+00 /\14.7E+02 /' "$w/set"; card PRINT LINKS; card PRINT POINTS P+; card END; } > "$w/far.deck"
 "$kinmat" "$w/far.deck" --csv "$w/far.csv" > "$w/out"
 grep LINK "$w/near.csv" > "$w/near.rows"; grep LINK "$w/far.csv" > "$w/far.rows"
 same 'a point far away, in no pair' "$w/near.rows" "$w/far.rows"
