@@ -1,7 +1,7 @@
 !> Angles, in degrees and without whole turns, and vectors of the plane, as x and y: rotation, quarter turn, cross
 !> product, a point that rotates with a link.
 module plane_vectors
-   use kinds, only: wp
+   use kinds, only: wp, exact_power
    use number_types, only: vector_t
    implicit none
    private
@@ -13,8 +13,6 @@ module plane_vectors
    real(wp), parameter :: full_turn = 2.0_wp*pi
    !> One degree in radians.
    real(wp), parameter :: degree = pi/180.0_wp
-   !> The largest power of 10 without a rounding error: its power of 5 fits in the digits of `wp`.
-   integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
 
 contains
 

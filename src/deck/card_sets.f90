@@ -99,13 +99,18 @@ contains
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
       real(wp) :: unit
+      integer :: defined(form_unknown:form_end)   ! so many members of the kind has a card of the form
       integer :: kind, n, k, i, slots
 
       unit = angle_in_radians(set%mechanism)
       do kind = request_link, request_measure
          ! In the order of the deck; twice those of a form that is there twice.
-         set%named(kind)%card = [((k, i=1, count(definers%kind == kind .and. definers%form == set%cards(k)%form)), &
-            k=1, set%count)]
+         defined = 0
+         do i = 1, size(definers)
+            if (definers(i)%kind == kind) defined(definers(i)%form) = defined(definers(i)%form) + 1
+         end do
+         set%named(kind)%card = pack([(k, k, k=1, set%count)], &
+            [(defined(set%cards(k)%form) > 0, defined(set%cards(k)%form) > 1, k=1, set%count)])
       end do
       associate (blocks => set%number_of(form_slot))
          allocate (set%mechanism%links(size(set%named(request_link)%card) + blocks))

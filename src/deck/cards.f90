@@ -194,7 +194,14 @@ contains
    !> Finds the form of the cards of a name; form_unknown if no card has the name.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name       !< in capitals or small letters
+      character(label_length) :: word
 
-      form = findloc(card_forms%layout(:label_length), capitals(name), dim=1)
+      if (len_trim(name) <= label_length) then
+         word = capitals(name)
+         do form = 1, size(card_forms)
+            if (card_forms(form)%layout(:label_length) == word) return
+         end do
+      end if
+      form = form_unknown
    end function find_form
 end module cards

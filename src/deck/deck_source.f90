@@ -75,7 +75,8 @@ contains
    subroutine pass_byte_order_mark(source)
       type(source_t), intent(inout) :: source
 
-      if (index(source%buffer, byte_order_mark) == 1) source%at = len(byte_order_mark) + 1
+      if (index(source%buffer(:min(len(byte_order_mark), len(source%buffer))), byte_order_mark) == 1) &
+         source%at = len(byte_order_mark) + 1
    end subroutine pass_byte_order_mark
 
    !> Reads the next card, a line that ends in LF or CR-LF. Errors: status_system; status_rejected for a line of more
@@ -91,9 +92,10 @@ contains
 
       found = .false.
       do
-         length = index(source%buffer(source%at:), line_feed) - 1
-         is_whole = length >= 0
-         if (.not. is_whole) length = len(source%buffer) - source%at + 1
+         do length = 0, len(source%buffer) - source%at
+            if (source%buffer(source%at + length:source%at + length) == line_feed) exit
+         end do
+         is_whole = source%at + length <= len(source%buffer)
          if (length > max_columns) then
             call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines + 1) &
                //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')

@@ -8,7 +8,7 @@
 !> nearest to 0.1, so that programs in real64 and real128 read the same number.
 module numbers
    use, intrinsic :: iso_fortran_env, only: dp => real64
-   use kinds, only: wp
+   use kinds, only: wp, exact_power
    use input_errors
    implicit none
    private
@@ -26,16 +26,20 @@ contains
       type(error_code_t), intent(out) :: error   !< number_...; its number is 0 if there is none
       integer, intent(out) :: place          !< of the first wrong character; without a point or out of range 1
       integer :: first, n, power, point, letter, exponent
+      real(wp) :: whole
       real(dp) :: double
+      logical :: is_double
 
-      ! Digits with a point: `n` of them from the first that is not 0 on, times 10**power.
+      ! Digits with a point: `n` of them from the first that is not 0 on, the number `whole`, times 10**power.
       value = 0.0_wp
+      whole = 0.0_wp
       first = merge(2, 1, scan(text(1:1), '+-') == 1)
       n = 0
       point = 0
       do place = first, len(text)
          if (text(place:place) >= '0' .and. text(place:place) <= '9') then
             if (n > 0 .or. text(place:place) > '0') n = n + 1
+            if (n <= precision(whole)) whole = 10.0_wp*whole + (iachar(text(place:place)) - iachar('0'))
          else if (text(place:place) == '.' .and. point == 0) then
             point = place
          else
@@ -74,7 +78,13 @@ contains
       if (n - 1 + power > range(value)) error = number_overflow
       if (n - 1 + power < -range(value)) error = number_underflow
       if (error%number > 0) return
-      if (scan(text(letter:), 'Dd') == 1 .and. abs(n + power) < range(double)) then
+      is_double = scan(text(letter:), 'Dd') == 1 .and. abs(n + power) < range(double)
+      if (n <= precision(whole) .and. abs(power) <= exact_power .and. .not. is_double) then
+         ! Both are exact, and there is one rounding: this takes a tenth of the time of a READ statement.
+         if (power < 0) value = whole/10.0_wp**(-power)
+         if (power >= 0) value = whole*10.0_wp**power
+         if (text(1:1) == '-') value = -value
+      else if (is_double) then
          read (text, '(f80.0)') double
          value = real(double, wp)
       else

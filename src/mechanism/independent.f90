@@ -65,7 +65,10 @@ contains
 
       link_part = part_of_links(m)
       set%count = maxval([1, link_part])
-      if (set%count == 1) link_part = 1
+      if (set%count == 1) then
+         call take_whole(m, set)
+         return
+      end if
       pair_part = [(part_of(link_part, pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
       drive_part = [(part_of(link_part, drive_links(m, m%drives(i))), i=1, size(m%drives))]
       row_part = [(part_of(link_part, request_links(m, m%requests(i))), i=1, size(m%requests))]
@@ -144,6 +147,32 @@ contains
          end do
       end subroutine add_lengths
    end subroutine divide
+
+   !> Makes a set of one part, which is the set itself.
+   subroutine take_whole(m, set)
+      type(mechanism_t), intent(in) :: m
+      type(set_t), intent(inout) :: set      !< its settings are there
+      integer :: i
+
+      set%rows = [(member_t(1, i), i=1, size(m%requests))]
+      set%drives = [(member_t(1, i), i=1, size(m%drives))]
+      allocate (set%parts(1), set%cards(1))
+      set%cards(1)%of = [(i, i=1, size(m%links))]
+      set%parts(1) = m
+      if (allocated(m%branch_requests)) set%parts(1)%branch_requests%card = [(i, i=1, size(m%branch_requests))]
+      call take_lengths(set%parts(1))
+   end subroutine take_whole
+
+   !> Finds the sizes of a part that its rows ask for: its length for measures; length and rate for poles and curves.
+   subroutine take_lengths(own)
+      type(mechanism_t), intent(inout) :: own
+
+      if (allocated(own%measures)) own%measures%length = characteristic_length(own)
+      if (any(kinds_of_rows(own%requests%kind)%is_centre)) then
+         own%requests%length = characteristic_length(own)
+         own%requests%rate = characteristic_rate(own, own%requests(1)%length)
+      end if
+   end subroutine take_lengths
 
    !> Finds each measure, with the measures of which it is made, and all their subjects. They belong to the part of the
    !> links of the measure; subjects of the ground belong to several parts.
@@ -273,11 +302,7 @@ contains
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end if
 
-      if (allocated(own%measures)) own%measures%length = characteristic_length(own)
-      if (any(kinds_of_rows(own%requests%kind)%is_centre)) then
-         own%requests%length = characteristic_length(own)
-         own%requests%rate = characteristic_rate(own, own%requests(1)%length)
-      end if
+      call take_lengths(own)
       do kind = 1, size(part)
          place(kind)%of(part(kind)%of) = 0
       end do

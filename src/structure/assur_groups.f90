@@ -105,8 +105,10 @@ contains
          integer :: k
 
          if (moving(link) == 0) return
-         c%incidence%unknown(n + 1:n + count(in)) = pack([(3*moving(link) - 3 + k, k=1, 3)], in)
-         n = n + count(in)
+         do k = 1, 3
+            if (in(k)) n = n + 1
+            if (in(k)) c%incidence%unknown(n) = 3*moving(link) - 3 + k
+         end do
       end subroutine note
 
       !> Notes the coordinates in the component of a point along a fixed direction.

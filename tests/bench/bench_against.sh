@@ -47,12 +47,13 @@ variants() {
       /^POINT   R1/ { printf "VARY    R1      %-8d                3.0             3.5\n", count }'
 }
 
-# scene NAME N: a deck of so many steps; of sweeps, so many variants.
+# scene NAME N: a deck of so many steps; of sweeps, so many variants; of sets, so many copies of a deck.
 scene() {
    case $1 in
    s1|s2) with_steps "$2" "$2" "tests/bench/$1.deck";;
    listing) with_steps "$2" 1 tests/bench/s1.deck;;
    windows) tests/make_deck windows 1000 > "$w/windows"; with_steps "$2" "$2" "$w/windows";;
+   sets) awk -v count="$2" '{ text = text $0 "\n" } END { for (i = 0; i < count; i++) printf "%s", text }' input/andrews.deck;;
    sweep_3600) variants "$2" 3600 'EXTREMESPAIRS   J4';;
    sweep_360) variants "$2" 360;;
    *) with_steps "$2" "$2" "input/$1.deck";;
@@ -90,6 +91,7 @@ andrews     100000   1000
 jansen      100000   1000
 windows     510      10
 listing     20000    300
+sets        1000     20
 sweep_3600  320      32
 sweep_360   1000     64
 END
