@@ -253,21 +253,19 @@ contains
       if (set%cards(k)%form /= form_link .or. .not. set%cards(k)%valid) return
       ends = 0
       do label = label_b, label_c
-         if (set%cards(k)%label(label) == '') then
-            cycle
-         else if (.not. has_drawing(set)) then
+         if (set%cards(k)%label(label) == '') cycle
+         if (.not. has_drawing(set)) then
             if (set%names_certain) call add_card_error(set, bar_drawing, k, label)
             return
-         else
-            call look_up(set, request_point, k, label, one)
-            if (one == 0) cycle
-            associate (list => joint_points(set, one), end_of => ends(label - label_a), m => set%mechanism)
-               do i = 1, size(list)
-                  if (m%points(list(i))%link == n .and. m%points(list(i))%drawn) end_of = list(i)
-               end do
-               if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
-            end associate
          end if
+         call look_up(set, request_point, k, label, one)
+         if (one == 0) cycle
+         associate (list => joint_points(set, one), end_of => ends(label - label_a), m => set%mechanism)
+            do i = 1, size(list)
+               if (m%points(list(i))%link == n .and. m%points(list(i))%drawn) end_of = list(i)
+            end do
+            if (end_of == 0 .and. all(m%points(list)%link > 0)) call add_card_error(set, bar_joint, k, label)
+         end associate
       end do
       ! A long name goes on in the field of FROM: it has an error of its own.
       label = findloc(set%cards(k)%label(label_b:), '        ', dim=1)

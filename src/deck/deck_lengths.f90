@@ -25,16 +25,14 @@ contains
       type(card_set_t), intent(inout) :: set
       type(length_t) :: lengths(set%number_of(form_length))
       type(reach_t) :: reached(set%number_of(form_length))
-      integer, dimension(set%number_of(form_length)) :: card_of, order
+      integer, allocatable :: card_of(:), order(:)     ! the card of each length; the lengths in their order
       integer :: k, n, i, j
 
       if (set%number_of(form_length) == 0) return
-      n = 0
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_length .or. .not. set%cards(k)%valid) cycle
-         n = n + 1
-         card_of(n) = k
-         call read_length(set, k, lengths(n))
+      card_of = pack([(k, k=1, set%count)], set%cards(:set%count)%form == form_length .and. set%cards(:set%count)%valid)
+      n = size(card_of)
+      do i = 1, n
+         call read_length(set, card_of(i), lengths(i))
       end do
       if (set%errors%count > 0) return
 
@@ -47,14 +45,10 @@ contains
             end do
          end do
 
-         k = 0
+         order = [integer ::]
          do i = 1, n
-            if (any(lengths(:i - 1)%hole(2) == lengths(i)%hole(2))) cycle
-            do j = i, n
-               if (lengths(j)%hole(2) /= lengths(i)%hole(2)) cycle
-               k = k + 1
-               order(k) = j
-            end do
+            if (all(lengths(:i - 1)%hole(2) /= lengths(i)%hole(2))) &
+               order = [order, pack([(j, j=i, n)], lengths(i:n)%hole(2) == lengths(i)%hole(2))]
          end do
          m%lengths = lengths(order)
          card_of = card_of(order)

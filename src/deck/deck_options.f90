@@ -317,7 +317,7 @@ contains
 
          if (.not. requests(i)%extremes) then
             requests(i)%dwell = request%dwell
-            requests(i)%sought = numbers_in_columns(i, 3)
+            requests(i)%sought = numbers_in_columns(i)
          end if
          requests(i)%extremes = .true.
          requests(i)%sought = requests(i)%sought .or. request%sought
@@ -466,17 +466,15 @@ contains
          column_cards = [column_cards, k]
       end subroutine add_column
 
-      !> Tells of each number (coordinates, 0:2) of a request whether a COLUMN card names it.
-      pure function numbers_in_columns(i, coordinates) result(named)
+      !> Tells of each number (3, 0:2) of a request whether a COLUMN card names it.
+      pure function numbers_in_columns(i) result(named)
          integer, intent(in) :: i            !< the number of the request
-         integer, intent(in) :: coordinates  !< so many coordinates of its row, from the first on
-         logical :: named(coordinates, 0:2)
-         integer :: c, j
+         logical :: named(3, 0:2)
+         integer :: k
 
-         do j = 0, 2
-            do c = 1, coordinates
-               named(c, j) = any(columns%request == i .and. columns%at(1) == c .and. columns%at(2) == j)
-            end do
+         named = .false.
+         do k = 1, size(columns)
+            if (columns(k)%request == i) named(columns(k)%at(1), columns(k)%at(2)) = .true.
          end do
       end function numbers_in_columns
 
@@ -494,7 +492,7 @@ contains
             end if
             requests(i)%extremes = .true.
             requests(i)%dwell = request%dwell
-            requests(i)%sought = numbers_in_columns(i, 3)
+            requests(i)%sought = numbers_in_columns(i)
          end do
       end subroutine seek_columns
    end subroutine build_requests

@@ -30,9 +30,8 @@ module deck_variants
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_slot, form_joint, &
       form_drive, form_add, form_rise, form_time, form_length, form_cylinder]
    integer, parameter :: parameter_kinds(*) = [parameter_link, parameter_link, parameter_point, parameter_pair, &
-      parameter_pair, &
-      parameter_joint, parameter_drive, parameter_drive, parameter_drive, parameter_time, parameter_length, &
-      parameter_stroke]
+      parameter_pair, parameter_joint, parameter_drive, parameter_drive, parameter_drive, parameter_time, &
+      parameter_length, parameter_stroke]
 
    !> A number that varies.
    type :: varied_t
