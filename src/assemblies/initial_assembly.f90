@@ -158,7 +158,7 @@ contains
       logical, intent(in) :: is_complete                !< `s` has an assembly: further ones do not count
       type(candidates_t), intent(out) :: found(:)       !< (blocks) their positions
       real(wp), intent(out), optional :: distance       !< root of `squared_distances`; or `no_distance`
-      type(candidates_t) :: nearest(size(found))        !< with the nearest assembly so far
+      type(candidates_t), allocatable :: nearest(:)     !< with the nearest assembly so far; not allocated: none
       real(wp) :: values(0:b%unknowns)                  !< of the nearest assembly
       real(wp) :: limit                                 !< assemblies at this distance or more do not count
       real(wp) :: spent(0:size(found))                  !< the square of the distance of all blocks up to this one
@@ -166,9 +166,7 @@ contains
       integer :: seen(size(found))                      !< the number of the choice after which its positions were found
       integer, dimension(0:b%unknowns) :: changed       !< the number of the choice
       integer, dimension(0:b%unknowns) :: open          !< 1: not found
-      integer, dimension(0:b%unknowns) :: last          !< as `latest`, for each unknown
       logical :: is_given_up(size(found))               !< no other positions help it
-      logical :: is_found                               !< an assembly is found
       integer, allocatable :: below(:)
       integer :: i, k, solves, choices
 
@@ -177,17 +175,12 @@ contains
       if (is_complete) limit = distance_of(x, s, places, goal)
       if (is_complete) limit = limit + same_assembly_tolerance*max(1.0_wp, limit)
 
-      last = 0
+      latest = iterating_below(b)
       do i = 1, size(found)
-         associate (own => own_unknowns(b, i))
-            latest(i) = largest_known(b, i, last)
-            last(own) = merge(latest(i), i, b%list(i)%explicit)
-            call set_values(b, i, guess%values(own), s)
-            allocate (found(i)%x(size(own), 0), found(i)%distance(0))
-         end associate
+         call set_values(b, i, guess%values(own_unknowns(b, i)), s)
+         allocate (found(i)%x(b%list(i)%shape%n, 0), found(i)%distance(0))
       end do
       is_given_up = .false.
-      is_found = .false.
       open = 0
       changed = 0
       seen = -1
@@ -196,16 +189,14 @@ contains
       solves = 0
       i = 1
 
-      do
+      do while (i > 0)
          if (i > size(found)) then
             ! An assembly, or all that can be assembled.
             nearest = found
             values = s%u%value
-            is_found = .true.
             if (any(found%chosen == 0)) exit
             limit = sqrt(spent(size(found)))
-            i = last_promising([(k, k=1, size(found))])
-            if (i == 0) exit
+            i = last_promising(b, [(k, k=1, size(found))], found, latest, seen, changed, spent, limit)
             found(i + 1:)%chosen = 0
 
          else
@@ -213,7 +204,7 @@ contains
                open(own) = 0
                if (largest_known(b, i, open) == 0) then
                   if (found(i)%chosen == 0) call look_for_positions()
-                  if (last_promising([i]) == i) then
+                  if (last_promising(b, [i], found, latest, seen, changed, spent, limit) == i) then
                      found(i)%chosen = found(i)%chosen + 1
                      call set_values(b, i, found(i)%x(:, found(i)%chosen), s)
                      spent(i) = spent(i - 1) + found(i)%distance(found(i)%chosen)**2
@@ -228,7 +219,8 @@ contains
                   if (size(found(i)%distance) == 0 .or. .not. limit < no_distance) below = blocks_below(b, i)
                   below = below(:size(below) - 1)
                   k = 0
-                  if (solves < max_solves .and. .not. is_given_up(i)) k = last_promising(below)
+                  if (solves < max_solves .and. .not. is_given_up(i)) &
+                     k = last_promising(b, below, found, latest, seen, changed, spent, limit)
                   if (k == 0 .and. limit < no_distance) exit
                   if (k > 0 .or. (.not. is_given_up(i) .and. any(found(below)%chosen > 1))) then
                      is_given_up(i) = k == 0
@@ -247,13 +239,13 @@ contains
          end if
       end do
 
-      if (is_found) found = nearest
-      if (.not. is_found) found%chosen = 1
+      if (.not. allocated(nearest)) found%chosen = 1
+      if (allocated(nearest)) found = nearest
       do i = 1, size(found)
          if (solves >= max_solves .and. size(found(i)%distance) > 1) found(i)%are_all = .false.
          call set_values(b, i, values(own_unknowns(b, i)), s)
       end do
-      if (present(distance)) distance = merge(limit, no_distance, is_found .and. all(found%chosen > 0))
+      if (present(distance)) distance = merge(limit, no_distance, allocated(nearest) .and. all(found%chosen > 0))
 
    contains
 
@@ -267,27 +259,46 @@ contains
          seen(i) = choices
          solves = solves + 1
       end subroutine look_for_positions
-
-      !> Finds the last block of a list that has another position, with which an assembly can be nearer than the limit;
-      !> 0: none has. Later blocks that do not build on this one or a later one are as near as they were, at best.
-      integer function last_promising(list) result(k)
-         integer, intent(in) :: list(:)      !< (any number) numbers of blocks, in increasing order
-         real(wp) :: square
-         integer :: m, j
-
-         do m = size(list), 1, -1
-            k = list(m)
-            if (found(k)%chosen >= size(found(k)%distance)) cycle
-            square = spent(k - 1) + found(k)%distance(found(k)%chosen + 1)**2
-            do j = k + 1, size(found)
-               if (latest(j) >= k .or. largest_known(b, j, changed) > seen(j)) cycle
-               if (size(found(j)%distance) > 0) square = square + min(found(j)%distance(1), found(j)%beyond)**2
-            end do
-            if (is_nearer(sqrt(square), limit)) return
-         end do
-         k = 0
-      end function last_promising
    end subroutine find_nearest
+
+   !> Gives the last block below each block (blocks) that iterates; 0: none does.
+   pure function iterating_below(b) result(latest)
+      type(blocks_t), intent(in) :: b
+      integer :: latest(size(b%list)), last(0:b%unknowns), i   ! last: as `latest`, for each unknown
+
+      last = 0
+      do i = 1, size(latest)
+         latest(i) = largest_known(b, i, last)
+         last(own_unknowns(b, i)) = merge(latest(i), i, b%list(i)%explicit)
+      end do
+   end function iterating_below
+
+   !> Finds the last block of a list that has another position, with which an assembly can be nearer than the limit; 0:
+   !> none has. Later blocks that do not build on this one or a later one are as near as they were, at best.
+   pure integer function last_promising(b, list, found, latest, seen, changed, spent, limit) result(k)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)                    !< (any number) numbers of blocks, in increasing order
+      type(candidates_t), intent(in) :: found(:)        !< (blocks) their positions
+      integer, intent(in) :: latest(:)                  !< (blocks) the last block below that iterates; 0: none
+      integer, intent(in) :: seen(:)                    !< (blocks) the number of the choice after which it was searched
+      integer, intent(in) :: changed(0:)                !< (0:unknowns) the number of the choice
+      real(wp), intent(in) :: spent(0:)                 !< (0:blocks) squares of distances of all blocks up to this one
+      real(wp), intent(in) :: limit                     !< the distance of an assembly
+      real(wp) :: square
+      integer :: i, j
+
+      do i = size(list), 1, -1
+         k = list(i)
+         if (found(k)%chosen >= size(found(k)%distance)) cycle
+         square = spent(k - 1) + found(k)%distance(found(k)%chosen + 1)**2
+         do j = k + 1, size(found)
+            if (latest(j) >= k .or. largest_known(b, j, changed) > seen(j)) cycle
+            if (size(found(j)%distance) > 0) square = square + min(found(j)%distance(1), found(j)%beyond)**2
+         end do
+         if (is_nearer(sqrt(square), limit)) return
+      end do
+      k = 0
+   end function last_promising
 
    !> Finds the positions of a block, for given values of earlier blocks. First comes the position of Newton's method.
    !> If all others are further from the goal than the budget, they are not looked for. If there is no position,
