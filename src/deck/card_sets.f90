@@ -273,8 +273,7 @@ contains
       if (any(ends == 0)) return
       associate (link => set%mechanism%links(n), p => set%mechanism%points(ends(1))%place, &
          q => set%mechanism%points(ends(2))%place)
-         if (norm2(q - p) <= same_place_tolerance*(norm2(p) + norm2(q))) &
-            call add_card_error(set, bar_place, k, label_c)
+         if (norm2(q - p) <= same_place_tolerance*(norm2(p) + norm2(q))) call add_card_error(set, bar_place, k, label_c)
          link%from = ends(1)
          link%to = ends(2)
          link%along = .not. set%cards(k)%given

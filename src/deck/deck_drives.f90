@@ -150,14 +150,13 @@ contains
       integer :: kind
 
       associate (card => set%cards(k), above => set%cards(set%cards(k)%below), row => set%cards(k)%row, &
-         drive => set%mechanism%drives(set%cards(k)%subject), &
-         term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
+         term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term), &
+         unit => unit_of(set%mechanism, set%mechanism%drives(set%cards(k)%subject)))
          if (card%form == form_rise) then
             call match_word(set, k, pack(term_kinds%word, term_kinds%is_rise), kind)
             term%kind = term_cycloid + max(kind, 1) - 1
-            term%r = card%real*[1.0_wp, 1.0_wp, unit_of(set%mechanism, drive)]
-            if (card%valid .and. card%real(2) <= 0.0_wp) &
-               call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
+            term%r = card%real*[1.0_wp, 1.0_wp, unit]
+            if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, number_range, k, real_2, 'ABOVE 0.0')
             if (term_kinds(term%kind)%jumps) call add_card_remark(set, remark_jumps, k, label_a)
             return
          end if
@@ -166,15 +165,14 @@ contains
          if (is_row(card)) then
             term%kind = term_table
             term%table%x(row) = card%real(1)
-            term%table%y(row) = card%real(2)*unit_of(set%mechanism, drive)
+            term%table%y(row) = card%real(2)*unit
             if (row > 1 .and. card%valid .and. any(card%given) .and. above%valid .and. &
                 card%real(1) <= above%real(1)) call add_card_error(set, table_order, k, real_1)
             if (size(term%table%x) == 1) call add_card_error(set, table_short, k, label_a)
          else
             call match_word(set, k, pack(term_kinds%word, .not. term_kinds%is_rise), kind)
-            if (kind == term_harmonic) &
-               term%r = card%real*[unit_of(set%mechanism, drive), spread(angle_in_radians(set%mechanism), 1, 2)]
-            if (kind == term_power) term%r = card%real*[unit_of(set%mechanism, drive), 1.0_wp, 1.0_wp]
+            if (kind == term_harmonic) term%r = card%real*[unit, spread(angle_in_radians(set%mechanism), 1, 2)]
+            if (kind == term_power) term%r = card%real*[unit, 1.0_wp, 1.0_wp]
             if (kind == term_power) term%kind = term_power
          end if
       end associate

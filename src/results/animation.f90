@@ -217,8 +217,7 @@ contains
       do k = 1, size(frame)
          associate (s => canvas%drawing%frame(frame(k)))
             words = caption(canvas, s%t)
-            if (s%mark /= flag_none) &
-               words = words//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
+            if (s%mark /= flag_none) words = words//': '//words_of_flag(s%mark, s%singularity, canvas%mechanism%polish)
             call draw_words(canvas%output, real([14, y + line_height*(k - 1) - 5], wp), 'start', &
                trim(merge('class="time flag"', 'class="time"     ', s%mark /= flag_none)), words)
          end associate
