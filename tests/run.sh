@@ -9,53 +9,53 @@ export BUILD MAKE
 parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
+   make check|2100|tests/system/check.sh
+   relations between runs|260|tests/system/relations.sh --short
    faults by name|561|tests/system/faults.sh
-   make check|2620|tests/system/check.sh
-   real128|124|"$MAKE" --no-print-directory quad-check
-   single precision|130|"$MAKE" --no-print-directory single-check
-   speed against error|70|"$MAKE" --no-print-directory study-short
-   results of the methods|97|"$MAKE" --no-print-directory bench-short
-   cards and options together|1000|tests/system/together.sh
-   the command|480|tests/system/command.sh
-   what is installed|22|tests/system/install.sh
-   the library for C and Python|140|tests/system/library.sh
-   drawings of other programs|50|tests/system/import.sh
-   many sets|7|tests/system/many_sets.sh
-   what is printed arrives|255|tests/system/output.sh
    unit tests|415|"$MAKE" --no-print-directory unit
-   the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
-   the sources|60|tests/system/house.sh
-   the closed forms|1100|"$BUILD/release/check_forms" input/*.deck
-   the reader of listings|93|tests/system/reader.sh
-   the documents|1300|tests/system/documents.sh
-   estimates of errors|57|"$MAKE" --no-print-directory errors
-   proofs|185|"$BUILD/release/proof_bounds" input/*.deck
-   nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|340|tests/system/units.sh
+   cards and options together|1000|tests/system/together.sh
+   assemblies and runs|450|tests/system/assembly_relations.sh
+   what is printed arrives|255|tests/system/output.sh
+   mechanisms of a known motion|52|tests/fuzz/fuzz_mechanisms.sh 40 21
+   the library for C and Python|140|tests/system/library.sh
+   what is hard to compute|120|tests/oracle/hard.sh short
+   real128|124|"$MAKE" --no-print-directory quad-check
    tolerances|49|tests/system/tolerances.sh
-   what is as drawn|90|tests/system/as_drawn.sh
-   slots|10|tests/system/slots.sh
-   lengths|50|tests/system/lengths.sh
-   what a drawing needs|55|tests/system/drawn.sh
-   tables become decks|15|tests/system/columns.sh
+   the documents|1300|tests/system/documents.sh
+   the method of 1987|1000|"$BUILD/release/matrix_1987" short
+   all assemblies|100|tests/system/assemblies.sh
+   drawings of other programs|50|tests/system/import.sh
+   speed against error|70|"$MAKE" --no-print-directory study-short
+   single precision|130|"$MAKE" --no-print-directory single-check
+   the command|480|tests/system/command.sh
    extremes|42|tests/system/answers.sh
    extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
-   circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
-   circuits of twins|20|"$BUILD/release/twins_by_chance" 20 24
+   the tool of mutants|8|tests/mutants/self_test.sh
+   the sources|60|tests/system/house.sh
+   decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250
+   the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
+   the reader of listings|93|tests/system/reader.sh
+   what is installed|22|tests/system/install.sh
+   the digits|1|tests/system/digits.sh
+   ratios and columns|75|tests/system/ratios.sh
    cylinders by chance|40|tests/oracle/cylinders.sh 40
+   results of the methods|97|"$MAKE" --no-print-directory bench-short
+   nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
+   circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
+   lengths|50|tests/system/lengths.sh
+   estimates of errors|57|"$MAKE" --no-print-directory errors
+   circuits of twins|20|"$BUILD/release/twins_by_chance" 20 24
+   the closed forms|1100|"$BUILD/release/check_forms" input/*.deck
+   measures|58|tests/system/measures.sh
+   what a drawing needs|55|tests/system/drawn.sh
+   what is as drawn|90|tests/system/as_drawn.sh
    dwells by chance|60|"$BUILD/release/dwells_by_chance" 60
    poles and curves|36|tests/system/centres.sh
-   ratios and columns|75|tests/system/ratios.sh
-   measures|58|tests/system/measures.sh
-   all assemblies|100|tests/system/assemblies.sh
-   the digits|1|tests/system/digits.sh
-   decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250
-   relations between runs|260|tests/system/relations.sh --short
-   assemblies and runs|450|tests/system/assembly_relations.sh
-   mechanisms of a known motion|52|tests/fuzz/fuzz_mechanisms.sh 40 21
-   the method of 1987|1000|"$BUILD/release/matrix_1987" short
-   what is hard to compute|120|tests/oracle/hard.sh short
-   the tool of mutants|8|tests/mutants/self_test.sh
+   proofs|185|"$BUILD/release/proof_bounds" input/*.deck
+   slots|10|tests/system/slots.sh
+   many sets|7|tests/system/many_sets.sh
+   tables become decks|15|tests/system/columns.sh
 END
 }
 
