@@ -531,12 +531,17 @@ inline true > "$w/deck"
 told 'three cranks on one line' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
 2: --- CHANGE POINT AT T = 16.00000 S, LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER: PASSED ON THE SMOOTH BRANCH
 $below"
-inline card BRANCH '' '' '' 0.0 > "$w/deck"
-told 'three cranks on one line: no other branch' 2 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
+nowhere="0: --- REDUNDANT EQUATION: PAIR PAIR-C
 2:$none
 2: *** CHANGE POINT AT T = 16.00000 S, LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER: OTHER BRANCH NOT FOUND
 $below
 2: *** BRANCH FROM T = 0.00000 S: NO CHANGE POINT WAS PASSED"
+inline card BRANCH '' '' '' 0.0 > "$w/deck"
+told 'three cranks on one line: no other branch' 2 "$nowhere"
+# With the pivot at 0.18 the middle crank's pin is off the antiparallelogram by 0.014 of its second order alone.
+inline card BRANCH '' '' '' 0.0 | sed -E '/^(POINT   C0? |LINK    CRANK-3)/s/2[.]0 /0.18/' > "$w/deck"
+equal 'three cranks on one line, the second near the first: it is there' 3 "$(grep -c ' 0[.]18' "$w/deck")"
+told 'three cranks on one line, the second near the first: no other branch' 2 "$nowhere"
 
 # A way of more parts than are tried: 200000 times a drive's 1 rad. A crank alone is where its drive says.
 { head_of FAR; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6 2.0E6; card AT '' '' '' 2.0 -3.0E6
