@@ -131,9 +131,8 @@ contains
       do n = 1, size(set%named(request_link)%card)
          if (any(set%cards(set%named(request_link)%card(n))%label(label_b:) /= '')) call find_bar(set, n)
       end do
-      associate (m => set%mechanism)
-         call set_axes(m, reshape([(m%points(i)%place, i=1, size(m%points))], [2, size(m%points)]))
-      end associate
+      call set_axes(set%mechanism, reshape([(set%mechanism%points(i)%place, i=1, size(set%mechanism%points))], &
+         [2, size(set%mechanism%points)]))
 
       slots = 0
       do n = 1, size(set%named(request_pair)%card)
