@@ -11,7 +11,7 @@ module study
    use structure, only: structure_report_t, find_structure, check_structure
    use deck, only: read_deck
    use points, only: is_due
-   use columns, only: cell_of, cell_number, of_angle
+   use columns, only: cell_of, cell_number, of_angle, last_dimension, usual_size
    use rows, only: finished_row_t, find_rows
    use scales, only: characteristic_length, characteristic_rate
    use masked_numbers, only: nothing_known
@@ -257,14 +257,15 @@ contains
       type(trial_t), intent(inout) :: trial
       type(truth_t), intent(in) :: truth
       type(set_analysis_t) :: a
-      real(dp) :: begun, largest(2, 0:2), difference(2, 0:2)
-      integer :: k, at_first
+      real(dp) :: begun, largest(last_dimension, 0:2), difference(last_dimension, 0:2)
+      integer :: k, i, at_first
 
       ! Of what is zero but for rounding, as the acceleration of a link that turns evenly, the unit is characteristic.
-      associate (length => characteristic_length(m))
-         largest = reshape([(real([length, 1.0_wp]*characteristic_rate(m, length)**k, dp), k=0, 2)], [2, 3])
+      associate (length => characteristic_length(m), rate => characteristic_rate(m, characteristic_length(m)))
+         largest = reshape([((real(usual_size(i, k, length, rate, m%degrees), dp), i=1, last_dimension), k=0, 2)], &
+            [last_dimension, 3])
       end associate
-      difference = 0.0_dp
+      difference = -1.0_dp
       trial%seconds = 0.0_dp
       call make_set_analysis(m, a)
       do k = 0, last
@@ -279,12 +280,14 @@ contains
       trial%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
          trial%error(k) = maxval(difference(:, k)/largest(:, k))
+         ! No number was compared.
+         if (trial%error(k) < 0.0_dp) trial%error(k) = nothing_known
       end do
 
    contains
 
-      !> Notes the largest values of the rows of this instant and their largest differences from the truth: of lengths
-      !> and of angles.
+      !> Notes the largest values of the rows of this instant and their largest differences from the truth, of each
+      !> dimension.
       subroutine compare()
          type(finished_row_t), allocatable :: rows(:)
          real(qp) :: off

@@ -52,6 +52,15 @@ all 'the matrix leaves of its tolerance what its rate says' '$1 == "MATRIX" && $
 all 'a better predictor takes fewer iterations' '$2 ~ /^ORD/ { if ($2 != "ORD0") { n++; if ($6 > last) bad = bad " " $0 } last = $6 } '"$told"
 all 'the default is the measure' '$1 == "NEWTON" && $2 == "OWN" && $3 == "ROUNDING" { n++; if ($5 != 1) bad = bad " " $0 } '"$told"
 
+# Ratios have dimensions of their own; a set of ratios and pairs without accelerations.
+for one in 'jacobian 4 number' 'boom 4 UNKNOWN'; do
+   set -- $one
+   "$kinmat" --study "input/$1.deck" > "$w/ratios.txt" 2> "$w/err"
+   equal "$1: status" 0 $?
+   equal "$1: to rounding the errors of all rows; accelerations" "$2 0 $3" "$(rows "$w/ratios.txt" | awk '$1 == "NEWTON" && $2 ~ /^ORD/ { n++
+      for (k = 7; k <= 9; k++) if (!($k < 1e-13 || $k == "UNKNOWN")) bad++ ; word = $9 == "UNKNOWN" ? $9 : "number" } END { print n + 0, bad + 0, word }')"
+done
+
 # Rows that are printed at every second instant only: the table of kinmat-quad has all instants.
 awk '/^PRINT/ { next } /^END/ { printf "%-8s%-16s%s\n", "PRINT", "ALL", "2" } { print }' "$w/four_bar.deck" > "$w/second.deck"
 "$kinmat" --study "$w/second.deck" > "$w/second.txt" 2> "$w/err"
