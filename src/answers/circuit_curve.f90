@@ -67,7 +67,7 @@ module circuit_curve
       real(wp), allocatable :: tangent(:)     !< (coordinates) unit vector
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
       real(wp) :: value(of_value:of_cylinder) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]
-      real(wp) :: reach = 0.0_wp              !< the longest step that is certified
+      real(wp) :: certified_step = 0.0_wp     !< the longest step that is certified
       real(wp) :: room = 0.0_wp               !< within it no other curve comes near, whatever the direction
       logical :: is_dead = .false.            !< the drive turns back here
       logical :: is_change = .false.          !< circuits meet here, or one crosses itself: between two points of one
@@ -335,7 +335,7 @@ contains
 
       powers = [change, k*(speed**2 + 0.5_wp*bend), k*(change*bend + 0.5_wp*k*speed**3)]/certified_bound
       ! The sum of powers(i) h^i is 1 at most.
-      point%reach = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
+      point%certified_step = 1.0_wp/max(speed/max_step, powers(1) + sqrt(powers(2)) + powers(3)**(1.0_wp/3.0_wp), least)
       point%room = 1.0_wp/max(speed/max_step, speed*k/certified_bound, least)
    end subroutine find_reach
 end module circuit_curve

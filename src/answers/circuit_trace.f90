@@ -105,7 +105,7 @@ contains
          leaves = leaves .and. a%room < 2.0_wp*least_step
          if (a%room >= least_step .or. leaves) then
             ! The longest certified step that Newton's method takes.
-            h = a%reach
+            h = a%certified_step
             do
                call step_along(curve, a, h, b, ok)
                if (ok .or. h < 0.1_wp*least_step) exit

@@ -21,7 +21,7 @@ module circuits
    use ranges, only: held_at, estimate_side
    implicit none
    private
-   public :: circuits_t, circuit_branch_t, find_circuits, turns_of
+   public :: circuits_t, circuit_branch_t, find_circuits, revolutions_of
 
    !> More than the rounding of an angle, in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie_turns = 1.0e-6_wp
@@ -347,11 +347,11 @@ contains
    end function near_first
 
    !> Gives the number of turns of the drive after which a circuit closes.
-   pure integer function turns_of(circuit) result(turns)
+   pure integer function revolutions_of(circuit) result(turns)
       type(circuit_t), intent(in) :: circuit
 
       turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/full_turn)
-   end function turns_of
+   end function revolutions_of
 
    !> Tells whether some equations are redundant, by count: two of each pair, one of each drive that is held.
    pure logical function is_redundant(curve)

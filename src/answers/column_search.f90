@@ -224,14 +224,14 @@ contains
       real(wp), intent(out) :: noise(3)      !< bounds of the rounding errors of rate, acceleration and jerk
       !> The cubic with the accelerations and jerks at the ends has about the acceleration in the middle.
       logical, intent(out) :: simple         !< and at most one extreme inside
-      real(wp), dimension(0:2) :: left, odd, even
+      real(wp), dimension(0:2) :: errors, odd, even
       real(wp) :: seventh, eighth, mean, change, open, h, most, step
 
       h = after%t - before%t
-      left = left_open(before, middle, after, size_of)
-      noise(:2) = left(1:)
+      errors = error_bounds(before, middle, after, size_of)
+      noise(:2) = errors(1:)
       noise(3) = errors_by_rates*(noise(1)/abs(h) + noise(2))/abs(h)
-      call find_differences(before, middle, after, left(0), odd, even, seventh, eighth)
+      call find_differences(before, middle, after, errors(0), odd, even, seventh, eighth)
 
       ! The mean of both jerks and half their change, in accelerations; less than `open` counts for nothing.
       mean = (40.0_wp*odd(2) - 64.0_wp*odd(1) + 448.0_wp*seventh)/(h*h)
@@ -253,12 +253,12 @@ contains
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
       real(wp) :: curve(0:8)
-      real(wp), dimension(0:2) :: left, odd, even
+      real(wp), dimension(0:2) :: errors, odd, even
       real(wp) :: half
 
       half = 0.5_wp*(after%t - before%t)
-      left = left_open(before, middle, after, size_of)
-      call find_differences(before, middle, after, left(0), odd, even, curve(7), curve(8))
+      errors = error_bounds(before, middle, after, size_of)
+      call find_differences(before, middle, after, errors(0), odd, even, curve(7), curve(8))
       curve(:2) = middle%f*[1.0_wp, half, 0.5_wp*half**2]
       curve(5) = (odd(2) - 2.0_wp*odd(1) - 28.0_wp*curve(7))/10.0_wp
       curve(3) = (odd(1) - 5.0_wp*curve(5) - 7.0_wp*curve(7))/3.0_wp
@@ -268,17 +268,17 @@ contains
 
    !> Bounds the errors (0:2) of values, rates and accelerations of three samples: by estimates, by the size of
    !> numbers, and by a rounding of the time.
-   pure function left_open(before, middle, after, size_of) result(left)
+   pure function error_bounds(before, middle, after, size_of) result(bounds)
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of a part
       real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
-      real(wp) :: left(0:2), largest(0:2)
+      real(wp) :: bounds(0:2), largest(0:2)
 
       largest = max(abs(before%f), abs(middle%f), abs(after%f))
-      left = max(noise_part, epsilon(1.0_wp)*max(before%amplification, middle%amplification, &
+      bounds = max(noise_part, epsilon(1.0_wp)*max(before%amplification, middle%amplification, &
          after%amplification))*max(size_of, largest)
-      left(:1) = left(:1) + epsilon(1.0_wp)*max(abs(before%t), abs(after%t))*largest(1:)
-      left = max(before%error, middle%error, after%error, left)
-   end function left_open
+      bounds(:1) = bounds(:1) + epsilon(1.0_wp)*max(abs(before%t), abs(after%t))*largest(1:)
+      bounds = max(before%error, middle%error, after%error, bounds)
+   end function error_bounds
 
    !> Finds the differences of the numbers at the ends of a part from the square at its middle, and the coefficients of
    !> degree 7 and 8. Half of the part is the unit of time. A coefficient that rounding explains is 0.

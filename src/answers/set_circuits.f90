@@ -5,7 +5,7 @@ module set_circuits
    use set_analysis, only: set_analysis_t
    use assemblies, only: assemblies_t, find_assemblies
    use circuit_trace, only: end_closed
-   use circuits, only: circuits_t, turns_of, find_circuits
+   use circuits, only: circuits_t, revolutions_of, find_circuits
    use ranges, only: range_t, find_range, lower_end, upper_end
    implicit none
    private
@@ -61,7 +61,7 @@ contains
             if (circuit%rests) cycle
             r = range_t(part=found%part, drive=found%drive, is_of_branch=.true., has_limit=b%dead > 0)
             r%is_all = all(circuit%ends == end_closed) .and. all(b%dead == 0)
-            if (r%is_all) r%turns = turns_of(circuit)
+            if (r%is_all) r%turns = revolutions_of(circuit)
             do side = lower_end, upper_end
                r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
                if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))

@@ -43,7 +43,7 @@ module block_assemblies
    type :: block_positions_t
       real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
       integer, allocatable :: sign_of(:)        !< (positions) of the determinant; 0: singular
-      logical, allocatable :: rates_open(:)     !< (positions) redundant equations agree there, but not their rates
+      logical, allocatable :: rates_inconsistent(:) !< (positions) redundant equations agree there, but not their rates
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0
       integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
       integer :: real = 0                       !< positions
@@ -74,12 +74,12 @@ contains
 
       found%x = reshape([real(wp) ::], [b%list(i)%shape%n, 0])
       found%sign_of = [integer ::]
-      found%rates_open = [logical ::]
+      found%rates_inconsistent = [logical ::]
       if (b%list(i)%explicit) then
          call solve_block(b, x, i, .true., w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
-         found%rates_open = [.false.]
+         found%rates_inconsistent = [.false.]
          return
       end if
       call make_form(b, x, i, s, f)
@@ -113,7 +113,7 @@ contains
       end do
       found%finite = found%paths - (found%infinite + found%failed + found%partial)
       found%real = found%real + size(found%sign_of)
-      found%is_open = found%is_open .or. any(found%rates_open)
+      found%is_open = found%is_open .or. any(found%rates_inconsistent)
 
    contains
 
@@ -160,7 +160,7 @@ contains
          end do
          found%x = reshape([found%x, place], [size(place), size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
-         found%rates_open = [found%rates_open, c%rates_open]
+         found%rates_inconsistent = [found%rates_inconsistent, c%rates_inconsistent]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, x, i, s))
       end subroutine add_position
 

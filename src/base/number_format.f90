@@ -27,11 +27,11 @@ module number_format
    integer, parameter :: long = max(selected_real_kind(2*precision(1.0_wp)), wp)
    logical, parameter :: able = digits(1.0_wp) == 53 .and. digits(1.0_long) >= 106
 
-   !> The powers of ten 10**-reach to 10**reach: none overflows and no low part is denormal.
-   integer, parameter :: reach = merge(250, 15, range(1.0_wp) > 300)
-   real(long), parameter :: powers(-reach:reach) = [(10.0_long**k, k = -reach, reach)]
-   real(wp), parameter :: high(-reach:reach) = real(powers, wp)
-   real(wp), parameter :: low(-reach:reach) = real(powers - real(high, long), wp)
+   !> The powers of ten 10**-max_power to 10**max_power: none overflows and no low part is denormal.
+   integer, parameter :: max_power = merge(250, 15, range(1.0_wp) > 300)
+   real(long), parameter :: powers(-max_power:max_power) = [(10.0_long**k, k = -max_power, max_power)]
+   real(wp), parameter :: high(-max_power:max_power) = real(powers, wp)
+   real(wp), parameter :: low(-max_power:max_power) = real(powers - real(high, long), wp)
    !> The last power without a low part: 5**22 < 2**53.
    integer, parameter :: last_exact = 22
    !> 16 times the relative error of p + e.
@@ -45,8 +45,8 @@ module number_format
 
    !> Veltkamp's factor for 53 bits, and the halves of `high`.
    real(wp), parameter :: splitter = 2.0_wp**27 + 1.0_wp
-   real(wp), parameter :: high_head(-reach:reach) = splitter*high - (splitter*high - high)
-   real(wp), parameter :: high_tail(-reach:reach) = high - high_head
+   real(wp), parameter :: high_head(-max_power:max_power) = splitter*high - (splitter*high - high)
+   real(wp), parameter :: high_tail(-max_power:max_power) = high - high_head
 
    !> Characters of a number in the tables, one blank before it included.
    integer, parameter :: numeral_length = 12
@@ -323,7 +323,7 @@ contains
 
       n = 0
       sure = .false.
-      if (.not. able .or. abs(k) > reach) return
+      if (.not. able .or. abs(k) > max_power) return
       ! Written so that NaN returns too.
       if (.not. value < 2.0e17_wp*high(-k)) return
       p = value*high(k)
@@ -380,7 +380,7 @@ contains
       power = 0
       sure = .false.
       if (.not. able) return
-      if (.not. (value > high(significant - reach) .and. value < high(reach - 1))) return
+      if (.not. (value > high(significant - max_power) .and. value < high(max_power - 1))) return
       ! The exponent of the power of two below value times log10(2), rounded down, is power or power - 1. For 2**-2000
       ! to 2**2000 the ratio 315653/2**20 gives the same whole numbers as log10(2).
       power = shifta(315653*(exponent(value) - 1), 20)

@@ -51,24 +51,24 @@ module system_calls
    logical, volatile :: notes_all = .false.
 
    !> The result of statx. Unlike that of stat it is the same on every architecture.
-   type, bind(c) :: facts_t
+   type, bind(c) :: statx_t
       integer(c_int32_t) :: head(7)
       integer(c_int16_t) :: mode, spare
       integer(c_int64_t) :: inode
       integer(c_int64_t) :: sizes_and_times(11)
       integer(c_int32_t) :: special_device(2), device(2)
       integer(c_int64_t) :: room(14)
-   end type facts_t
+   end type statx_t
 
    interface
       !> Finds the kind of a file and its identity: statx(2). The result is 0, or -1 for an error.
       integer(c_int) function statx(directory, path, flags, mask, facts) bind(c)
-         import :: c_int, c_char, facts_t
+         import :: c_int, c_char, statx_t
          integer(c_int), value :: directory   !< where the path begins: `from_working_directory` or a descriptor
          integer(c_int), value :: flags       !< 0, `empty_path` or `no_links`
          integer(c_int), value :: mask        !< the facts that are wanted: `basic_facts`
          character(kind=c_char), intent(in) :: path(*)   !< ends with a null
-         type(facts_t), intent(out) :: facts
+         type(statx_t), intent(out) :: facts
       end function statx
       !> Opens a file that exists: open(2) without a mode. The result is a descriptor, negative for an error.
       integer(c_int) function c_open(path, flags) bind(c, name='open')
@@ -146,7 +146,7 @@ contains
    !> Gives the identity of a file. If there is no such file, the result is the default of its type.
    type(identity_t) function identity_of(path) result(id)
       character(*), intent(in) :: path       !< of the file; symbolic links are followed
-      type(facts_t) :: facts
+      type(statx_t) :: facts
 
       if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_from(facts)
    end function identity_of
@@ -154,14 +154,14 @@ contains
    !> Gives the identity of a file that is open; the default of its type, if it is not.
    type(identity_t) function identity_of_open(descriptor) result(id)
       integer(c_int), intent(in) :: descriptor   !< of the file
-      type(facts_t) :: facts
+      type(statx_t) :: facts
 
       if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_from(facts)
    end function identity_of_open
 
    !> Takes the identity of a file from what the system knows of it.
    pure type(identity_t) function identity_from(facts) result(id)
-      type(facts_t), intent(in) :: facts
+      type(statx_t), intent(in) :: facts
 
       id%device = facts%device
       id%inode = facts%inode
@@ -225,7 +225,7 @@ contains
    !> Removes a regular file. A symbolic link stays, and so does its file.
    subroutine remove_file(path)
       character(*), intent(in) :: path   !< of the file
-      type(facts_t) :: facts
+      type(statx_t) :: facts
       integer(c_int) :: status
 
       status = statx(from_working_directory, path//c_null_char, no_links, basic_facts, facts)

@@ -26,7 +26,7 @@ module block_diagnostics
    real(wp), parameter, public :: near_limit_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
    real(wp), parameter :: near_singular_pivot = 0.05_wp
-   !> And an unknown is faster than the drives, by more than this factor.
+   !> There an unknown is faster than the drives, by more than this factor.
    real(wp), parameter :: much_faster = 10.0_wp
    !> A limit is another block's, and nearer, if its time left is below this part.
    real(wp), parameter :: much_nearer = 0.5_wp
@@ -248,8 +248,8 @@ contains
    end function limit_diagnostic
 
    !> Finds which links have velocities in a singular position, and its kind. It is a dead point if some block has one,
-   !> otherwise a change point if some block has one. With its links, of the first such block, and whether they are in
-   !> line.
+   !> otherwise a change point if some block has one. The links are those of the first such block; it is found whether
+   !> they are collinear.
    subroutine get_link_flags(b, x, s, all_at_once, found)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x

@@ -118,7 +118,7 @@ contains
                if (has_rates) has_rates = largest_known(b, i, missing) == missing_nothing
                if (has_rates) then
                   call solve_block(b, x, i, .false., w, s, c)
-                  has_rates = .not. (c%singular .or. c%rates_open)
+                  has_rates = .not. (c%singular .or. c%rates_inconsistent)
                end if
                if (.not. has_rates) call record_missing(b, i, missing_rates, missing)
             end associate

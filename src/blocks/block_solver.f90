@@ -408,7 +408,7 @@ contains
       do k = 1, n
          unknowns(unknown(k))%acceleration = right_sides(k, 1)
       end do
-      if (rows > n) convergence%rates_open = contradict_rates(b, i, values, unknowns, &
+      if (rows > n) convergence%rates_inconsistent = contradict_rates(b, i, values, unknowns, &
          right_sides, numbers%coarse, x%closing)
 
    contains

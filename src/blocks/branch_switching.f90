@@ -116,8 +116,8 @@ contains
    end subroutine decide
 
    !> Passes the change points before the time of the state, each as the BRANCH cards ask for it. If
-   !> convergence%keeps_signs, the motion found last is the one that goes on. Otherwise the list says why there is none;
-   !> it is empty if a determinant has changed its sign without a change point.
+   !> convergence%determinant_signs_kept, the motion found last is the one that goes on. Otherwise the list says why
+   !> there is none; it is empty if a determinant has changed its sign without a change point.
    subroutine pass(b, x, path, history, w, s, requests, convergence, list)
       type(blocks_t), intent(in) :: b
       type(geometry_t), intent(in) :: x
@@ -152,7 +152,7 @@ contains
             list = [list, r]
          end associate
       end do
-      convergence%keeps_signs = passed
+      convergence%determinant_signs_kept = passed
    end subroutine pass
 
    !> Tells whether the motion found last is on the branch that goes on smoothly, also beyond change points. It is if

@@ -59,10 +59,10 @@ module convergence
       real(wp) :: kantorovich_ratio = 0.0_wp   !< that change over the distance within which the root is the only one
       real(wp) :: amplification = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
-      logical :: keeps_signs = .true.          !< the determinants have those of the motion that is followed
+      logical :: determinant_signs_kept = .true.          !< the determinants have those of the motion that is followed
       logical :: singular = .false.            !< a position was found, and its Jacobian has no inverse
       type(closure_error_t) :: open            !< the equation that is open the most
-      logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
+      logical :: rates_inconsistent = .false.          !< they agree in position, but not in its derivatives
    end type solve_report_t
 
    !> A record in which nothing is gathered yet.
@@ -89,7 +89,7 @@ contains
       convergence%determinant = convergence%determinant*one%determinant
       if (one%open%value > convergence%open%value .or. one%ended == ended_elsewhere) convergence%open = one%open
       convergence%singular = convergence%singular .or. one%singular
-      convergence%rates_open = convergence%rates_open .or. one%rates_open
+      convergence%rates_inconsistent = convergence%rates_inconsistent .or. one%rates_inconsistent
    end subroutine gather
 
    !> Gives the word for how an iteration ended.

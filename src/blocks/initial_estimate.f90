@@ -12,7 +12,7 @@ module initial_estimate
    use disjoint_sets, only: sorted_t, sorted, members
    use plane_vectors, only: direction, pi, wrap_angle
    use bilinear, only: kept_start_t
-   use pair_geometry, only: way_of, opening_of, slide_of
+   use pair_geometry, only: way_of, closure_error_of, slide_of
    use mechanism, only: mechanism_t, has_guide
    use spanning_tree, only: spanning_tree_t, axes_t
    use blocks, only: blocks_t, geometry_t
@@ -117,7 +117,7 @@ contains
       real(wp), intent(in) :: phi(:)         !< (links) rad
 
       associate (pair => m%pairs(k))
-         open = abs(opening_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
+         open = abs(closure_error_of(m, pair, turned(m, m%points(pair%point_i)%link, phi), &
             turned(m, m%points(pair%point_j)%link, phi)))
       end associate
    end function distance_open
@@ -145,7 +145,7 @@ contains
          u(list) = axes%angle_offset(list) + (phi(list(1)) - axes%angle_offset(list(1)))
       end do
       placed = .true.
-      if (largest_opening(u) <= good_part*span) return
+      if (largest_closure_error(u) <= good_part*span) return
       placed = m%links(m%points%link)%ground .or. &
          hypot(m%points%offset(1), m%points%offset(2)) <= short_offset_part*span
 
@@ -162,8 +162,8 @@ contains
       ! Small changes of other angles close some pairs that are open: only the rest contradicts an angle. Pairs that
       ! they open do not.
       w = merge(u, v, is_far)
-      before = min(largest_opening(u), largest_opening(w))
-      after = largest_opening(v)
+      before = min(largest_closure_error(u), largest_closure_error(w))
+      after = largest_closure_error(v)
       if (after > min(closed_part*span, better_part*before)) return
       if (is_contradicted(u) .and. is_contradicted(w)) phi = phi + (v - u)
 
@@ -207,7 +207,7 @@ contains
       !> pair: the closure error of a pair near its origin says nothing of its angle.
       pure logical function is_contradicted(angles) result(is)
          real(wp), intent(in) :: angles(:)   !< (links) rad
-         real(wp) :: size_of, open, arm
+         real(wp) :: size_of, open, distance
          integer :: link, k
 
          is = .false.
@@ -219,10 +219,10 @@ contains
                associate (pair => tree%near%member(k), i => m%pairs(tree%near%member(k))%point_i, &
                           j => m%pairs(tree%near%member(k))%point_j)
                   if (.not. (placed(i) .and. placed(j))) cycle
-                  arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
-                  if (has_guide(m%pairs(pair)%kind)) arm = arm + norm2(way_of(m, m%pairs(pair), &
+                  distance = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
+                  if (has_guide(m%pairs(pair)%kind)) distance = distance + norm2(way_of(m, m%pairs(pair), &
                      turned(m, m%points(i)%link, angles), turned(m, m%points(j)%link, angles)))
-                  size_of = max(size_of, arm)
+                  size_of = max(size_of, distance)
                   open = max(open, distance_open(m, pair, angles))
                end associate
             end do
@@ -231,7 +231,7 @@ contains
       end function is_contradicted
 
       !> Gives the largest distance by which a pair is open that has known places on both sides, in the deck's unit.
-      pure real(wp) function largest_opening(angles) result(largest)
+      pure real(wp) function largest_closure_error(angles) result(largest)
          real(wp), intent(in) :: angles(:)   !< (links) rad
          integer :: k
 
@@ -240,7 +240,7 @@ contains
             if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) &
                largest = max(largest, distance_open(m, k, angles))
          end do
-      end function largest_opening
+      end function largest_closure_error
    end function estimated_directions
 
    !> Finds the angle at which the form is least. Two sides of a guide fit equally well: then it is the nearer one.

@@ -70,7 +70,7 @@ contains
             associate (slide => t%slide(t%parent_joint(link)))
                if (slide > 0) h%slide = t%orientations + slide
             end associate
-            call set_offset(m, t, x, h)
+            call set_place(m, t, x, h)
             h%has_body_vector = any(abs([h%numbers%body_vector%x, h%numbers%body_vector%y]) > 0.0_wp)
             h%parent_orientation = t%orientation(t%parent(link))
             if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
@@ -118,7 +118,7 @@ contains
       end do
       check = 0.0_wp
       do i = 1, n
-         call find_offset(links(i), links(i)%numbers, unknowns, place)
+         call find_place(links(i), links(i)%numbers, unknowns, place)
          associate (h => links(i), f => unknowns(links(i)%orientation), k => links(i)%link)
             if (h%parent > 0) then
                place(0) = vector_t(place(0)%x + positions(1, h%parent), place(0)%y + positions(2, h%parent))
@@ -158,29 +158,29 @@ contains
    end subroutine flag_links
 
    !> Gives a link the numbers of its offset from its parent.
-   pure subroutine set_offset(m, tree, x, link)
+   pure subroutine set_place(m, tree, x, link)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
       type(geometry_t), intent(in) :: x
       type(link_step_t), intent(inout) :: link   !< with a parent
-      real(wp) :: sign_of, reach(2)
+      real(wp) :: sign_of, offset(2)
 
       associate (joint => tree%parent_joint(link%link), parent => tree%parent(link%link), axes => x%equations%axes)
          associate (pair => m%pairs(joint))
             sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link%link)
-            reach = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+            offset = point_offset(m, axes, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
             link%numbers%body_vector = &
                vector_of(-point_offset(m, axes, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp)))
-            if (m%links(parent)%ground) reach = reach + (m%links(parent)%position(:2) - axes%origin)
+            if (m%links(parent)%ground) offset = offset + (m%links(parent)%position(:2) - axes%origin)
             if (has_guide(pair%kind)) then
-               reach = reach - sign_of*guide(m, axes, joint, across=.true.)*pair%offset
+               offset = offset - sign_of*guide(m, axes, joint, across=.true.)*pair%offset
                link%numbers%slide_vector = vector_of(x%equations%length*x%unit(link%slide)*sign_of &
                   *guide(m, axes, joint, across=.false.))
             end if
-            link%numbers%reach = vector_of(reach)
+            link%numbers%offset = vector_of(offset)
          end associate
       end associate
-   end subroutine set_offset
+   end subroutine set_place
 
    !> Gives two numbers as a vector.
    pure type(vector_t) function vector_of(numbers)

@@ -5,9 +5,9 @@
 !> and accelerations (Hermite),
 !>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
-!> many times over, and a start that is wrong only by rounding costs a second factorization. And four motions instead
-!> of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of 1.6, but take
-!> as long to 3 per cent, and so do steps of ten degrees.
+!> many times over, and a start that is wrong only by rounding costs a second factorization. Rejected, too: four
+!> motions instead of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of
+!> 1.6, but take as long to 3 per cent, and so do steps of ten degrees.
 !>
 !> Near a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
 !>
@@ -41,7 +41,7 @@ module predictor
    !> Accelerations that are uncertain by less than this part of the largest are known.
    real(wp), parameter :: known_acceleration_part = 0.01_wp
    !> With a pivot above, rounding leaves no acceleration uncertain by a part that a substep can feel.
-   real(wp), parameter :: certain_pivot = epsilon(1.0_wp)**0.2_wp
+   real(wp), parameter :: safe_pivot = epsilon(1.0_wp)**0.2_wp
    !> Steps that differ by less than this part count as equal: instants are rounded too.
    real(wp), parameter :: equal_step_part = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
@@ -88,7 +88,7 @@ contains
       if (history%filled == 0) history%jacobian = s%jacobian
       call keep(size(b%moving), b%moving, s%jacobian, history%jacobian, least)
       uncertain = 0.0_wp
-      if (least <= certain_pivot) then
+      if (least <= safe_pivot) then
          do k = 1, size(b%moving)
             uncertain = max(uncertain, uncertain_part(b, x, b%moving(k), history%jacobian(b%moving(k))%pivot, s))
          end do
@@ -130,7 +130,7 @@ contains
          convergence%determinant = product(s%jacobian(list)%sign_of)
       end if
       call compare_signs(size(list), list, history%jacobian, s%jacobian, s%is_singular, s%crossed, crosses)
-      if (crosses) convergence%keeps_signs = .false.
+      if (crosses) convergence%determinant_signs_kept = .false.
       if (.not. s%excursion > 0.0_wp) return
       do k = 1, size(list)
          associate (i => list(k))
@@ -288,7 +288,7 @@ contains
       real(wp) :: v, fastest
 
       part = 0.0_wp
-      if (pivot > certain_pivot) return
+      if (pivot > safe_pivot) return
       associate (u => b%unknown(b%list(i)%first:b%list(i)%last))
          v = maxval(abs(s%u(u)%rate))
          fastest = max(v, largest_drive_rate(s))

@@ -56,7 +56,7 @@ contains
       integer, intent(in) :: i               !< the number of the block
       type(state_t), intent(inout) :: s      !< with the singular position, just solved
       type(svd_t) :: v
-      real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, left_open, level
+      real(wp) :: first(b%list(i)%shape%n), y(b%list(i)%shape%n), r(b%list(i)%shape%rows), q, projected_residual, level
       real(wp) :: driving(2)
       real(wp) :: jacobian(size(r)*size(first))
 
@@ -77,9 +77,9 @@ contains
       if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*x%blocks(i)%lipschitz) return
       associate (left => v%left(:, v%n), k => v%right(v%n, :))
          call go_to(first - (v%s(v%n)/q)*k)
-         left_open = dot_product(left, residual_of(b, x, i, y, s))
-         if (abs(left_open) > rounding_residual*level .and. left_open*q < 0.0_wp) &
-            call go_to(y + sign(sqrt(-2.0_wp*left_open/q), dot_product(first - y, k))*k)
+         projected_residual = dot_product(left, residual_of(b, x, i, y, s))
+         if (abs(projected_residual) > rounding_residual*level .and. projected_residual*q < 0.0_wp) &
+            call go_to(y + sign(sqrt(-2.0_wp*projected_residual/q), dot_product(first - y, k))*k)
       end associate
       if (maxval(abs(y - first)) > furthest_place/sqrt(min(1.0_wp, abs(q))) .or. &
          maxval(abs(residual_of(b, x, i, y, s))) > rounding_level*level) call set_values(b, i, first, s)

@@ -191,7 +191,7 @@ contains
          near = time_beside(analysis%path, analysis%last, t, start_offset)
          call continue_to(analysis%continuation_t, near, to_start)
          if (to_start%ending >= step_there .and. &
-            .not. (analysis%convergence%singular .or. analysis%convergence%rates_open)) &
+            .not. (analysis%convergence%singular .or. analysis%convergence%rates_inconsistent)) &
             call accept_substep(analysis%continuation_t, near)
       end if
       call follow(analysis%continuation_t, t, step, list)
@@ -250,7 +250,7 @@ contains
       end if
       call reach(analysis, t, step, list)
       if (step%ending >= step_there .and. (step%ending == step_rests &
-         .or. .not. (analysis%convergence%singular .or. analysis%convergence%rates_open))) then
+         .or. .not. (analysis%convergence%singular .or. analysis%convergence%rates_inconsistent))) then
          found%t = t
          call accept_motion(analysis, found)
          is_found = found%known == 2 .and. is_solved(analysis%convergence)
@@ -481,7 +481,7 @@ contains
          found%acceleration = 0.0_wp
       else
          if (analysis%convergence%singular) call cut(found, 0, flag_singular)
-         if (analysis%convergence%rates_open) call cut(found, 0, flag_inconsistent)
+         if (analysis%convergence%rates_inconsistent) call cut(found, 0, flag_inconsistent)
          ! If rates contradict one another, no link has any.
          if (found%flag == flag_singular) call get_link_flags(analysis%blocks, analysis%geometry, analysis%state, &
             allocated(analysis%dense), found)

@@ -174,7 +174,7 @@ contains
       call begin_at(continuation%history, parameter)
       continuation%t = parameter
       call solve_at(continuation, parameter)
-      step%ending = merge(step_there, step_failed, continuation%convergence%keeps_signs &
+      step%ending = merge(step_there, step_failed, continuation%convergence%determinant_signs_kept &
          .and. is_solved(continuation%convergence) .and. .not. continuation%convergence%singular)
       if (step%ending == step_there) call accept_substep(continuation, parameter)
    end subroutine resume_motion

@@ -1,6 +1,6 @@
 !> The motion that is followed, and its continuation to another instant, in as many substeps as that takes: an
-!> assembly is never changed in silence. And its limits on either side: no continuity reaches an instant beyond one,
-!> whatever is asked for in between, and it need not be searched for again.
+!> assembly is never changed in silence. The limits of the motion on either side are kept: no continuity reaches an
+!> instant beyond a limit, whatever is asked for in between, and the limit need not be searched for again.
 !>
 !> The branch of an instant is verified on the step to it. SAME: on every substep the prediction was off by less than a
 !> tenth of the distance within which there is one root only (Newton and Kantorovich), and the determinants of all
@@ -189,7 +189,7 @@ contains
          call predict(continuation%history, t, s%u, s%change)
          if (s%change > largest_predicted_change) then
             c = nothing_gathered
-            c%keeps_signs = .false.
+            c%determinant_signs_kept = .false.
             s%crossed = .false.
             return
          end if
@@ -285,9 +285,9 @@ contains
       accepted = accepted .and. continuation%convergence%kantorovich_ratio <= max_kantorovich_ratio
       ! Before a change point is passed: at the length 0 links may be in line.
       if (accepted .and. size(continuation%geometry%cylinders) > 0) call keep_lengths(continuation, t, accepted)
-      if (accepted .and. .not. (continuation%convergence%keeps_signs .or. continuation%convergence%singular)) &
-         call pass_change_points(continuation, step)
-      accepted = accepted .and. continuation%convergence%keeps_signs
+      if (accepted .and. .not. continuation%convergence%determinant_signs_kept .and. &
+         .not. continuation%convergence%singular) call pass_change_points(continuation, step)
+      accepted = accepted .and. continuation%convergence%determinant_signs_kept
 
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
@@ -389,14 +389,14 @@ contains
       filled = continuation%history%filled
       call pass(continuation%blocks, continuation%geometry, continuation%path, continuation%history, &
          continuation%work, continuation%state, continuation%branch_requests, continuation%convergence, list)
-      if (continuation%convergence%keeps_signs .and. continuation%convergence%kantorovich_ratio <= &
+      if (continuation%convergence%determinant_signs_kept .and. continuation%convergence%kantorovich_ratio <= &
          max_kantorovich_ratio) then
          if (.not. allocated(step%passed)) allocate (step%passed(0))
          step%passed = [step%passed, list]
       else
-         if (size(list) > 0 .and. .not. continuation%convergence%keeps_signs) &
+         if (size(list) > 0 .and. .not. continuation%convergence%determinant_signs_kept) &
             step%dead_end = pack(list, list%kind == diagnostic_dead_end)
-         continuation%convergence%keeps_signs = .false.
+         continuation%convergence%determinant_signs_kept = .false.
          ! Close to a dead point it may only look like a change point: no card is used up, and no motion forgotten.
          continuation%branch_requests = before
          continuation%history%filled = filled

@@ -7,12 +7,12 @@ module deck_remarks
    use mechanism
    use columns, only: kinds_of_rows
    use parameters, only: unit_t, parameter_unit, parameter_value, is_as_drawn
-   use drawn_values, only: drawn_way, drawn_opening, drawn_place
+   use drawn_values, only: drawn_way, drawn_closure_error, drawn_place
    use drives, only: drive_motion, bounds_t, bounds_of, is_at_rest, middle_of
    use names, only: drive_name, listed
    use scales, only: solver_length
    use number_format, only: rounded
-   use deck_variants, only: number_on_card
+   use deck_variants, only: parameter_on_card
    use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
    use cards
    use input_errors, only: link_unused, add_remark
@@ -104,7 +104,7 @@ contains
             associate (x => set%cards(k)%real(i))
                if (abs(x) <= full_turn .or. abs(x) > max_degrees .or. abs(2.0_wp*x - anint(2.0_wp*x)) > 0.0_wp) cycle
             end associate
-            number = number_on_card(set, k, i)
+            number = parameter_on_card(set, k, i)
             if (number%kind == 0 .or. set%cards(k)%form == form_add) cycle
             unit = parameter_unit(set%mechanism, number)
             if (unit%name /= 'RAD') cycle
@@ -253,7 +253,7 @@ contains
             call add_head(card%form, labels)
 
             do i = 1, reals_of(card%form, card%label(label_a))
-               number = number_on_card(set, k, i)
+               number = parameter_on_card(set, k, i)
                if (is_as_drawn(m, number)) then
                   x = parameter_value(m, number)
                   unit = parameter_unit(m, number)
@@ -322,7 +322,7 @@ contains
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
       type(mechanism_t) :: m                        ! as it is drawn
-      real(wp) :: length, opening, turn
+      real(wp) :: length, closure_error, turn
       character(:), allocatable :: text
       integer :: i, k
 
@@ -335,9 +335,9 @@ contains
          text = ''
          associate (pair => m%pairs(i), link => m%links(m%points(m%pairs(i)%point_i)%link))
             if (.not. has_guide(pair%kind)) then
-               opening = norm2(drawn_way(m, pair))
+               closure_error = norm2(drawn_way(m, pair))
             else
-               opening = drawn_opening(m, pair)
+               closure_error = drawn_closure_error(m, pair)
                associate (phi => m%links(pair_links(m, pair))%position(3))
                   turn = wrap_angle(phi(2) - phi(1) - pair%beta)
                end associate
@@ -348,7 +348,7 @@ contains
                   call add_remark(set%errors, remark_alpha, set%cards(k)%card, card_fields(real_1)%first, '', &
                   angle_text(pair%alpha)//', '//angle_text(pair%alpha + turn))
             end if
-            if (abs(opening) > drawn_digits*length) text = drawn_text(opening)//' '//trim(m%length_unit)
+            if (abs(closure_error) > drawn_digits*length) text = drawn_text(closure_error)//' '//trim(m%length_unit)
          end associate
          if (m%pairs(i)%is_cylinder) then
             if (is_out_of_stroke(m%pairs(i)%stroke, norm2(drawn_way(m, m%pairs(i))))) call add_card_remark(set, &

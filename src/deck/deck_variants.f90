@@ -15,7 +15,7 @@ module deck_variants
    use number_format, only: whole
    implicit none
    private
-   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, apply_variant, &
+   public :: build_tolerances, parameter_on_card, variation_t, varied_t, build_variation, apply_variant, &
       values_of_variant
 
    !> The largest number of variants of a set.
@@ -91,7 +91,7 @@ contains
 
                do i = 1, 3
                   if (.not. card%given(i)) cycle
-                  number = number_on_card(set, above, i)
+                  number = parameter_on_card(set, above, i)
                   if (.not. takes_tolerance(set%mechanism, number)) then
                      call add_card_error(set, toler_none, k, real_1 + i - 1)
                   else if (card%real(i) < 0.0_wp) then
@@ -190,7 +190,7 @@ contains
    end function is_second
 
    !> Finds the address of a real of a card; its kind is 0 if no number of the mechanism is there.
-   pure function number_on_card(set, k, i) result(number)
+   pure function parameter_on_card(set, k, i) result(number)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k               !< number of the card, of any form
       integer, intent(in) :: i               !< number of the real, 1 to 3
@@ -208,7 +208,7 @@ contains
          number%place = card%row
          if (i == 1) number%kind = parameter_knot
       end associate
-   end function number_on_card
+   end function parameter_on_card
 
    !> Builds the variants of a set from its VARY cards, and counts them in its mechanism, which is there. Without such
    !> cards nothing is built. Wrong cards are errors. If the set has an error, `variation` is of no use.
@@ -277,7 +277,7 @@ contains
             continues = card%below == set%cards(i - 1)%below .and. all(card%label == set%cards(i - 1)%label)
             if (n == 0) then
                if (set%errors%count == 0) then
-                  one%number = number_on_card(set, one%card, one%place)
+                  one%number = parameter_on_card(set, one%card, one%place)
                   name = parameter_name(set%mechanism, one%number)
                   border = index(name, ' ', back=.true.)
                   one%owner = name(:border - 1)

@@ -51,11 +51,11 @@ contains
    pure function cylinder_motion(one, link_i, link_j) result(length)
       type(cylinder_t), intent(in) :: one
       real(wp), intent(in) :: link_i(3, 0:2), link_j(3, 0:2) !< x, y (length), phi (rad); derivatives
-      real(wp) :: length(0:2), q(2, 0:2), r(2, 0:2), arm(2)
+      real(wp) :: length(0:2), q(2, 0:2), r(2, 0:2), pin_offset(2)
 
       q = link_j(:2, :)
-      arm = rotated(one%q, direction(link_j(3, 0)))
-      call add_rotating(arm(1), arm(2), link_j(3, 1), link_j(3, 2), q(:, 0), q(:, 1), q(:, 2))
+      pin_offset = rotated(one%q, direction(link_j(3, 0)))
+      call add_rotating(pin_offset(1), pin_offset(2), link_j(3, 1), link_j(3, 2), q(:, 0), q(:, 1), q(:, 2))
       r = seen_from(link_i, q)
       r(:, 0) = r(:, 0) - one%p
       length = matmul(one%along, r)

@@ -117,7 +117,7 @@ contains
       type(mechanism_t), intent(inout) :: m
       type(reach_t), intent(out), optional :: reached(:)   !< (lengths) of each first length of a hole
       type(reach_t) :: reach
-      real(wp) :: place(2, size(m%points)), q(2), way(2), arm(2, 2), open(2)
+      real(wp) :: place(2, size(m%points)), q(2), way(2), ray(2, 2), open(2)
       integer :: i, k, lengths
       logical :: is_one
 
@@ -141,11 +141,11 @@ contains
             else
                associate (centre => place(:, [one%point(1), next%point(1)]), radius => [one%length, next%length], &
                      point => m%points(one%point(2)))
-                  arm = spread(point_of(m%links(point%link)%position, point%offset), 2, 2) - centre
-                  if (point%moves .and. abs(cross(arm(:, 1), arm(:, 2))) > same_place_tolerance*product(radius)) then
-                     open = 0.5_wp*(radius**2 - sum(arm**2, dim=1))/cross(arm(:, 1), arm(:, 2))
-                     q = centre(:, 1) + arm(:, 1) + [open(1)*arm(2, 2) - open(2)*arm(2, 1), &
-                        open(2)*arm(1, 1) - open(1)*arm(1, 2)]
+                  ray = spread(point_of(m%links(point%link)%position, point%offset), 2, 2) - centre
+                  if (point%moves .and. abs(cross(ray(:, 1), ray(:, 2))) > same_place_tolerance*product(radius)) then
+                     open = 0.5_wp*(radius**2 - sum(ray**2, dim=1))/cross(ray(:, 1), ray(:, 2))
+                     q = centre(:, 1) + ray(:, 1) + [open(1)*ray(2, 2) - open(2)*ray(2, 1), &
+                        open(2)*ray(1, 1) - open(1)*ray(1, 2)]
                   else
                      call find_intersection(centre, radius, q, reach)
                   end if

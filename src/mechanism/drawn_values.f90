@@ -3,11 +3,11 @@
 module drawn_values
    use kinds, only: wp
    use plane_vectors, only: point_of, pi
-   use pair_geometry, only: way_of, opening_of, slide_of
+   use pair_geometry, only: way_of, closure_error_of, slide_of
    use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
    implicit none
    private
-   public :: complete_from_drawing, drawn_place, drawn_drive, drawn_way, drawn_opening, coincides
+   public :: complete_from_drawing, drawn_place, drawn_drive, drawn_way, drawn_closure_error, coincides
 
    !> A relative difference below this is zero. A coordinate passes through about ten operations, each with an error of
    !> half a rounding of the places involved; coordinates that another program has printed are off by one or two more.
@@ -33,7 +33,7 @@ contains
       phi = m%links(pair_links(m, pair))%position(3)
       if (pair%drawn(2)) then
          pair%offset = 0.0_wp
-         if (.not. pair%drawn(1)) pair%offset = drawn_opening(m, pair)
+         if (.not. pair%drawn(1)) pair%offset = drawn_closure_error(m, pair)
       end if
       if (pair%drawn(1)) then
          d = drawn_way(m, pair)
@@ -46,15 +46,15 @@ contains
    end subroutine complete_from_drawing
 
    !> Finds by how much h of a prismatic pair is greater in the drawing than on its card: (P - Q) . n - h (length).
-   pure real(wp) function drawn_opening(m, pair) result(opening)
+   pure real(wp) function drawn_closure_error(m, pair) result(closure_error)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
       integer :: links(2)
 
       links = pair_links(m, pair)
-      opening = -opening_of(m, pair, m%links(links(1))%position, m%links(links(2))%position)
-      opening = without_rounding(opening, size_of_pair(m, pair) + abs(pair%offset))
-   end function drawn_opening
+      closure_error = -closure_error_of(m, pair, m%links(links(1))%position, m%links(links(2))%position)
+      closure_error = without_rounding(closure_error, size_of_pair(m, pair) + abs(pair%offset))
+   end function drawn_closure_error
 
    !> Finds the value (length or rad) of the coordinate of a drive in the drawing.
    pure real(wp) function drawn_drive(m, drive) result(value)

@@ -372,21 +372,21 @@ contains
       type(spline_t), intent(in) :: spline
       integer, intent(in) :: i               !< number of the piece
       real(wp), intent(in) :: t1, t2         !< times in their order
-      real(wp) :: f(3), u(5), h, reach, slope, q, root, magnitude, curve, away
+      real(wp) :: f(3), u(5), h, farthest, slope, q, root, magnitude, curve, away
       integer :: k
 
       ! f' = f'(x_i) + m_i u + slope u^2/2, u from the knot.
       f = piece_value(spline, i, spline%x(i))
       h = spline%x(i + 1) - spline%x(i)
       slope = (spline%m(i + 1) - spline%m(i))/h
-      reach = max(abs(t1 - spline%x(i)), abs(t2 - spline%x(i)))
+      farthest = max(abs(t1 - spline%x(i)), abs(t2 - spline%x(i)))
       u = 0.0_wp
-      if (abs(spline%m(i)) < abs(slope)*reach) u(3) = -spline%m(i)/slope
+      if (abs(spline%m(i)) < abs(slope)*farthest) u(3) = -spline%m(i)/slope
       root = spline%m(i)**2 - 2.0_wp*slope*f(2)
       if (root >= 0.0_wp) then
          q = -(spline%m(i) + sign(sqrt(root), spline%m(i)))
-         if (abs(q) < abs(slope)*reach) u(4) = q/slope
-         if (2.0_wp*abs(f(2)) < abs(q)*reach) u(5) = 2.0_wp*f(2)/q
+         if (abs(q) < abs(slope)*farthest) u(4) = q/slope
+         if (2.0_wp*abs(f(2)) < abs(q)*farthest) u(5) = 2.0_wp*f(2)/q
       end if
       u = within(spline%x(i) + u, t1, t2)
       u(:2) = [t1, t2]

@@ -49,7 +49,7 @@ contains
       real(wp), intent(in) :: length         !< characteristic length, above 0
       real(wp), intent(in) :: rate           !< characteristic rate, above 0, 1 over the unit of time
       type(centre_t) :: c
-      real(wp) :: d(2), u(2), w, arm(2), to_i(2), to_j(2)
+      real(wp) :: d(2), u(2), w, to_pole(2), to_i(2), to_j(2)
 
       to_i = [cos(link_i(3, 0)), -sin(link_i(3, 0))]
       to_j = [cos(link_j(3, 0)), -sin(link_j(3, 0))]
@@ -62,10 +62,10 @@ contains
       end if
       if (abs(w)*length <= negligible_motion*norm2(u)) c%state = centre_infinite
       c%weight = sign(max(abs(w), least_weight*norm2(u)/length), w)
-      arm = quarter_turn(u)/c%weight
-      c%value(:2, 0) = link_j(:2, 0) + arm
-      c%value(:2, 1) = rotated(d + arm, to_i)
-      c%value(:2, 2) = rotated(arm, to_j)
+      to_pole = quarter_turn(u)/c%weight
+      c%value(:2, 0) = link_j(:2, 0) + to_pole
+      c%value(:2, 1) = rotated(d + to_pole, to_i)
+      c%value(:2, 2) = rotated(to_pole, to_j)
       c%value(3, :) = [line_angle(quarter_turn(u)), line_angle(rotated(quarter_turn(u), to_i)), &
          line_angle(rotated(quarter_turn(u), to_j))]
    end function pole_of

@@ -10,7 +10,7 @@ module pair_geometry
    use instant_centres, only: seen_from
    implicit none
    private
-   public :: way_of, opening_of, slide_of, pair_motion
+   public :: way_of, closure_error_of, slide_of, pair_motion
 
 contains
 
@@ -26,15 +26,15 @@ contains
 
    !> Finds the closure error of a pair, in the deck's unit of length: the distance from P to Q, or h + (Q - P) . n
    !> across a guide.
-   pure real(wp) function opening_of(m, pair, link_i, link_j) result(opening)
+   pure real(wp) function closure_error_of(m, pair, link_i, link_j) result(closure_error)
       type(mechanism_t), intent(in) :: m
       type(pair_t), intent(in) :: pair
       real(wp), intent(in) :: link_i(3), link_j(3)     !< x, y (length) and phi (rad) of its links
 
-      opening = norm2(way_of(m, pair, link_i, link_j))
-      if (has_guide(pair%kind)) opening = pair%offset + dot_product(way_of(m, pair, link_i, link_j), &
+      closure_error = norm2(way_of(m, pair, link_i, link_j))
+      if (has_guide(pair%kind)) closure_error = pair%offset + dot_product(way_of(m, pair, link_i, link_j), &
          quarter_turn(direction(link_i(3) + pair%alpha)))
-   end function opening_of
+   end function closure_error_of
 
    !> Finds the slide of a prismatic pair, in the deck's unit.
    pure real(wp) function slide_of(m, pair, link_i, link_j) result(slide)

@@ -204,11 +204,11 @@ contains
                   ! A position out of reach contradicts nothing: a smaller change may find one.
                   if (is_solved(c) .or. c%ended == ended_inconsistent) &
                      place%opened = max(place%opened, c%open%value/c%open%level)
-                  place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open &
+                  place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_inconsistent &
                      .or. place%opened > place%room
 
                   if (c%singular) lack = missing_rates
-                  if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
+                  if (.not. is_solved(c) .or. c%rates_inconsistent) lack = missing_all
                   if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(b, x, i, w, s)
                   if (place%is_singular) then
                      if (c%change > singular_change) lack = missing_all

@@ -178,7 +178,7 @@ contains
             assemblies%are_more = size(assemblies%list) == max_assemblies
             if (assemblies%are_more) exit
             call prove_position(p, continuation%blocks, continuation%path, continuation%state, 0, q, failed)
-            is_proved = failed == 0 .and. .not. any([(found(k)%rates_open(chosen(k)), k=1, size(found))])
+            is_proved = failed == 0 .and. .not. any([(found(k)%rates_inconsistent(chosen(k)), k=1, size(found))])
             call record_assembly(continuation, found, chosen, is_proved, p, q, assemblies)
             i = i - 1
             cycle

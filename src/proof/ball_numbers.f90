@@ -67,7 +67,7 @@ contains
       allocate (p%links(x%chain%wanted))
       do i = 1, x%chain%wanted
          associate (own => x%chain%links(i)%numbers)
-            p%links(i)%reach = around(own%reach, of_vectors)
+            p%links(i)%offset = around(own%offset, of_vectors)
             p%links(i)%body_vector = around(own%body_vector, of_vectors)
             p%links(i)%slide_vector = around(own%slide_vector, of_direction*length_of(own%slide_vector))
             p%links(i)%root_unit = around(own%root_unit, 0.0_wp)

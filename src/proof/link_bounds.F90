@@ -24,7 +24,7 @@ contains
       type(motion_t), intent(in) :: q        !< as computed
       type(ball_t), intent(out) :: links(3, 0:2, size(q%position, 2))   !< x and y from the origin of `q`, angle (rad)
       real(wp), intent(out) :: largest(2, 0:2)   !< largest error of the lengths and angles (rad) of `q`
-      type(vector_t) :: offset(0:2)
+      type(vector_t) :: place(0:2)
       real(wp) :: error(3, 0:2)
       integer :: i
 
@@ -32,9 +32,9 @@ contains
       largest = 0.0_wp
       do i = 1, x%chain%wanted
          associate (h => x%chain%links(i), own => x%chain%links(i)%link, f => balls%u(x%chain%links(i)%orientation))
-            call find_offset(h, numbers%links(i), balls%u, offset)
-            links(1, :, own) = offset%x
-            links(2, :, own) = offset%y
+            call find_place(h, numbers%links(i), balls%u, place)
+            links(1, :, own) = place%x
+            links(2, :, own) = place%y
             if (h%parent > 0) links(:2, :, own) = links(:2, :, own) + links(:2, :, h%parent)
             links(3, :, own) = [f%value + numbers%links(i)%angle_offset, f%rate, f%acceleration]
             error(:, 0) = distance(links(:, 0, own), q%position(:, own))

@@ -161,7 +161,7 @@ contains
          other%u%value = 0.5_wp*(from%u%value%mid + to%u%value%mid) &
             + 0.125_wp*(to%t - from%t)*(from%u%rate%mid - to%u%rate%mid)
          call solve_blocks(b, x, b%needed, w, other, c)
-         if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
+         if (.not. is_solved(c) .or. c%singular .or. c%rates_inconsistent) return
          allocate (middle)
          middle = new_placed(b, size(path%laws))
          call prove_position(numbers, b, path, other, 0, middle, failed)

@@ -76,7 +76,7 @@ contains
             if (block%explicit) then
                ! The unknown is the sum of another one and a drive, and its cubic is the sum of their cubics.
                associate (row => b%rows(block%first_row))
-                  radius = (ends_open(block%first_row) + tube%radius(row%other) &
+                  radius = (end_residual(block%first_row) + tube%radius(row%other) &
                      + tube%balls%drive(1, row%drive)%radius)*room
                end associate
             else
@@ -126,12 +126,12 @@ contains
       end subroutine bound_drives
 
       !> Bounds the part of |F| by the residuals at both ends, by Hermite's interpolation.
-      pure real(wp) function ends_open(row)
+      pure real(wp) function end_residual(row)
          integer, intent(in) :: row          !< number of the equation
 
-         ends_open = (max(from%open(0, row), to%open(0, row)) &
+         end_residual = (max(from%open(0, row), to%open(0, row)) &
             + 0.25_wp*abs(h)*max(from%open(1, row), to%open(1, row)))*room
-      end function ends_open
+      end function end_residual
 
       !> Finds the radius of the tube of a block whose earlier blocks are proved.
       subroutine prove_block(i, own, radius)
@@ -148,7 +148,7 @@ contains
          call ball_accelerations(b, i, tube%curve, w%v)
          call subtract_product(2, tube%curve%u, own, w)
          do k = 1, size(w%open)
-            w%open(k) = (h**2/16.0_wp*w%v(k)%radius + ends_open(b%list(i)%first_row + k - 1))*room
+            w%open(k) = (h**2/16.0_wp*w%v(k)%radius + end_residual(b%list(i)%first_row + k - 1))*room
          end do
          call find_ball(b, numbers, i, tube%balls, w, maxval(tube%radius), radius)
       end subroutine prove_block

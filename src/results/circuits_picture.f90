@@ -31,12 +31,12 @@ module circuits_picture
    end type chart_curve_t
 
    !> A chart of a number over a drive, in pixels and in the units of its axes.
-   type :: chart_t
+   type :: circuit_plot_t
       type(chart_curve_t), allocatable :: curves(:)   !< (circuits)
       real(wp) :: low(2) = huge(1.0_wp), high(2) = -huge(1.0_wp)   !< the ends of the axes
       real(wp) :: turn(2) = 0.0_wp              !< a whole turn, after which an axis ends; 0: it does not
       real(wp) :: corner(2) = 0.0_wp, extent(2) = 0.0_wp   !< pixels of the window: its corner above, and its size
-   end type chart_t
+   end type circuit_plot_t
 
    !> A number varies if its values differ by more than this, in rad or in lengths of the curve.
    real(wp), parameter :: least_variation = 1.0e-6_wp
@@ -122,7 +122,7 @@ contains
       logical :: angular(2)
       real(wp), dimension(2) :: unit, start
       real(wp) :: beyond
-      type(chart_t) :: chart
+      type(circuit_plot_t) :: chart
       type(request_t) :: request
       type(drive_t) :: drive
       integer :: k, n
@@ -181,7 +181,7 @@ contains
       type(circuits_t), intent(in) :: found   !< of the drive
       real(wp), intent(in) :: unit(2)        !< of the drive and of the number, in the deck's units and rad
       logical, intent(in) :: is_angle        !< the number is an angle
-      type(chart_t), intent(inout) :: chart   !< gets its curves, and their ranges for its axes
+      type(circuit_plot_t), intent(inout) :: chart   !< gets its curves, and their ranges for its axes
       type(row_t) :: row
       integer :: c, k
 
@@ -210,7 +210,7 @@ contains
    !> Draws the ticks and numbers of both axes, below and on the left.
    subroutine draw_ticks(page, chart)
       type(page_t), intent(inout) :: page
-      type(chart_t), intent(in) :: chart
+      type(circuit_plot_t), intent(in) :: chart
       ! From a side to the end of a tick, and to its number.
       real(wp), parameter :: to_tick_end(2, 2) = reshape([0.0_wp, tick_length, -tick_length, 0.0_wp], [2, 2])
       real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick_length + 13.0_wp, &
@@ -239,7 +239,7 @@ contains
    !> points. The last point of a closed circuit is the first.
    subroutine draw_curves(page, chart, found, polish)
       type(page_t), intent(inout) :: page
-      type(chart_t), intent(in) :: chart
+      type(circuit_plot_t), intent(in) :: chart
       type(circuits_t), intent(in) :: found   !< of the drive
       logical, intent(in) :: polish          !< in Polish
       character(:), allocatable :: style

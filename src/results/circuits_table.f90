@@ -5,7 +5,7 @@ module circuits_table
    use independent, only: set_t
    use set_members, only: name_of_drive
    use circuit_trace, only: end_closed, end_far, end_shut
-   use circuits, only: circuits_t, circuit_branch_t, turns_of
+   use circuits, only: circuits_t, circuit_branch_t, revolutions_of
    use set_circuits, only: known
    use ranges_table, only: side_words
    use text_output, only: output_t, put
@@ -117,7 +117,7 @@ contains
          if (circuit%rests) then
             text = phrase(text_at_rest, set%polish)//' '//value_words(set, found, branch%range(1))
          else if (all(circuit%ends == end_closed) .and. all(branch%dead == 0)) then
-            text = full_turn_words(turns_of(circuit), set%polish)
+            text = full_turn_words(revolutions_of(circuit), set%polish)
          else
             ! The head of the column has their unit.
             text = value_words(set, found, branch%range(1))

@@ -190,7 +190,7 @@ contains
    end subroutine csv_instant
 
    !> Makes the columns of the table of a set: those of COLUMN cards in their order; without such cards, all columns of
-   !> the rows of PRINT. Or those of its extremes: of rows with EXTREMES cards, the numbers that are sought.
+   !> the rows of PRINT. A table of extremes has the sought numbers of the rows with EXTREMES cards.
    function new_table(set, of_extremes) result(t)
       class(set_t), intent(in) :: set
       logical, intent(in) :: of_extremes     !< the table has extremes

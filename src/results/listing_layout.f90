@@ -340,7 +340,7 @@ contains
    end function angle_unit
 
    !> Finds the first column of each line of a table that is wider than a line (lines + 1): each line begins with column
-   !> 1. At last the number of columns and one more.
+   !> 1. The last element is the number of columns plus one.
    pure function line_starts(before, widths) result(starts)
       integer, intent(in) :: before          !< characters of a line before its other columns
       integer, intent(in) :: widths(:)       !< (columns) characters; 0: it is not in the table

@@ -20,7 +20,7 @@ module blocks
    private
    public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
       loop_projection, loop_angles, geometry_t, link_order_t, link_step_t, block_numbers_t, row_numbers_t, &
-         loop_numbers_t
+      loop_numbers_t
    public :: blocks_that_give, blocks_below, largest_known, known_to, own_unknowns
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them

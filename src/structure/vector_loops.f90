@@ -219,8 +219,8 @@ contains
       first = 0
       last = -1
       meeting = -1
-      call reach(1, node(m, i), 0)
-      call reach(2, node(m, j), 0)
+      call visit(1, node(m, i), 0)
+      call visit(2, node(m, j), 0)
       do while (meeting < 0)
          do side = 1, 2
             if (meeting < 0) call go_on(side)
@@ -243,7 +243,7 @@ contains
             link = search%queue(n, side)
             do k = tree%near%first(link), tree%near%first(link + 1) - 1
                p = tree%near%member(k)
-               if (search%open(p)) call reach(side, node(m, other_link(m, p, link)), p)
+               if (search%open(p)) call visit(side, node(m, other_link(m, p, link)), p)
                if (meeting >= 0) return
             end do
          end do
@@ -251,7 +251,7 @@ contains
       end subroutine go_on
 
       !> Notes that the search has come to a node.
-      subroutine reach(side, n, pair)
+      subroutine visit(side, n, pair)
          integer, intent(in) :: side         !< the end from which it comes: 1 or 2
          integer, intent(in) :: n            !< the number of the node
          integer, intent(in) :: pair         !< the number of the pair by which it was reached; 0: the end itself
@@ -263,7 +263,7 @@ contains
          if (n == 0) return
          last(side) = last(side) + 1
          search%queue(last(side), side) = n
-      end subroutine reach
+      end subroutine visit
 
       !> Appends the pairs from the meeting node back to the node where a search began.
       subroutine collect(side, goal)

@@ -1,5 +1,5 @@
 !> Speed against error (--study): methods, tolerances and predictors tried on a deck, each with the time of a step and
-!> the error of the printed rows. Or the time only (--time).
+!> the error of the printed rows. With --time, the time alone.
 module study
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
@@ -73,7 +73,7 @@ module study
    real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
    !> Seconds that the reference of a set may take. What it has written until then is compared.
-   integer, parameter :: patience = 60
+   integer, parameter :: max_wait = 60
    !> Cards that do not change a row of a link, point or pair, or that a study replaces.
    character(*), parameter :: left_out = 'METHOD|VARY|TOLER|EXTREMES|RANGE|CIRCUITS|ASSEMBLY|PROVE'
 
@@ -414,7 +414,7 @@ contains
       call execute_command_line('exec 2>/dev/null; p='//shell_word(trim(this))//'; [ -x "$p" ] || p=kinmat-quad; ' &
          //'case $("$p" --version) in *REAL128) ;; *) exit 1;; esac; ' &
          //'awk ''!/^[*]/ { kept = toupper($0) !~ /^('//left_out//')/ } kept'' '//shell_word(path) &
-         //' | timeout '//whole(patience)//' "$p" --no-listing --table '//rows//' --sets '//set, exitstat=status)
+         //' | timeout '//whole(max_wait)//' "$p" --no-listing --table '//rows//' --sets '//set, exitstat=status)
       if (status /= 1) open (newunit=unit, file=rows, action='read', iostat=status)
       if (status /= 0) unit = 0
       closed = close_descriptor(descriptor)

@@ -8,7 +8,7 @@ program circuits_by_chance
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuit_trace, only: end_closed
    use assemblies, only: assemblies_t, find_assemblies
-   use circuits, only: circuits_t, turns_of, find_circuits
+   use circuits, only: circuits_t, revolutions_of, find_circuits
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
    use dice, only: dice_t, new_dice, between, chance, throw
@@ -300,7 +300,7 @@ contains
       own = pack([(k, k=1, size(found%branches))], found%branches%circuit == i)
       is_circuit = all(found%list(i)%ends == end_closed)
       if (range(2) - range(1) >= turn) then
-         is_circuit = is_circuit .and. size(own) == 1 .and. turns_of(found%list(i)) == 1
+         is_circuit = is_circuit .and. size(own) == 1 .and. revolutions_of(found%list(i)) == 1
          if (is_circuit) is_circuit = all(found%branches(own(1))%dead == 0)
          return
       end if
