@@ -1,5 +1,5 @@
 !> The motion of the links from the motion of the unknowns, along the tree: the origin of a link is that of its parent
-!> and the offset of link_motion.inc, here compiled for reals.
+!> and its place on the parent by link_motion.inc, here compiled for reals.
 #define NUMBER real(wp)
 #define ZERO 0.0_wp
 #define TWO 2.0_wp
@@ -157,7 +157,7 @@ contains
       end associate
    end subroutine flag_links
 
-   !> Gives a link the numbers of its offset from its parent.
+   !> Gives a link the numbers of its place on its parent.
    pure subroutine set_place(m, tree, x, link)
       type(mechanism_t), intent(in) :: m
       type(spanning_tree_t), intent(in) :: tree
