@@ -13,11 +13,12 @@ program fuzz
    use, intrinsic :: ieee_arithmetic, only: ieee_set_halting_mode, ieee_set_flag, ieee_usual, ieee_all
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, instant_count
    use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, &
       out_table
    use deck, only: read_deck
    use job, only: run_job
+   use study, only: run_study
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
    use deck_damage, only: deck_of_seed
    use dice, only: dice_t, new_dice
@@ -33,6 +34,9 @@ program fuzz
    integer, parameter :: others_every = 25
    integer, parameter :: other_outputs(*) = [out_table, out_summary, out_svg, out_animation, out_circuits]
    character(9), parameter :: others(*) = [character(9) :: 'table.csv', 'summary', 'svg', 'film.svg', 'circuits']
+
+   !> Every so many-th deck is studied (--study) if its links at all instants are no more.
+   integer, parameter :: studied_every = 20, max_studied = 2000
 
    interface
       !> After so many seconds the process is ended by the system; 0 takes it back.
@@ -151,6 +155,7 @@ contains
             if (wrong == '' .and. allocated(options%files(other_outputs(k))%text)) &
                call check_protocol(options%files(other_outputs(k))%text, other_outputs(k) == out_table, wrong)
          end do
+         if (wrong == '' .and. mod(seed, studied_every) == 0) call study_deck(options%deck, directory//'/study', wrong)
       case (1)
          if (index(message, ' *** E') == 0 .and. index(message, ' IS NOT A DECK: LINE ') == 0) &
             wrong = 'REFUSED WITHOUT A WORD: '//message
@@ -199,6 +204,26 @@ contains
       call run_job(options, status, message)
       call ieee_set_halting_mode(ieee_usual, .false.)
    end subroutine run_trapped
+
+   !> The study of a short deck, with the same traps; kinmat-quad is not there.
+   subroutine study_deck(path, output, wrong)
+      character(*), intent(in) :: path, output
+      character(:), allocatable, intent(out) :: wrong
+      type(mechanism_t), allocatable :: read_sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+      integer :: status, k
+
+      wrong = ''
+      call read_deck(path, read_sets, report, failure)
+      if (sum([(instant_count(read_sets(k))*size(read_sets(k)%links), k=1, size(read_sets))]) > max_studied) return
+      call ieee_set_flag(ieee_all, .false.)
+      call ieee_set_halting_mode(ieee_usual, .true.)
+      call run_study(path, output, .false., status, report)
+      call ieee_set_halting_mode(ieee_usual, .false.)
+      if (status /= 0 .or. report /= '') wrong = 'STUDY: '//report
+      if (wrong == '') call check_protocol(output, .false., wrong)
+   end subroutine study_deck
 
    subroutine judge(options, v, wrong, flagged)
       type(options_t), intent(in) :: options
