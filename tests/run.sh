@@ -9,15 +9,15 @@ export BUILD MAKE
 parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
-   make check|2100|tests/system/check.sh
-   relations between runs|260|tests/system/relations.sh --short
+   make check|1950|tests/system/check.sh
+   relations between runs|220|tests/system/relations.sh --short
    faults by name|561|tests/system/faults.sh
    unit tests|405|"$MAKE" --no-print-directory unit
    units|340|tests/system/units.sh
    cards and options together|1000|tests/system/together.sh
    assemblies and runs|450|tests/system/assembly_relations.sh
    what is printed arrives|255|tests/system/output.sh
-   mechanisms of a known motion|52|tests/fuzz/fuzz_mechanisms.sh 40 21
+   mechanisms of a known motion|42|tests/fuzz/fuzz_mechanisms.sh 30 21
    the library for C and Python|140|tests/system/library.sh
    what is hard to compute|120|tests/oracle/hard.sh short
    real128|124|"$MAKE" --no-print-directory quad-check
@@ -30,7 +30,7 @@ parts() {
    single precision|130|"$MAKE" --no-print-directory single-check
    the command|480|tests/system/command.sh
    extremes|42|tests/system/answers.sh
-   extremes of laws|124|tests/fuzz/fuzz_extremes.sh --laws 80 40
+   extremes of laws|63|tests/fuzz/fuzz_extremes.sh --laws 40 20
    the tool of mutants|8|tests/mutants/self_test.sh
    the sources|60|tests/system/house.sh
    decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250

@@ -5,7 +5,8 @@
 . tests/counting.sh
 
 for deck in input/*.deck; do
-   name=$(basename "$deck" .deck)
+   name=${deck#input/}
+   name=${name%.deck}
    "$BUILD/kinmat" "$deck" > "$BUILD/$name.lst" 2> "$BUILD/$name.err"
    status=$?
    equal "$name: exit status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
@@ -14,13 +15,13 @@ for deck in input/*.deck; do
    "$BUILD/kinmat" --errors "$deck" > "$BUILD/$name.errors.lst" 2> /dev/null
    same "$name: listing, with --errors" "expected/$name.lst" "$BUILD/$name.errors.lst"
    same "$name: closed form" "expected/$name.lst" "$BUILD/expected/$name.lst"
-   equal "$name: NaN, Inf or asterisks" '' "$(grep -nEiw 'nan|inf|infinity|[*]{4,}' "$BUILD/$name.lst" | grep -v ' PATHS ')"
-   equal "$name: negative zero" '' "$(grep -nE -e '-0[.]0*( |$)' "$BUILD/$name.lst")"
-   equal "$name: lines over 120 columns" '' "$(awk 'length > 120' "$BUILD/$name.lst")"
+   equal "$name: NaN, Inf or asterisks, negative zero, lines over 120 columns" '' "$(awk '
+      length > 120 || /-0[.]0*( |$)/ || /[*][*][*][*]/ { print; next }
+      !/ PATHS / && tolower($0) ~ /(^|[^a-z0-9_])(nan|inf|infinity)([^a-z0-9_]|$)/' "$BUILD/$name.lst")"
 done
 for listing in expected/*.lst; do
-   equal "$listing: its deck" "$(ls "input/$(basename "$listing" .lst).deck" 2> /dev/null)" \
-      "input/$(basename "$listing" .lst).deck"
+   name=${listing#expected/}
+   if [ -e "input/${name%.lst}.deck" ]; then pass; else miss "$listing has no deck"; fi
 done
 
 # The paper's own iteration prints the same tables as Newton.

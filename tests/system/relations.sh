@@ -5,7 +5,7 @@
 # the errors that --errors tells of both.
 #
 #    relations.sh [DECK...]               every change of these decks, or of all of input/
-#    relations.sh --short                 a fourth of the changes of each deck of input/, and of six decks by the dice, and
+#    relations.sh --short                 a fifth of the changes of each deck of input/, and of six decks by the dice, and
 #                                         some changes of decks that have failed
 #    relations.sh --random COUNT [FIRST]  decks of tests/fuzz/fuzz_mechanisms, COUNT of them from seed FIRST on; those that
 #                                         fail are kept
@@ -80,7 +80,7 @@ case $1 in
 --random) random "$2" "${3:-1}" release/fuzz_mechanisms --deck ;;
 --drawn) random "$2" "${3:-1}" debug/fuzz --drawn ;;
 --short)
-   every=4
+   every=5
    for path in $(grep -LE '^VARY' input/*.deck); do relate "$path"; done
    random 6 1 release/fuzz_mechanisms --deck
    random 8 1 debug/fuzz --drawn
