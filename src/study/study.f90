@@ -39,7 +39,8 @@ module study
       real(dp) :: iterations = 0.0_dp            !< a step, those of substeps included
       real(dp) :: seconds = 0.0_dp               !< of the whole motion
       real(dp) :: time(repeats) = 0.0_dp         !< of a step without the first instant, microseconds
-      real(dp) :: error(0:2) = 0.0_dp            !< of positions, velocities, accelerations, in parts of the largest
+      !> Of positions, velocities, accelerations, in parts of the largest; below 0: no number was compared.
+      real(dp) :: error(0:2) = 0.0_dp
    end type trial_t
 
    !> The numbers with which the rows of a set are compared.
@@ -240,7 +241,7 @@ contains
       end if
 
       do d = 0, merge(2, -1, trial%missed == 0)
-         if (trial%error(d) < 1.0e-3_dp*nothing_known) then
+         if (trial%error(d) >= 0.0_dp .and. trial%error(d) < 1.0e-3_dp*nothing_known) then
             write (line(75 + 11*d:), '(es11.1)') trial%error(d)
          else
             line(75 + 11*d:) = '    UNKNOWN'
@@ -280,8 +281,6 @@ contains
       trial%iterations = real(maxval(a%list%iterations) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
          trial%error(k) = maxval(difference(:, k)/largest(:, k))
-         ! No number was compared.
-         if (trial%error(k) < 0.0_dp) trial%error(k) = nothing_known
       end do
 
    contains
