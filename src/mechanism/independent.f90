@@ -159,6 +159,9 @@ contains
       allocate (set%parts(1), set%cards(1))
       set%cards(1)%of = [(i, i=1, size(m%links))]
       set%parts(1) = m
+      ! Parts are copied where numbers change: their texts would only take time.
+      if (allocated(m%echo)) deallocate (set%parts(1)%echo)
+      if (allocated(m%remarks)) deallocate (set%parts(1)%remarks)
       if (allocated(m%branch_requests)) set%parts(1)%branch_requests%card = [(i, i=1, size(m%branch_requests))]
       call take_lengths(set%parts(1))
    end subroutine take_whole
