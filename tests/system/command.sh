@@ -497,4 +497,8 @@ for deck in input/*.deck "$w/m.deck" "$w/open.deck"; do
    LD_LIBRARY_PATH=$openblas "$kinmat" "$deck" > "$w/openblas.lst"
    same "$deck: OpenBLAS" "$w/release.lst" "$w/openblas.lst"
 done
+# A blank unit of angles is the radian, and the listing says so.
+deck M EN | sed 's/^UNITS .*/UNITS   MM/' > "$w/units.deck"
+equal 'the units of a card without a unit of angles' ' UNITS    MM       RAD      S' "$("$kinmat" "$w/units.deck" | grep -m 1 '^ UNITS' | sed 's/ *$//')"
+
 conclude

@@ -337,6 +337,11 @@ done
 equal 'a motion that closes, and one that does not' '1 0' "$(flags "$w/cad.dxf" PATHS | sort -u) $(flags "$w/cad.dxf" 2-PATHS | sort -u)"
 equal 'entities of the second set' 'CIRCLE 2-JOINTS 4,LINE 2-LINKS 6,POLYLINE 2-PATHS 1,SEQEND 2-PATHS 1,VERTEX 2-PATHS 5' \
    "$(entities "$w/cad.dxf" | tr , '\n' | grep ' 2-' | paste -s -d,)"
+# Of the joints in the order of the deck, the first ones of Jansen's leg: the fixed pivot and the pin of the crank, 15 long, at the
+# beginning, and the other fixed pivot, 38 beside the first and 7.8 below it.
+equal 'circles at the joints' '0 0,15 0,-38 -7.8' "$(awk '{ sub(/\r$/, "") } FNR % 2 == 1 { code = $1 + 0; next } code == 0 { kind = $0 }
+   kind == "CIRCLE" && code == 10 { x = $0 + 0 } kind == "CIRCLE" && code == 20 { if (!((x, $0 + 0) in seen)) print x, $0 + 0; seen[x, $0 + 0] = 1 }' "$w/cad.dxf" |
+   sed -n '1,2p;4p' | paste -s -d,)"
 # Instants of AT cards alone: no instant is a frame.
 sed 's/^TIME .*/AT                              3.0             0.0             1.0/' "$w/two.deck" > "$w/at.deck"
 "$kinmat" "$w/at.deck" --no-listing --dxf "$w/at.dxf" --table "$w/at.csv"

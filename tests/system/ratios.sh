@@ -223,4 +223,9 @@ bad 'E096 "B" IS REPEATED; FIRST ON CARD 12' COLUMN PAIRS B VALUE
    echo 'DRIVE   RELANGLECRANK   COUPLER 0.0             1.0'; echo 'DRIVE   ANGLE   ROCKER                          1.0'; card EXTREMES RATIOS A; echo END; } > "$w/several.deck"
 equal 'E066' 'E066 "A" HAS SEVERAL DRIVES: EXTREMES OF ITS RATIOS ARE NOT SEARCHED' \
    "$("$kinmat" "$w/several.deck" 2>&1 > /dev/null | sed -n 's/^ [*][*][*] \(E[0-9]*\) .*: "\(.*\)/\1 "\2/p')"
+# Two drives: the upper arm is not moved by the angle of the lower one, and has no column for it.
+sed '/^PRINT/d; /^END/d' input/jacobian.deck > "$w/columns.deck"
+{ card COLUMN PAIRS SHOULDER; card COLUMN RATIOS SHOULDER; card COLUMN RATIOS X-HAND; echo END; } >> "$w/columns.deck"
+equal 'columns of what a drive moves' 'ANGLE.UPPER,RELANGLE.UPPER.FORE,SHOULDER.theta,SHOULDER.by.ANGLE.UPPER,X-HAND.by.ANGLE.UPPER,X-HAND.by.RELANGLE.UPPER.FORE' \
+   "$("$kinmat" --no-listing --table - "$w/columns.deck" | head -n 1 | cut -d, -f2-)"
 conclude
