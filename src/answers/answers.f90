@@ -18,15 +18,16 @@ module answers
    private
    public :: answers_t, new_answers, update_answers
 
+   !> The answers of a set, and which of them are asked for.
    type :: answers_t
       logical :: takes_instants = .false.           !< some answer is made of the instants
-      logical :: wants_extremes = .false.
-      logical :: wants_contributions = .false.
+      logical :: wants_extremes = .false.           !< card EXTREMES
+      logical :: wants_contributions = .false.      !< card TOLER, with tables in the listing
       type(extremes_t) :: extremes
-      type(dwell_t), allocatable :: dwells(:)       !< after the last instant
-      type(contributions_t) :: shares
-      type(proofs_t) :: proofs
-      type(range_t), allocatable :: ranges(:)       !< (drives that have one)
+      type(dwell_t), allocatable :: dwells(:)       !< (any number) after the last instant
+      type(contributions_t) :: shares               !< of tolerances
+      type(proofs_t) :: proofs                      !< card PROVE
+      type(range_t), allocatable :: ranges(:)       !< (any number) card RANGE: by drives, or by branches
       integer :: assemblies = -1                    !< of all parts, if they are asked for and all are known; or -1
       type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free); not allocated: not asked for
    end type answers_t
@@ -35,7 +36,7 @@ contains
 
    !> Prepares the answers of a set, before its first instant.
    subroutine new_answers(set, lists, answers)
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< before its first instant
       logical, intent(in) :: lists           !< its tables are written: only these have the shares of tolerances
       type(answers_t), intent(out) :: answers
       type(request_t), allocatable :: requests(:)
@@ -54,11 +55,11 @@ contains
       if (answers%wants_extremes) call new_extremes(set%now, answers%extremes)
    end subroutine new_answers
 
-   !> Takes an instant, to which the set has advanced, and searches between it and the last one.
+   !> Takes an instant, to which the set has advanced, and searches between it and the instant before.
    subroutine update_answers(answers, set, rows, k, due)
-      type(answers_t), intent(inout) :: answers
-      type(set_analysis_t), intent(inout) :: set
-      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
+      type(answers_t), intent(inout) :: answers   !< by `new_answers`
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       integer, intent(in) :: k               !< the number of the instant, from 0
       logical, intent(in) :: due             !< it is printed
 

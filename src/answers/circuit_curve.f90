@@ -46,19 +46,20 @@ module circuit_curve
       enumerator :: of_value = 0, of_slope, of_bend, of_size, of_cylinder
    end enum
 
+   !> A curve, in lengths of its own: the unit of METHOD DENSE's system.
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
       type(system_t) :: driven                !< the free drive as well: its row is the last
-      type(cylinder_t), allocatable :: cylinders(:)
+      type(cylinder_t), allocatable :: cylinders(:)   !< (cylinders) of the mechanism
       logical :: drives_cylinder = .false.    !< the free drive is the length of a cylinder
-      real(wp), allocatable :: held(:)        !< (drives) the values of the held ones, and 0 of the free one
+      real(wp), allocatable :: held(:)        !< (drives) values of the held ones, rad and lengths; 0 of the free one
       logical :: is_angle = .true.            !< the free drive is an angle
-      real(wp) :: first = 0.0_wp              !< its value at the first instant
+      real(wp) :: first = 0.0_wp              !< the value of the free drive at the first instant, in rad and lengths
       !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
       real(wp) :: far = 100.0_wp
       type(configuration_t) :: configuration   !< of the position found last
       type(coordinates_t) :: nonlinear        !< the coordinates in which the equations are not linear
-      type(factors_t) :: factors
+      type(factors_t) :: factors          !< of the Jacobian with a row more, at a position
    end type curve_t
 
    !> A position on the curve; derivatives are by its length, in rad and lengths.
@@ -66,9 +67,9 @@ module circuit_curve
       real(wp), allocatable :: q(:, :)        !< (3, links) x, y, phi
       real(wp), allocatable :: tangent(:)     !< (coordinates) unit vector
       real(wp), allocatable :: bend(:)        !< (coordinates) second derivative
-      real(wp) :: value(of_value:of_cylinder) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]
+      real(wp) :: value(of_value:of_cylinder) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, huge(1.0_wp)]   !< of_value, ...
       real(wp) :: certified_step = 0.0_wp     !< the longest step that is certified
-      real(wp) :: room = 0.0_wp               !< within it no other curve comes near, whatever the direction
+      real(wp) :: room = 0.0_wp               !< within it no other curve comes near in any direction; 0: a change point
       logical :: is_dead = .false.            !< the drive turns back here
       logical :: is_change = .false.          !< circuits meet here, or one crosses itself: between two points of one
    end type curve_point_t
@@ -77,8 +78,8 @@ contains
 
    !> Makes the curve on which a drive of a mechanism is free; the other drives have their values of a time.
    subroutine make_curve(curve, m, drive, t)
-      type(curve_t), intent(out) :: curve
-      type(mechanism_t), intent(in) :: m
+      type(curve_t), intent(out) :: curve    !< at the time
+      type(mechanism_t), intent(in) :: m     !< one independent mechanism
       integer, intent(in) :: drive           !< number of the free drive
       real(wp), intent(in) :: t              !< time
       real(wp) :: f(3, size(m%drives))
@@ -102,11 +103,12 @@ contains
    end subroutine make_curve
 
    !> Corrects curve%configuration by Newton's method, at right angles to the row `border`. curve%factors become those
-   !> of the Jacobian there, with `border` in the place of the row of the free drive.
+   !> of the Jacobian there, with `border` in the place of the row of the free drive. If the method fails, the
+   !> configuration is the last one that it tried.
    subroutine correct(curve, border, row, ok)
-      type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: border(:)      !< (coordinates)
-      real(wp), intent(out) :: row(:)        !< (coordinates) of the free drive
+      type(curve_t), intent(inout) :: curve   !< with an estimated configuration
+      real(wp), intent(in) :: border(:)      !< (coordinates) a row of rad and lengths
+      real(wp), intent(out) :: row(:)        !< (coordinates) the row of the free drive in the Jacobian
       logical, intent(out) :: ok             !< the iteration has converged, and the Jacobian is regular
       real(wp) :: r(curve%closure%n), change, before
       integer :: i, info
@@ -145,7 +147,7 @@ contains
 
    !> Converts a value of the free drive to the deck's unit.
    pure real(wp) function drive_value(curve, given) result(value)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< of the value
       real(wp), intent(in) :: given          !< rad, or lengths of the curve from its origin
 
       value = given
@@ -159,7 +161,7 @@ contains
 
    !> Converts the position (3, links) of links to the deck's unit, counted from the origin of the curve.
    pure function deck_position(curve, places) result(position)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< of the position
       real(wp), intent(in) :: places(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
       real(wp) :: position(3, size(places, 2))
 
@@ -170,10 +172,10 @@ contains
    !> Finds the point of the curve at a position of the links. Its tangent has the sense in which the drive grows,
    !> unless the drive is at rest.
    subroutine start_point(curve, position, point, ok)
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of the point
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from the origin, phi in rad
-      type(curve_point_t), intent(out) :: point
-      logical, intent(out) :: ok             !< it was found, and is regular
+      type(curve_point_t), intent(out) :: point   !< with a certified step; undefined unless `ok`
+      logical, intent(out) :: ok             !< the point was found, and is regular
       real(wp) :: q(3, size(position, 2)), border(curve%closure%n)
       integer :: i
 
@@ -188,10 +190,10 @@ contains
 
    !> Finds the point of the curve at a distance from a point along its tangent.
    subroutine step_along(curve, from, step, to, ok)
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of `to`
       type(curve_point_t), intent(in) :: from   !< the known point
       real(wp), intent(in) :: step           !< the distance, rad and lengths of the curve
-      type(curve_point_t), intent(out) :: to   !< the point that is found
+      type(curve_point_t), intent(out) :: to   !< the point that is found; of no use unless `ok`
       logical, intent(out) :: ok             !< `to` is regular, and near the place that tangent and bend predict
       real(wp) :: q(3, size(from%q, 2))
 
@@ -203,7 +205,7 @@ contains
 
    !> Gives a point with the opposite tangent.
    pure function reversed(point) result(r)
-      type(curve_point_t), intent(in) :: point
+      type(curve_point_t), intent(in) :: point   !< any point of a curve
       type(curve_point_t) :: r
 
       r = point
@@ -213,7 +215,7 @@ contains
 
    !> Gives the distance of two points along the tangent of the first, in rad and lengths of the curve.
    pure real(wp) function step_between(curve, from, to) result(h)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< of both points
       type(curve_point_t), intent(in) :: from, to   !< the first and the second point
 
       h = dot_product(from%tangent, offset_from(curve, from%q, to%q, .false.))
@@ -222,11 +224,11 @@ contains
    !> Finds whether a position is on the curve within a step from a point, or near the ends of the step. Whole turns of
    !> links do not count.
    subroutine lies_between(curve, from, step, position, to, lies)
-      type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: from
+      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of `to`
+      type(curve_point_t), intent(in) :: from   !< the point at which the step begins
       real(wp), intent(in) :: step           !< along the tangent of `from`, rad and lengths of the curve
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
-      type(curve_point_t), intent(out) :: to   !< the point of the curve there
+      type(curve_point_t), intent(out) :: to   !< the point of the curve at the position, if `lies`
       logical, intent(out) :: lies           !< the position is there
       real(wp) :: x(curve%closure%n), along
 
@@ -240,9 +242,9 @@ contains
 
    !> Gives the difference (coordinates) of two positions, in rad and lengths of the curve.
    pure function offset_from(curve, first, second, turns_off) result(x)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< of both positions
       real(wp), intent(in) :: first(:, :), second(:, :)   !< (3, links) the first is subtracted from the second
-      logical, intent(in) :: turns_off       !< without whole turns
+      logical, intent(in) :: turns_off       !< whole turns of links do not count
       real(wp) :: x(curve%closure%n)
       integer :: i
 
@@ -264,7 +266,7 @@ contains
 
    !> Finds the shortest length of a cylinder at a position, in the deck's unit.
    pure real(wp) function shortest(curve, places)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< with at least one cylinder
       real(wp), intent(in) :: places(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
       real(wp) :: position(3, size(places, 2))
       integer :: k
@@ -277,11 +279,11 @@ contains
    !> Finds the point near a position at which `border` times the difference from the position is 0. Its tangent has the
    !> sense of `border`.
    subroutine find_point(curve, position, border, point, ok)
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve   !< its configuration becomes that of the point
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in lengths of the curve, phi in rad
-      real(wp), intent(in) :: border(:)      !< (coordinates)
-      type(curve_point_t), intent(out) :: point
-      logical, intent(out) :: ok             !< it was found, and is regular
+      real(wp), intent(in) :: border(:)      !< (coordinates) a row of rad and lengths
+      type(curve_point_t), intent(out) :: point   !< in lengths of the curve; of no use unless `ok`
+      logical, intent(out) :: ok             !< the point was found, and is regular
       real(wp) :: x(curve%closure%n), row(curve%closure%n), along(3, size(position, 2))
 
       curve%configuration%q = position
@@ -312,15 +314,15 @@ contains
       call find_reach(curve, along, point)
    end subroutine find_point
 
-   !> Finds the longest certified step at a point, and the room about it.
+   !> Finds the longest certified step at a point, and the room about it, both in rad and lengths of the curve.
    !>
    !> With the bend b a step h to q + h t + h^2 b/2 leaves B^-1 F below e = h^3 (D |b|/2 + K |t|^3/4). B^-1 B has
    !> changed there by D h + K (|t|^2 + |b|/2) h^2 at most. If the sum of this and 2 K e is below 1/2, B is regular
    !> within 2 e of that place, and one solution is there.
    subroutine find_reach(curve, along, point)
-      type(curve_t), intent(inout) :: curve
-      real(wp), intent(in) :: along(:, :)    !< (3, links) its tangent
-      type(curve_point_t), intent(inout) :: point   !< found last
+      type(curve_t), intent(inout) :: curve   !< its configuration and factors are those of the point
+      real(wp), intent(in) :: along(:, :)    !< (3, links) the tangent of the point
+      type(curve_point_t), intent(inout) :: point   !< gets `certified_step` and `room`
       real(wp), allocatable :: y(:, :)
       real(wp) :: k, change, speed, bend, powers(3), least
 

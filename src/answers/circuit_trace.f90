@@ -12,7 +12,8 @@ module circuit_trace
    private
    public :: circuit_t, trace, least_step, end_closed, end_far, end_shut
 
-   !> A certified step below this means a change point: rounding does not distinguish other positions that are nearer.
+   !> A certified step below this (rad and lengths of the curve) means a change point: rounding does not distinguish
+   !> other positions that are nearer.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
    !> The value of the drive at which a cylinder reaches the length 0 is extrapolated: by the parabola through its
    !> values at one, two and three of these lengths, in characteristic lengths. Its error is below their cube.
@@ -32,6 +33,7 @@ module circuit_trace
       enumerator :: end_closed = 1, end_far, end_lost, end_shut
    end enum
 
+   !> A circuit: its points in the order of the curve, and how it ends.
    type :: circuit_t
       type(curve_point_t), allocatable :: points(:)     !< along it; of a closed one the last is the first
       integer :: ends(2) = end_lost                     !< how it ends at the first and at the last point
@@ -41,11 +43,12 @@ module circuit_trace
 
 contains
 
-   !> Follows the circuit of a curve through a point. A circuit that closes begins, and ends, at its first dead point.
+   !> Follows the circuit of a curve through a point. A circuit that closes begins, and ends, at its first dead point,
+   !> if there is one.
    subroutine trace(curve, start, circuit)
-      type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: start
-      type(circuit_t), intent(out) :: circuit
+      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_point_t), intent(in) :: start   !< a regular point of the curve
+      type(circuit_t), intent(out) :: circuit   !< with at least one point
       type(circuit_t) :: back
       type(curve_point_t), allocatable :: points(:)
       integer :: n, i
@@ -84,11 +87,12 @@ contains
       circuit%rests = size(circuit%points) > 1 .and. .not. any(is_sure(circuit%points))
    end subroutine trace
 
-   !> Follows the curve from a point in the sense of its tangent to its end.
+   !> Follows the curve from a point in the sense of its tangent to an end, or over `max_points`. circuit%ends(2) says
+   !> how it ends: end_lost also after a signal.
    subroutine follow(curve, start, circuit)
-      type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: start
-      type(circuit_t), intent(out) :: circuit
+      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_point_t), intent(in) :: start   !< the first point
+      type(circuit_t), intent(out) :: circuit   !< from `start` on
       type(curve_point_t) :: a, b, again, change
       real(wp) :: h
       integer :: n, sure, k
@@ -159,7 +163,7 @@ contains
       !> Appends the dead points between the last of the `n` points and another one: one if the drive's derivative
       !> changes its sign; two, about the place at which the derivative is least, if it changes its sign and back.
       recursive subroutine append_dead_points(point)
-         type(curve_point_t), intent(in) :: point
+         type(curve_point_t), intent(in) :: point   !< the next of the curve
          type(curve_point_t) :: a, p
          logical :: ok
 
@@ -180,7 +184,7 @@ contains
 
       !> Appends a point to the `n` points of the circuit.
       subroutine append(point)
-         type(curve_point_t), intent(in) :: point
+         type(curve_point_t), intent(in) :: point   !< the next of the curve, or a dead point
          type(curve_point_t), allocatable :: more(:)
 
          if (n == size(circuit%points)) then
@@ -193,13 +197,13 @@ contains
       end subroutine append
    end subroutine follow
 
-   !> Passes the change point ahead of a point. The next point is as far after it: certified steps shrink in proportion
-   !> to the distance from a change point.
+   !> Passes the change point ahead of a point. The next point is as far after it as the point is before it: certified
+   !> steps shrink in proportion to the distance from a change point.
    subroutine pass_change_point(curve, before, last, change, next, ok)
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve   !< its configuration changes
       type(curve_point_t), intent(in) :: before, last   !< the last two points ahead of the change point
-      type(curve_point_t), intent(out) :: change, next  !< the change point, and the point after it
-      logical, intent(out) :: ok             !< it is passed
+      type(curve_point_t), intent(out) :: change, next  !< the change point, and the point after it, if `ok`
+      logical, intent(out) :: ok             !< the change point is passed
       real(wp) :: shrinks, h
 
       change = last
@@ -226,9 +230,9 @@ contains
    !> lengths before it. The direction of the barrel is free there, and a point of the curve is known to half its
    !> digits. If the parabola cannot be made, the value stays.
    subroutine find_value_at_0(curve, points, at_0)
-      type(curve_t), intent(inout) :: curve
-      type(curve_point_t), intent(in) :: points(:)   !< (any number) the circuit so far
-      type(curve_point_t), intent(inout) :: at_0     !< its end, about there; gets the value
+      type(curve_t), intent(inout) :: curve   !< its configuration changes
+      type(curve_point_t), intent(in) :: points(:)   !< (any number) of the circuit so far
+      type(curve_point_t), intent(inout) :: at_0     !< the end of the circuit, near the length 0; gets the value
       type(curve_point_t) :: p
       real(wp) :: x(3)
       integer :: from, k
@@ -249,9 +253,9 @@ contains
          at_0%value(of_value) = 0.0_wp
    end subroutine find_value_at_0
 
-   !> Tells whether the sense in which the drive moves is known at a point.
+   !> Tells whether the sense in which the drive moves is known at a point: its slope exceeds the error by rounding.
    pure elemental logical function is_sure(point)
-      type(curve_point_t), intent(in) :: point
+      type(curve_point_t), intent(in) :: point   !< any point of a circuit
 
       is_sure = abs(point%value(1))*point%room**2 > unsure_slope
    end function is_sure
@@ -259,7 +263,7 @@ contains
    !> Gives the sense in which the drive moves, 1 or -1, at the first of some points at which it is known; 0 if it is
    !> not known at any.
    pure integer function sense(points)
-      type(curve_point_t), intent(in) :: points(:)
+      type(curve_point_t), intent(in) :: points(:)   !< (any number) of the curve, in its order
       integer :: k
 
       sense = 0
@@ -270,12 +274,12 @@ contains
    !> Finds the point between two neighbours at which one of the numbers of a position has a level, by halving the step
    !> from the first.
    subroutine find_root(curve, from, to, order, level, root, ok)
-      type(curve_t), intent(inout) :: curve
+      type(curve_t), intent(inout) :: curve   !< its configuration changes
       type(curve_point_t), intent(in) :: from, to   !< the neighbours
-      integer, intent(in) :: order           !< which number: of_value, ..., of_gap
+      integer, intent(in) :: order           !< which number: of_value, ..., of_cylinder
       real(wp), intent(in) :: level          !< between the numbers of the neighbours, in their unit
-      type(curve_point_t), intent(out) :: root
-      logical, intent(out) :: ok             !< it was found
+      type(curve_point_t), intent(out) :: root   !< of the curve; of no use unless `ok`
+      logical, intent(out) :: ok             !< the point was found
       real(wp) :: near, far
       integer :: i
 

@@ -26,7 +26,8 @@ module circuits
    !> More than the rounding of an angle, in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie_turns = 1.0e-6_wp
 
-   !> A search ends after so many circuits, or after so much work: points times the cube of the coordinates.
+   !> A search ends after so many circuits, or after so much work, points times the cube of the coordinates: its time has
+   !> a bound.
    integer, parameter :: max_circuits = 64
    real(wp), parameter :: max_work = 3.0e9_wp
 
@@ -36,7 +37,7 @@ module circuits
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
-      integer, allocatable :: assemblies(:)    !< of the first instant that are on it, numbered as by card ASSEMBLY
+      integer, allocatable :: assemblies(:)    !< (any number) on it at the first instant, by card ASSEMBLY
    end type circuit_branch_t
 
    !> A change point.
@@ -46,18 +47,19 @@ module circuits
       logical, allocatable :: circuits(:)      !< (circuits) which meet there
    end type intersection_t
 
+   !> The circuits of one free drive, with their branches, dead points and change points.
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
       integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_redundant = .false.        !< there are too many equations: none is followed
       logical :: is_complete = .true.          !< all assemblies of the first instant were known
       logical :: are_more = .false.            !< there are more circuits than are followed
-      real(wp) :: work = 0.0_wp                !< for the followed ones
-      type(curve_t) :: curve
-      type(circuit_t), allocatable :: list(:)
-      type(circuit_branch_t), allocatable :: branches(:)
-      type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links if known
-      type(intersection_t), allocatable :: meetings(:)
+      real(wp) :: work = 0.0_wp                !< for the followed ones: points times the cube of the coordinates
+      type(curve_t) :: curve                   !< on which the circuits are
+      type(circuit_t), allocatable :: list(:)  !< (circuits)
+      type(circuit_branch_t), allocatable :: branches(:)   !< (any number) circuit after circuit
+      type(diagnostic_t), allocatable :: dead(:)   !< (dead points) the drive's value, and the links if known
+      type(intersection_t), allocatable :: meetings(:)   !< (any number) the change points
    end type circuits_t
 
    !> A slide is followed farther than its largest value in the assemblies of the first instant, by this factor.
@@ -67,13 +69,14 @@ module circuits
 
 contains
 
-   !> Finds the circuits of a mechanism with one free drive; the others keep their values.
+   !> Finds the circuits of a mechanism with one free drive; the others keep their values. A mechanism with redundant
+   !> equations has none, and `is_redundant` is true.
    subroutine find_circuits(m, start, drive, first, found)
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
       type(motion_t), intent(in) :: start    !< at its first instant, known or not
       integer, intent(in) :: drive           !< number of the free drive
-      type(assemblies_t), intent(in) :: first   !< all of that instant
-      type(circuits_t), intent(out) :: found
+      type(assemblies_t), intent(in) :: first   !< all assemblies of the first instant that are known
+      type(circuits_t), intent(out) :: found   !< of the free drive
       type(mechanism_t) :: held
       integer :: i
 
@@ -109,8 +112,8 @@ contains
    !> instead of the free drive: a circuit that is narrow in the drive is mostly wide in some link. Links that turn
    !> together are one; if no circuit is known, any may turn.
    subroutine search_whole_range(m, found)
-      type(mechanism_t), intent(in) :: m     !< all drives rest
-      type(circuits_t), intent(inout) :: found
+      type(mechanism_t), intent(in) :: m     !< all drives rest, all links are asked for
+      type(circuits_t), intent(inout) :: found   !< with the circuits known so far; gets further ones
       logical :: is_left(found%curve%nonlinear%angles)
       integer :: k
 
@@ -124,9 +127,9 @@ contains
 
    contains
 
-      !> Tells whether an angle changes on a known circuit.
+      !> Tells whether an angle changes on a known circuit; if no circuit is known, that it may change.
       pure logical function turns(k)
-         integer, intent(in) :: k            !< its number in `nonlinear`
+         integer, intent(in) :: k            !< the angle's number in `nonlinear`
          integer :: link, i, j
 
          link = findloc(found%curve%nonlinear%angle_of, k, dim=1)
@@ -142,9 +145,9 @@ contains
 
    !> Adds the circuits through all assemblies at several angles of a link.
    subroutine search_at_angles(m, link, found)
-      type(mechanism_t), intent(in) :: m     !< all drives rest
+      type(mechanism_t), intent(in) :: m     !< all drives rest, all links are asked for
       integer, intent(in) :: link            !< number of the link
-      type(circuits_t), intent(inout) :: found
+      type(circuits_t), intent(inout) :: found   !< with the circuits known so far; gets further ones
       type(mechanism_t) :: driven
       type(assemblies_t) :: more
       real(wp) :: from
@@ -167,12 +170,13 @@ contains
       end do
    end subroutine search_at_angles
 
-   !> Adds the circuit through a position, unless it is known. At a change point a circuit cannot be followed: there,
-   !> and beyond all limits, it is added only if it is needed.
+   !> Adds the circuit through a position, unless it is known, or its first point cannot be found. A circuit cannot be
+   !> followed from a change point, nor from a cylinder of the length 0: there, and from a slide beyond curve%far, it is
+   !> added only if it is needed. If there are too many circuits, `are_more` becomes true.
    subroutine add_circuit(found, position, needed)
-      type(circuits_t), intent(inout) :: found
+      type(circuits_t), intent(inout) :: found   !< with the circuits known so far; gets the circuit
       real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from the origin, phi in rad
-      logical, intent(in) :: needed          !< it is added in any case
+      logical, intent(in) :: needed          !< the circuit is added in any case
       type(curve_point_t) :: p
       type(circuit_t), allocatable :: more(:)
       integer :: n, i, k
@@ -197,10 +201,10 @@ contains
 
    !> Finds the place of a point on the known circuits.
    subroutine locate(found, point, i, k)
-      type(circuits_t), intent(inout) :: found
-      type(curve_point_t), intent(in) :: point
-      integer, intent(out) :: i              !< number of the circuit; 0: it is on none
-      integer, intent(out) :: k              !< it is between points `k` and k + 1 of the circuit, or at its only one
+      type(circuits_t), intent(inout) :: found   !< its configuration changes
+      type(curve_point_t), intent(in) :: point   !< a point of the curve
+      integer, intent(out) :: i              !< number of the circuit; 0: the point is on none
+      integer, intent(out) :: k              !< the point lies between points `k` and k + 1, or at the only one
       type(curve_point_t) :: again
       real(wp) :: least, greatest
       logical :: passes
@@ -223,12 +227,12 @@ contains
       i = 0
    end subroutine locate
 
-   !> Makes the diagnostic of a dead point. It has the links whose position is singular at a first instant there, if
-   !> such an instant is found.
+   !> Makes the diagnostic of a dead point. It has the links whose position is singular at a first instant there; no
+   !> links if such an instant is not found.
    function dead_point(found, held, point, value) result(dead)
-      type(circuits_t), intent(in) :: found
-      type(mechanism_t), intent(in) :: held   !< all drives rest
-      type(curve_point_t), intent(in) :: point
+      type(circuits_t), intent(in) :: found   !< with its curve and free drive
+      type(mechanism_t), intent(in) :: held   !< all drives rest, all links are asked for
+      type(curve_point_t), intent(in) :: point   !< the dead point
       real(wp), intent(in) :: value          !< of the free drive there, rad or the deck's length
       type(diagnostic_t) :: dead
       type(mechanism_t) :: there
@@ -252,8 +256,8 @@ contains
 
    !> Adds the branches and dead points of a circuit, and finds its shift.
    subroutine add_branches(found, held, i)
-      type(circuits_t), intent(inout) :: found
-      type(mechanism_t), intent(in) :: held   !< all drives rest
+      type(circuits_t), intent(inout) :: found   !< gets the branches, the dead points and the shift
+      type(mechanism_t), intent(in) :: held   !< all drives rest, all links are asked for
       integer, intent(in) :: i               !< number of the circuit
       type(circuit_branch_t) :: b
       integer, allocatable :: ends(:), numbers(:)
@@ -296,8 +300,8 @@ contains
 
    !> Adds to each branch the assemblies of card ASSEMBLY that are on it.
    subroutine add_assemblies(found, list)
-      type(circuits_t), intent(inout) :: found
-      type(assembly_t), intent(in) :: list(:)   !< of the first instant
+      type(circuits_t), intent(inout) :: found   !< with all branches
+      type(assembly_t), intent(in) :: list(:)   !< (any number) of the first instant, in the order of card ASSEMBLY
       type(curve_point_t) :: p
       integer :: number, i, k, b
       logical :: ok
@@ -313,9 +317,9 @@ contains
       end do
    end subroutine add_assemblies
 
-   !> Adds the change points of a circuit.
+   !> Adds the change points of a circuit. A change point that another circuit has already gets only the circuit.
    subroutine add_intersections(found, i)
-      type(circuits_t), intent(inout) :: found
+      type(circuits_t), intent(inout) :: found   !< with all circuits and their shifts
       integer, intent(in) :: i               !< number of the circuit
       real(wp) :: value
       integer :: k, j
@@ -337,25 +341,26 @@ contains
       end do
    end subroutine add_intersections
 
-   !> Removes whole turns from a value of the free drive: the result is within half a turn of the first instant's.
+   !> Removes whole turns from a value of the free drive: the result is within half a turn of the value at the first
+   !> instant. A value that is no angle stays.
    pure real(wp) function near_first(curve, given) result(value)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< of the drive
       real(wp), intent(in) :: given          !< rad or lengths of the curve
 
       value = given
       if (curve%is_angle) value = given - full_turn*floor((given - curve%first)/full_turn + 0.5_wp - tie_turns)
    end function near_first
 
-   !> Gives the number of turns of the drive after which a circuit closes.
+   !> Gives the number of turns of the drive after which a circuit closes; of no meaning if the drive is no angle.
    pure integer function revolutions_of(circuit) result(turns)
-      type(circuit_t), intent(in) :: circuit
+      type(circuit_t), intent(in) :: circuit   !< closed
 
       turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/full_turn)
    end function revolutions_of
 
    !> Tells whether some equations are redundant, by count: two of each pair, one of each drive that is held.
    pure logical function is_redundant(curve)
-      type(curve_t), intent(in) :: curve
+      type(curve_t), intent(in) :: curve     !< with its pairs and drives
 
       is_redundant = 2*size(curve%closure%pairs) + size(curve%closure%drives) > curve%closure%n - 1
    end function is_redundant

@@ -47,13 +47,14 @@ module column_search
 
 contains
 
-   !> Finds the node of a mechanism at the last instant or at a time between the instants.
+   !> Finds the node of a mechanism at the last instant or at a time between the instants. If the motion is not known
+   !> there, node%is_known is false.
    subroutine find_node(set, track, t, effort, node)
-      type(set_analysis_t), intent(inout) :: set
-      type(track_t), intent(inout) :: track
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(track_t), intent(inout) :: track   !< of the mechanism; its rows and errors are overwritten
       real(wp), intent(in) :: t              !< time
-      integer, intent(in) :: effort          !< errors_in_doubt, ...
-      type(node_t), intent(inout) :: node
+      integer, intent(in) :: effort          !< whether errors are estimated: errors_in_doubt, ...
+      type(node_t), intent(inout) :: node    !< gets the node
       real(wp) :: amplification
       integer :: i
 
@@ -80,13 +81,14 @@ contains
       end associate
    end subroutine find_node
 
-   !> Finds the next node of a mechanism, and whether a number turns between the last three nodes.
+   !> Finds the next node of a mechanism, and whether a number turns between the last three nodes. The node is put after
+   !> those that are filled; `add_node` takes it.
    subroutine find_next(extremes, set, part, t, effort)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the node and `turns`
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
       real(wp), intent(in) :: t              !< time of the node
-      integer, intent(in) :: effort          !< errors_in_doubt, ...
+      integer, intent(in) :: effort          !< whether errors are estimated: errors_in_doubt, ...
 
       associate (track => extremes%tracks(part))
          call find_node(set, track, t, effort, track%nodes(track%filled + 1))
@@ -97,7 +99,7 @@ contains
    !> Finds whether a number may have an extreme between the first and the third node of a mechanism: a rate, an
    !> acceleration or a jerk changes its sign there or since its last clear sign, or an acceleration is not simple.
    subroutine look_for_extreme(track)
-      type(track_t), intent(inout) :: track
+      type(track_t), intent(inout) :: track   !< with three nodes; gets `turns`
       real(wp) :: jerk(2), noise(3), f(3), low, high
       integer :: i, k
       logical :: pair, simple, meets(3)
@@ -148,20 +150,20 @@ contains
 
    !> Tells whether the parts between three nodes are equally long, and are searched together.
    pure logical function is_pair(track, before, middle, after)
-      type(track_t), intent(in) :: track
-      type(node_t), intent(in) :: before, middle, after   !< the nodes
+      type(track_t), intent(in) :: track     !< of the mechanism
+      type(node_t), intent(in) :: before, middle, after   !< in the run's order
 
       associate (length => abs(after%t - before%t))
          is_pair = length <= track%longest .and. abs(after%t - 2.0_wp*middle%t + before%t) <= equal_length_part*length
       end associate
    end function is_pair
 
-   !> Takes the next node of a mechanism, and searches between it and the last one of which all is known. Two parts of
-   !> one length are searched together: the node between them is in the middle, and no other motion is needed. They are
-   !> passed over if nothing turns there.
+   !> Takes the next node of a mechanism, which `find_next` has found, and searches between it and the last one of which
+   !> all is known. Two parts of one length are searched together: the node between them is in the middle, and no other
+   !> motion is needed. Parts in which nothing turns are not searched.
    subroutine add_node(extremes, set, part)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the extremes
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
       integer :: n
 
@@ -198,10 +200,10 @@ contains
       end associate
    end subroutine add_node
 
-   !> Searches between the last two nodes of a mechanism, if there are two, since the last one ends a piece.
+   !> Searches between the last two nodes of a mechanism, if there are two. Call it when the last node ends a piece.
    subroutine search_waiting(extremes, set, part)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the extremes
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
 
       associate (track => extremes%tracks(part), nodes => extremes%tracks(part)%nodes)
@@ -247,8 +249,9 @@ contains
    end subroutine find_jerk
 
    !> Finds the coefficients (0:8) of the polynomial with the numbers of three samples, in the time from the middle over
-   !> half of the part. Its jerk has an error of 2E-6 of the ninth derivative. If rounding explains the difference from
-   !> the polynomial of rates and accelerations, the error is 7E-4 of the seventh.
+   !> half of the part. Its jerk has an error of 2E-6 of the ninth derivative times the sixth power of the part. If
+   !> rounding explains the difference from the polynomial of rates and accelerations, the error is 7E-4 of the seventh
+   !> derivative times the fourth power.
    pure function curve_through(before, middle, after, size_of) result(curve)
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       real(wp), intent(in) :: size_of(0:2)   !< characteristic value, rate and acceleration
@@ -285,8 +288,8 @@ contains
    pure subroutine find_differences(before, middle, after, open, odd, even, seventh, eighth)
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       real(wp), intent(in) :: open           !< bound of the errors of values, in their unit
-      real(wp), intent(out) :: odd(0:2), even(0:2)   !< the odd and the even part of the differences
-      real(wp), intent(out) :: seventh, eighth   !< coefficients of degree 7 and 8
+      real(wp), intent(out) :: odd(0:2), even(0:2)   !< the odd and the even part, in the unit of the value
+      real(wp), intent(out) :: seventh, eighth   !< coefficients of degree 7 and 8, in the unit of the value
       real(wp), dimension(0:2) :: first, half, last
       real(wp) :: h
 
@@ -308,9 +311,9 @@ contains
 
    !> Offers the values of a node of a mechanism as extremes.
    subroutine record_node(extremes, part, node, next)
-      type(extremes_t), intent(inout) :: extremes
+      type(extremes_t), intent(inout) :: extremes   !< gets the extremes
       integer, intent(in) :: part            !< number of the mechanism
-      type(node_t), intent(in) :: node
+      type(node_t), intent(in) :: node       !< offers those samples that are known
       logical, intent(in) :: next            !< its velocities are the next ones along the run
       integer :: i, k
 
@@ -329,10 +332,10 @@ contains
    !> Searches between two nodes of a mechanism, in halves if accelerations are not simple. If halving ends sooner, the
    !> interval is open.
    recursive subroutine search_part(extremes, set, part, before, between, after)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the extremes, and the intervals that are open
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
-      type(node_t), intent(in) :: before, after   !< the two nodes
+      type(node_t), intent(in) :: before, after   !< the two nodes, of which all is known
       type(node_t), intent(in) :: between    !< a node in the middle; without samples: there is none yet
       type(node_t) :: middle
       real(wp) :: shortest, jerk(2), noise(3, size(extremes%tracks(part)%coordinates))
@@ -391,8 +394,8 @@ contains
    !> Tells whether points of a measure coincide in a short part: the rate of a length jumps there, or a direction.
    !> Halving finds the time. The parts next to this one are searched.
    logical function jumps(set, one, before, middle, after)
-      type(set_analysis_t), intent(inout) :: set
-      type(coordinate_t), intent(in) :: one
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(coordinate_t), intent(in) :: one   !< of the measure
       type(sample_t), intent(in) :: before, middle, after   !< at the ends and in the middle of the part
       type(row_t) :: row(1)
       real(wp) :: t, ends(2), error(3, 0:2, 1), amplification
@@ -416,8 +419,8 @@ contains
 
    !> Searches for extremes of all columns of a mechanism between two nodes.
    subroutine search_columns(extremes, set, part, before, middle, after, noise, has_kink)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the extremes
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
       type(node_t), intent(in) :: before, middle, after   !< the two nodes, and one between
       real(wp), intent(in) :: noise(:)       !< (coordinates) bounds of the rounding errors of third derivatives
@@ -502,9 +505,9 @@ contains
    !> Offers a number of a sample as an extreme of a coordinate. The place is kept if dwells of the coordinate are asked
    !> for.
    pure subroutine offer_sample(coordinate, k, sample, at_zero, step)
-      type(coordinate_t), intent(inout) :: coordinate
+      type(coordinate_t), intent(inout) :: coordinate   !< gets the extreme
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
-      type(sample_t), intent(in) :: sample
+      type(sample_t), intent(in) :: sample   !< of the coordinate, known up to the derivative
       logical, intent(in) :: at_zero         !< the sample is at a zero of the next derivative
       real(wp), intent(in) :: step           !< of TIME
 
@@ -517,7 +520,7 @@ contains
    !> Finds the values between which a number of a coordinate is no new extreme for `offer`. If every value may be one,
    !> or dwells need its place, the first is above the second.
    pure function never_better(coordinate, k) result(inside)
-      type(coordinate_t), intent(in) :: coordinate
+      type(coordinate_t), intent(in) :: coordinate   !< with the extremes so far
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
       real(wp) :: inside(least:greatest)
 
@@ -532,7 +535,7 @@ contains
    !> Takes the velocity of a coordinate at the next place along the run. If its sign has changed, the coordinate has
    !> reversed at its slowest place between.
    pure subroutine record_velocity(coordinate, sample)
-      type(coordinate_t), intent(inout) :: coordinate
+      type(coordinate_t), intent(inout) :: coordinate   !< gets the velocity
       type(sample_t), intent(in) :: sample   !< at that place
       real(wp) :: speed
       integer :: this

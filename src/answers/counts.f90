@@ -8,20 +8,21 @@ module counts
    private
    public :: counts_t, record_flag
 
+   !> The counts of a run, and its first flag.
    type :: counts_t
       integer :: solved = 0, flagged = 0            !< instants
       integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
-      integer :: flag = flag_none, singularity = 0  !< of the first flagged instant
-      real(wp) :: t = 0.0_wp                        !< its time
-      type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
+      integer :: flag = flag_none, singularity = 0  !< of the first flagged instant: flag_..., singular_...
+      real(wp) :: t = 0.0_wp                        !< time of the first flagged instant
+      type(diagnostic_t) :: limit                   !< the first limit of the motion; its kind is 0: none
    end type counts_t
 
 contains
 
    !> Counts the instant to which a set has advanced, solved or flagged, and keeps why the first one is flagged.
    subroutine record_flag(counts, set)
-      type(counts_t), intent(inout) :: counts
-      type(set_analysis_t), intent(in) :: set
+      type(counts_t), intent(inout) :: counts   !< of the run so far
+      type(set_analysis_t), intent(in) :: set   !< at the instant
       integer :: c, i
 
       if (.not. is_flagged(set%now)) then

@@ -14,11 +14,11 @@ module dwells
    !> may come before `from`.
    type :: dwell_t
       integer :: request = 0                           !< number in the set
-      integer :: column = 0                            !< 1 to 3
+      integer :: column = 0                            !< of the row: 1 to 3
       integer :: which = least                         !< the extreme: least or greatest
       real(wp) :: distance = 0.0_wp                    !< in the deck's unit or rad
       real(wp) :: from = 0.0_wp, to = 0.0_wp           !< times
-      real(wp) :: error(2) = 0.0_wp                    !< errors of both by rounding
+      real(wp) :: error(2) = 0.0_wp                    !< errors of both times by rounding
    end type dwell_t
 
 contains
@@ -26,8 +26,8 @@ contains
    !> Finds the dwells of a set after its last instant, by its extremes. A coordinate that never leaves its distance has
    !> none. If some of the motion between instants is not known, there are none at all.
    subroutine find_dwells(extremes, set, list)
-      type(extremes_t), intent(in) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(in) :: extremes   !< after the last instant
+      type(set_analysis_t), intent(inout) :: set   !< after its last instant; the analyses move
       type(dwell_t), allocatable, intent(out) :: list(:)   !< (any number)
       type(dwell_t) :: one
       type(value_at_t), allocatable :: path(:)
@@ -72,11 +72,11 @@ contains
       !> Finds the time at which the coordinate, followed on its path from a place, passes the level. If it does not,
       !> the end of the run is the time; in a cycle the path goes on from the other end.
       subroutine find_end(start, way, t, error, found)
-         integer, intent(in) :: start        !< number of the place
+         integer, intent(in) :: start        !< number of the place on the path
          integer, intent(in) :: way          !< 1: along the run; -1: against it
          real(wp), intent(out) :: t          !< time
-         real(wp), intent(out) :: error      !< its error by rounding
-         logical, intent(out) :: found       !< the time is known
+         real(wp), intent(out) :: error      !< the error of `t` by rounding
+         logical, intent(out) :: found       !< the time is known: `find_zero` has found it, or the run ends
          type(sample_t) :: zero
          integer :: from, to, passed
 

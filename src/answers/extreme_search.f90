@@ -52,8 +52,8 @@ contains
 
    !> Takes an instant, to which the set has advanced, and searches up to it. Only the instants of TIME count.
    subroutine record_instant(extremes, set, k)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< of the run so far
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer, intent(in) :: k               !< the number of the instant, from 0
       integer :: c
 
@@ -66,10 +66,10 @@ contains
    end subroutine record_instant
 
    !> Tells whether something is searched for between the last instant of a mechanism and the one whose node is found: a
-   !> number may turn, or the step is divided.
+   !> number may turn, the step is divided, or the motion is not known at one of both.
    pure logical function is_searched(extremes, set, part)
-      type(extremes_t), intent(in) :: extremes
-      type(set_analysis_t), intent(in) :: set
+      type(extremes_t), intent(in) :: extremes   !< of the run so far
+      type(set_analysis_t), intent(in) :: set   !< at the instant
       integer, intent(in) :: part            !< number of the mechanism
 
       associate (track => extremes%tracks(part), q => set%now%motions(part))
@@ -82,8 +82,8 @@ contains
 
    !> Searches for extremes of a mechanism up to an instant whose node is found, and goes on from there.
    subroutine search_instant(extremes, set, part, k, searches)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< of the run so far
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer, intent(in) :: part            !< number of the mechanism
       integer, intent(in) :: k               !< number of the instant, from 0
       logical, intent(in) :: searches        !< something is searched for, by `is_searched`
@@ -199,11 +199,11 @@ contains
    !> Finds the times at which a change point was passed, or the limit of the motion was reached, which is the last
    !> one. A change point that is later only by rounding is the one before, or the last instant itself.
    pure subroutine find_ends(extremes, q, from, ends, is_limit)
-      type(extremes_t), intent(in) :: extremes
-      type(motion_t), intent(in) :: q     !< at the end of the step: has diagnostics
-      real(wp), intent(in) :: from        !< time of the last instant
+      type(extremes_t), intent(in) :: extremes   !< of the set
+      type(motion_t), intent(in) :: q        !< at the end of the step: has diagnostics
+      real(wp), intent(in) :: from           !< time of the last instant
       real(wp), allocatable, intent(out) :: ends(:)   !< (any number) times, in the run's order
-      logical, intent(out) :: is_limit    !< the last one is a limit of the motion
+      logical, intent(out) :: is_limit       !< the last one is a limit of the motion
       real(wp) :: last
       integer :: i
 
@@ -226,14 +226,15 @@ contains
    end subroutine find_ends
 
    !> Offers the one-sided limits at an end of a piece as extremes, by the motion at times near the end. Of the times
-   !> that were tried those count from which the limits are known best.
+   !> that were tried those count from which the limits are known best. If the motion is not known at any, nothing is
+   !> offered.
    subroutine accept_limits(extremes, set, part, at, other, near)
-      type(extremes_t), intent(inout) :: extremes
-      type(set_analysis_t), intent(inout) :: set
+      type(extremes_t), intent(inout) :: extremes   !< gets the limits
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: part            !< number of the mechanism
-      type(piece_end_t), intent(in) :: at
-      real(wp), intent(in) :: other       !< time of the other end of the piece
-      real(wp), intent(out) :: near(places)   !< the times that count, the nearest first
+      type(piece_end_t), intent(in) :: at    !< the end of the piece
+      real(wp), intent(in) :: other          !< time of the other end of the piece
+      real(wp), intent(out) :: near(places)   !< the times that count, the nearest first, or the last ones tried
       type(node_t) :: nodes(places)
       type(extreme_t), dimension(0:2, size(extremes%tracks(part)%coordinates)) :: limits, best
       real(wp) :: times(places), nearest, error, least_error, f(places), five(places), four(places)
@@ -290,9 +291,9 @@ contains
       end do
    end subroutine accept_limits
 
-   !> Turns the extremes of the rates of ratios into extremes of their derivatives by the drive.
+   !> Converts the extremes of the rates of ratios to extremes of the derivatives of the ratios by the drive.
    pure subroutine settle_ratios(coordinates)
-      type(coordinate_t), intent(inout) :: coordinates(:)   !< after the last instant
+      type(coordinate_t), intent(inout) :: coordinates(:)   !< (any number) after the last instant
       integer :: i
 
       do i = 1, size(coordinates)

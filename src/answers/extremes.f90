@@ -38,7 +38,7 @@ module extremes
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
-   !> A coordinate at a time.
+   !> A coordinate at a time: the time in the deck's unit, the coordinate in the deck's unit or rad.
    type :: value_at_t
       real(wp) :: t = 0.0_wp, value = 0.0_wp
    end type value_at_t
@@ -47,17 +47,17 @@ module extremes
    type :: coordinate_t
       integer :: request = 0, column = 0               !< number in the set, and column (1 to 3) in the row of this
       integer :: form = 0                              !< of the row
-      integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: no row has it
+      integer :: columns(0:2) = 0                      !< of its derivatives, in `columns_of_rows`; 0: in no row
       integer :: part = 0, row = 0                     !< number of its mechanism, and of its row in `track_t`
-      logical :: is_angle = .false.
+      logical :: is_angle = .false.                    !< otherwise a length or a ratio
       logical :: can_coincide = .false.                !< it may be known less well if two points are close
       logical :: sought(0:2) = .true.                  !< the extremes that are asked for, by derivative
       real(wp) :: dwell = 0.0_wp                       !< its dwells within this distance; 0: not asked for
-      real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic values
-      real(wp) :: drive_rate = 0.0_wp                  !< of a ratio: of the drive at t = 0, in the deck's units
-      type(extreme_t) :: found(least:greatest, 0:2)
+      real(wp) :: size_of(0:2) = 0.0_wp                !< characteristic value, rate and acceleration
+      real(wp) :: drive_rate = 0.0_wp                  !< of a ratio: rate of the drive at t = 0, in the deck's units
+      type(extreme_t) :: found(least:greatest, 0:2)    !< the extremes so far, by derivative
       real(wp) :: last(3) = 0.0_wp                     !< its latest rate, acceleration and jerk with a clear sign
-      type(value_at_t), allocatable :: places(:)       !< nodes and extremes, if it may dwell
+      type(value_at_t), allocatable :: places(:)       !< (any number) nodes and extremes, if it may dwell
       !> Its way: the first sign of its velocity and the latest, 0 for none; its place at the lowest `speed` since the
       !> latest sign, the place before the first sign, and the places at which it has reversed.
       integer :: first_sign = 0, last_sign = 0
@@ -66,9 +66,10 @@ module extremes
       type(value_at_t), allocatable :: reversals(:)
    end type coordinate_t
 
-   !> An end of a piece of a step. `is_open`: not all of the motion exists there.
+   !> An end of a piece of a step.
    type :: piece_end_t
-      real(wp) :: t = 0.0_wp
+      real(wp) :: t = 0.0_wp                           !< time
+      !> Not all of the motion exists there; it is a change point, otherwise a limit of the motion.
       logical :: is_open = .false., is_change = .false.
    end type piece_end_t
 
@@ -77,36 +78,37 @@ module extremes
       integer, allocatable :: requests(:)              !< (rows) numbers in the set of those that are asked for
       type(row_t), allocatable :: rows(:)              !< room for their rows
       real(wp), allocatable :: error(:, :, :)          !< (3, 0:2, rows) room for the errors of the rows
-      type(coordinate_t), allocatable :: coordinates(:)
+      type(coordinate_t), allocatable :: coordinates(:)   !< (any number) the columns that are searched
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
       real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
       !> The largest difference of the last motion from the first: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
-      type(piece_end_t) :: last                              !< the last instant
+      type(piece_end_t) :: last                        !< the last instant
       logical :: is_lost = .false.                     !< of some row nothing is known there
       !> The first node is the last one up to which this piece is searched; so many are `filled`, and the next one is
-      !> put after these. Between three nodes a number has an extreme only if it `turns`.
+      !> put after these.
       type(node_t) :: nodes(3)
-      integer :: filled = 0
-      logical :: turns = .false.
+      integer :: filled = 0                            !< nodes
+      logical :: turns = .false.                       !< a number may have an extreme between the three nodes
       integer :: halvings = 0                          !< of parts of this step
    end type track_t
 
    !> An interval of time.
    type :: uncovered_interval_t
-      real(wp) :: from = 0.0_wp, to = 0.0_wp
+      real(wp) :: from = 0.0_wp, to = 0.0_wp           !< times, in the run's order
    end type uncovered_interval_t
 
    !> The strokes of a coordinate: it reverses at the places of one period. Two reversals are the ends of both strokes,
-   !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
+   !> which take the `times` from the least value to the greatest and back. No reversals: the motion is not cyclic.
    type :: strokes_t
       type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
-      type(value_at_t), allocatable :: reversals(:)
-      real(wp) :: times(2) = 0.0_wp
+      type(value_at_t), allocatable :: reversals(:)    !< (any number) of one period
+      real(wp) :: times(2) = 0.0_wp                    !< of the two strokes; 0: not known
       real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and its error
    end type strokes_t
 
+   !> The search for extremes of a set.
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
@@ -119,10 +121,10 @@ module extremes
 
 contains
 
-   !> Prepares the search for extremes of a set, before its first instant.
+   !> Prepares the search for extremes of a set, before its first instant: its coordinates and the joints of its laws.
    subroutine new_extremes(set, extremes)
-      class(set_t), intent(in) :: set
-      type(extremes_t), intent(out) :: extremes
+      class(set_t), intent(in) :: set        !< with a TIME card
+      type(extremes_t), intent(out) :: extremes   !< without an instant
       type(drive_t) :: drive
       real(wp) :: sizes(2), fastest
       type(request_t) :: request
@@ -172,11 +174,11 @@ contains
    !> nothing is known, and the rate of the ratio as the acceleration. The derivative by the drive has its extremes
    !> where the rate has them only if the rate of the drive is constant; otherwise they are not sought.
    subroutine set_coordinate(coordinate, set, request, column, sizes)
-      type(coordinate_t), intent(inout) :: coordinate
-      class(set_t), intent(in) :: set
-      integer, intent(in) :: request         !< number of the row in the set
+      type(coordinate_t), intent(inout) :: coordinate   !< with its part and row; gets the rest
+      class(set_t), intent(in) :: set        !< divided
+      integer, intent(in) :: request         !< number of the request in the set
       integer, intent(in) :: column          !< of the row, 1 to 3
-      real(wp), intent(in) :: sizes(2)       !< of its mechanism, by `sizes_of`
+      real(wp), intent(in) :: sizes(2)       !< characteristic length and rate of the mechanism
       type(request_t) :: asked
       type(drive_t) :: drive
       integer :: k
@@ -214,9 +216,9 @@ contains
    !> less than a step away. A node replaces another node less than a step away if it is more extreme by more than
    !> rounding, though equal otherwise: their distance is then the error of the time.
    pure subroutine offer(coordinate, k, extreme, step)
-      type(coordinate_t), intent(inout) :: coordinate
+      type(coordinate_t), intent(inout) :: coordinate   !< gets the extreme
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
-      type(extreme_t), intent(in) :: extreme
+      type(extreme_t), intent(in) :: extreme   !< of the number, at a node, at a zero or as a limit
       real(wp), intent(in) :: step           !< of TIME
       real(wp) :: gain, open
       integer :: which
@@ -253,7 +255,7 @@ contains
 
    !> Adds an interval of time to a list. Intervals that are near one another become one.
    pure subroutine add_interval(list, way, from, to, apart_by)
-      type(uncovered_interval_t), allocatable, intent(inout) :: list(:)   !< in the run's order
+      type(uncovered_interval_t), allocatable, intent(inout) :: list(:)   !< in the run's order; gets the interval
       real(wp), intent(in) :: way            !< the direction of the run: 1 or -1
       real(wp), intent(in) :: from, to       !< the ends of the interval, times in the run's order
       real(wp), intent(in) :: apart_by       !< time: intervals that are not farther apart are one
@@ -276,7 +278,7 @@ contains
 
    !> Tells whether all of the motion is known, but for single instants.
    pure logical function is_covered(extremes)
-      type(extremes_t), intent(in) :: extremes
+      type(extremes_t), intent(in) :: extremes   !< of the run so far
 
       is_covered = .not. any(abs(extremes%gaps%to - extremes%gaps%from) > 0.0_wp)
    end function is_covered
@@ -284,7 +286,7 @@ contains
    !> Tells whether the last instant repeats the first: all links of a mechanism have their first position, but for
    !> whole turns, and their first velocity.
    pure logical function is_cyclic(extremes, part)
-      type(extremes_t), intent(in) :: extremes
+      type(extremes_t), intent(in) :: extremes   !< after the last instant
       integer, intent(in) :: part            !< number of the mechanism
 
       is_cyclic = is_covered(extremes) .and. closes(extremes%tracks(part)%closure)
@@ -293,7 +295,7 @@ contains
    !> Tells whether a number of a coordinate varies, if it is asked for: its least and its greatest value differ by more
    !> than rounding, or one of them is not known.
    pure logical function varies(coordinate, k)
-      type(coordinate_t), intent(in) :: coordinate
+      type(coordinate_t), intent(in) :: coordinate   !< after the last instant
       integer, intent(in) :: k               !< which derivative of the coordinate, 0 to 2
 
       associate (e => coordinate%found(:, k))
@@ -303,10 +305,10 @@ contains
    end function varies
 
    !> Finds the strokes of a coordinate after the last instant: the shortest part of a cyclic run after which its
-   !> reversals repeat is its period.
+   !> reversals repeat is its period. If the motion is not cyclic, there are no reversals and no times.
    pure type(strokes_t) function strokes_of(extremes, coordinate) result(strokes)
-      type(extremes_t), intent(in) :: extremes
-      type(coordinate_t), intent(in) :: coordinate
+      type(extremes_t), intent(in) :: extremes   !< of the set
+      type(coordinate_t), intent(in) :: coordinate   !< one of the set
       type(value_at_t), allocatable :: all_of(:)
       real(wp), allocatable :: change(:)
       real(wp) :: period, phase

@@ -20,7 +20,7 @@ module nodes
       integer :: known = -1             !< as in `row_t`; 2: all of `f`
       logical :: meets = .false.        !< points of a measure coincide: at most its value is known
       real(wp) :: amplification = 0.0_wp       !< factor of roundings, if no digits could be in doubt
-      real(wp) :: t_error = 0.0_wp      !< of the time of a zero
+      real(wp) :: t_error = 0.0_wp      !< error of `t`, if that is the time of a zero
    end type sample_t
 
    !> The coordinates of one independent mechanism at one time. Small, since lanes have many of them.
@@ -45,7 +45,7 @@ contains
 
    !> Finds the times (any number) of the nodes between two instants, in the run's order: at each joint of the drives'
    !> laws and on either side of it, and between joints. No part is longer than an eighth of the time from joint to
-   !> joint.
+   !> joint, unless there would be more than `max_parts`.
    pure function times_between(joints, longest, run, t1, t2) result(times)
       real(wp), intent(in) :: joints(:)      !< (joints) times, in the run's order
       real(wp), intent(in) :: longest        !< time: no part is longer
@@ -89,7 +89,7 @@ contains
       joint_margin = joint_margin_part*max(abs(t), abs(run))
    end function joint_margin
 
-   !> Gives the numbers of times in the order of the times. If they are in order already, the cost is one look at each.
+   !> Gives the numbers (times) of times in their order. Times that are in order cost one comparison each.
    pure function order_along(times, step) result(order)
       real(wp), intent(in) :: times(:)       !< (any number)
       real(wp), intent(in) :: step           !< above 0: upwards; otherwise downwards

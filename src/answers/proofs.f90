@@ -13,7 +13,7 @@ module proofs
    !> The proof of a printed instant, and of the steps to it from the last one.
    type :: proof_row_t
       integer :: step = 0                        !< number of the instant
-      logical :: is_proved = .true.
+      logical :: is_proved = .true.              !< the position, and all steps to it
       integer :: parts = 0                       !< into which the steps were divided
       real(wp) :: tube = 0.0_wp                  !< largest radius, in rad and units of the blocks
       real(wp) :: bounds(0:2) = 0.0_wp           !< of errors, in the characteristic length and rate
@@ -29,10 +29,11 @@ module proofs
       integer, allocatable :: links(:)           !< whose position is not proved
    end type reason_t
 
+   !> The proofs of a run.
    type :: proofs_t
-      type(proof_row_t), allocatable :: lines(:)      !< with room for further ones
+      type(proof_row_t), allocatable :: lines(:)      !< (instants at most) with room for further ones
       integer :: count = 0                       !< of finished lines; the next one is in the making
-      type(reason_t), allocatable :: reasons(:)  !< the first ones
+      type(reason_t), allocatable :: reasons(:)  !< (up to `max_reasons`) the first ones
       integer :: instants = 0, proved = 0        !< in all
       real(wp) :: closure_error = 0.0_wp         !< bound, of redundant equations, in units of the blocks
    end type proofs_t
@@ -42,12 +43,12 @@ module proofs
 
 contains
 
-   !> Takes the proof of an instant, to which the set has advanced.
+   !> Takes the proof of an instant, to which the set has advanced: adds it to the line of the next printed instant.
    subroutine record_proof(proofs, set, k, due)
-      type(proofs_t), intent(inout) :: proofs
-      type(set_analysis_t), intent(in) :: set
+      type(proofs_t), intent(inout) :: proofs   !< of the run so far
+      type(set_analysis_t), intent(in) :: set   !< at the instant, with its proofs
       integer, intent(in) :: k               !< the number of the instant, from 0
-      logical, intent(in) :: due             !< it is printed
+      logical, intent(in) :: due             !< the instant is printed
       type(reason_t) :: reason
       integer :: c
 
@@ -82,7 +83,7 @@ contains
    !> Finds the largest proved bounds (0:2) of the errors of any link, in the characteristic length and rate of its
    !> mechanism.
    pure function set_bounds(set) result(largest)
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< at an instant, with its proofs
       real(wp) :: largest(0:2)
       integer :: c
 

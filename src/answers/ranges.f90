@@ -31,9 +31,9 @@ module ranges
    !> The range of a drive. An end without a limit is the last value to which the drive was followed.
    type :: range_t
       integer :: part = 1                   !< number of its independent mechanism
-      integer :: drive = 0                  !< number of the drive there
+      integer :: drive = 0                  !< number of the drive in that mechanism
       logical :: is_all = .false.           !< it turns fully, and the motion closes
-      integer :: turns = 0                  !< after so many turns
+      integer :: turns = 0                  !< turns after which the motion closes
       logical :: is_of_branch = .false.     !< the first instant has no position: of a branch by card CIRCUITS
       integer :: change_points = 0          !< passed on the smooth branch, both ways
       logical :: has_limit(2) = .false.     !< (low:high)
@@ -42,12 +42,12 @@ module ranges
 
 contains
 
-   !> Finds the range of a drive of a mechanism.
+   !> Finds the range of a drive of a mechanism; the other drives keep their values.
    subroutine find_range(m, start, drive, range)
       type(mechanism_t), intent(in) :: m     !< one independent mechanism
-      type(motion_t), intent(in) :: start    !< of its first instant
+      type(motion_t), intent(in) :: start    !< at its first instant, with a position
       integer, intent(in) :: drive           !< number of the drive
-      type(range_t), intent(out) :: range
+      type(range_t), intent(out) :: range    !< gets both ends; if the drive turns fully, only the lower one
       type(mechanism_t) :: d
       real(wp) :: unit
       integer :: side
@@ -86,7 +86,7 @@ contains
    !> Gives the moving links of a mechanism an estimated position.
    subroutine estimate_side(m, position)
       type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: position(:, :)   !< (3, links) x and y in the deck's unit from its origin, phi in rad
+      real(wp), intent(in) :: position(:, :)   !< (3, links) x, y in the deck's unit from the origin of `m`, phi in rad
       integer :: i
 
       do i = 1, size(m%links)
@@ -95,12 +95,12 @@ contains
    end subroutine estimate_side
 
    !> Follows the motion of a mechanism by the value of a drive to its end on one side. At the parameter t the drive has
-   !> moved by t times its rate.
+   !> moved by t times its rate. If the first position is not found, the end is the drive's first value.
    subroutine follow(turned, rate, side, range)
       type(mechanism_t), intent(in) :: turned   !< all drives rest
       real(wp), intent(in) :: rate           !< of the drive by the parameter, in rad or the deck's length
       integer, intent(in) :: side            !< lower_end or upper_end
-      type(range_t), intent(inout) :: range
+      type(range_t), intent(inout) :: range   !< of a known drive; gets the end on that side, and `is_all`
       type(analysis_t) :: a
       type(motion_t) :: first, now
       real(wp) :: value, t, step, part, apart(3)

@@ -21,7 +21,7 @@ contains
    !> Finds the ranges of all drives of a set at its first instant. If a mechanism has no position there, its branches
    !> have ranges, if all of its circuits are known; a variant has none.
    subroutine find_ranges(set, list)
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< at its first instant
       type(range_t), allocatable, intent(out) :: list(:)   !< (any number) by drives
       type(range_t) :: r
       type(circuits_t) :: found
@@ -51,8 +51,8 @@ contains
 
    !> Adds the range of the drive on each branch of its circuits; equal ranges once.
    subroutine add_branch_ranges(found, list)
-      type(circuits_t), intent(in) :: found
-      type(range_t), allocatable, intent(inout) :: list(:)   !< (any number)
+      type(circuits_t), intent(in) :: found   !< all circuits of a drive
+      type(range_t), allocatable, intent(inout) :: list(:)   !< (any number) by drives; gets further ones
       type(range_t) :: r
       integer :: k, i, side
 
@@ -77,10 +77,10 @@ contains
       end do
    end subroutine add_branch_ranges
 
-   !> Finds the circuits of each drive of a set, the others held, from its first instant.
+   !> Finds the circuits of each drive of a set from its first instant; the other drives keep their values.
    subroutine find_all_circuits(set, list)
-      type(set_analysis_t), intent(in) :: set
-      type(circuits_t), allocatable, intent(out) :: list(:)   !< (drives)
+      type(set_analysis_t), intent(in) :: set   !< at its first instant
+      type(circuits_t), allocatable, intent(out) :: list(:)   !< (drives of the set) part after part
       type(assemblies_t) :: first
       integer :: c, i, n
 
@@ -98,8 +98,8 @@ contains
 
    !> Gives the assemblies of a part at the first instant. They are searched for only if the set does not have them.
    function first_assemblies(set, part) result(first)
-      type(set_analysis_t), intent(in) :: set
-      integer, intent(in) :: part                !< its number
+      type(set_analysis_t), intent(in) :: set   !< at its first instant
+      integer, intent(in) :: part                !< the number of the independent mechanism
       type(assemblies_t) :: first
 
       if (allocated(set%assemblies)) then
@@ -109,7 +109,7 @@ contains
       end if
    end function first_assemblies
 
-   !> Gives a value, or 0 if it is rounding.
+   !> Gives a value, or 0 if the value is no more than rounding of 0.
    pure real(wp) function known(value)
       real(wp), intent(in) :: value              !< rad or length
 

@@ -16,6 +16,7 @@ module tolerance_contributions
       real(wp), allocatable :: s(:)                 !< (numbers) the sensitivities; not allocated: none was known yet
    end type contribution_t
 
+   !> The contributions of all tolerances of a set.
    type :: contributions_t
       type(contribution_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
       logical, allocatable :: jams(:, :)            !< (numbers, parts) redundant equations do not allow a change
@@ -26,11 +27,12 @@ module tolerance_contributions
 
 contains
 
-   !> Takes the sensitivities of an instant. For each quantity the instant with the largest root of squares is kept.
+   !> Takes the sensitivities of a printed instant. For each quantity the instant with the largest root of squares is
+   !> kept.
    subroutine record_sensitivities(shares, motions, rows)
-      type(contributions_t), intent(inout) :: shares
-      type(set_motion_t), intent(in) :: motions
-      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set)
+      type(contributions_t), intent(inout) :: shares   !< of the run so far; allocated at the first instant
+      type(set_motion_t), intent(in) :: motions   !< at the instant, with their sensitivities
+      type(finished_row_t), intent(in) :: rows(:)   !< (requests of the set) at the instant
       integer :: i, j, k, n, c
 
       if (.not. allocated(shares%list)) then

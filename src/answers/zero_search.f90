@@ -63,7 +63,7 @@ contains
 
    !> Gives a derivative of the polynomial of a column at a time.
    pure real(wp) function on_curve(column, k, t) result(f)
-      type(column_t), intent(in) :: column
+      type(column_t), intent(in) :: column   !< with its polynomial
       integer, intent(in) :: k               !< which derivative, at least 0
       real(wp), intent(in) :: t              !< time
       integer :: n, i
@@ -75,10 +75,10 @@ contains
       f = f/column%half**k
    end function on_curve
 
-   !> Estimates the time at which a derivative of a column has a level, by the polynomial of the column. If this has no
-   !> sign change, by a straight line.
+   !> Estimates the time at which a derivative of a column has a level, by the polynomial of the column. If the
+   !> polynomial less the level does not change its sign, a straight line serves.
    pure real(wp) function guess(column, order, level, t, values)
-      type(column_t), intent(in) :: column
+      type(column_t), intent(in) :: column   !< with its polynomial
       integer, intent(in) :: order           !< which derivative
       real(wp), intent(in) :: level          !< in the unit of the derivative
       real(wp), intent(in) :: t(2)           !< times, the ends of the interval
@@ -98,13 +98,13 @@ contains
       end if
    end function guess
 
-   !> Finds a column at a time.
+   !> Finds a column at a time. If the motion is not known there, sample%known is -1.
    subroutine evaluate_column(set, column, t, effort, sample)
-      type(set_analysis_t), intent(inout) :: set
-      type(column_t), intent(in) :: column
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(column_t), intent(in) :: column   !< of a row of the set
       real(wp), intent(in) :: t              !< time
-      integer, intent(in) :: effort          !< errors_unasked, ...
-      type(sample_t), intent(out) :: sample
+      integer, intent(in) :: effort          !< whether errors are estimated: errors_unasked, ...
+      type(sample_t), intent(out) :: sample   !< at the time
       type(row_t) :: row(1)
       real(wp) :: error(3, 0:2, 1), amplification
 
@@ -117,12 +117,12 @@ contains
    !> method does not advance. If a time between has no motion, the nearest known one is the zero. Without a change of
    !> sign zero%known is -1.
    subroutine find_zero(set, column, order, level, before, after, zero)
-      type(set_analysis_t), intent(inout) :: set
-      type(column_t), intent(in) :: column
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(column_t), intent(in) :: column   !< with its polynomial
       integer, intent(in) :: order           !< which derivative, 0 to 2
       real(wp), intent(in) :: level          !< in the unit of the derivative
       type(sample_t), intent(in) :: before, after   !< at the ends of the interval
-      type(sample_t), intent(out) :: zero
+      type(sample_t), intent(out) :: zero    !< at the time of the zero
       type(sample_t) :: at
       real(wp) :: t, ends(2), g(2), g_end(2), last, last_g, slope, step, width, clear(2)
       logical :: jumps
@@ -211,10 +211,10 @@ contains
    !> If the fourth difference counts, the times are too far apart; if rounding counts, they are too near. If the
    !> extreme is not found or is at an end, turn%known is -1.
    subroutine find_acceleration_extreme(set, column, before, after, turn)
-      type(set_analysis_t), intent(inout) :: set
-      type(column_t), intent(in) :: column
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(column_t), intent(in) :: column   !< with its polynomial and the step of the first stencil
       type(sample_t), intent(in) :: before, after   !< at the ends of the interval
-      type(sample_t), intent(out) :: turn
+      type(sample_t), intent(out) :: turn    !< at the time of the extreme
       type(sample_t) :: at
       real(wp) :: f(-2:2), d(4), first, t, step, u, left, noise, slope, run
       real(wp) :: place, bend, best_step, best_noise, width, value
@@ -301,10 +301,11 @@ contains
    end subroutine find_acceleration_extreme
 
    !> Finds a column at the time of a zero, and the error of that time: the error of the derivative, or of its
-   !> difference, over the slope, and the width of the bracket.
+   !> difference, over the slope, and the width of the bracket. Errors of the column are estimated only if the error of
+   !> the time may count.
    subroutine finish_zero(set, column, order, ends, t, slope, step, noise, width, zero)
-      type(set_analysis_t), intent(inout) :: set
-      type(column_t), intent(in) :: column
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
+      type(column_t), intent(in) :: column   !< with its noise
       integer, intent(in) :: order           !< the derivative whose error counts
       real(wp), intent(in) :: ends(2)        !< times, the ends of the interval: without a slope its length is the error
       real(wp), intent(in) :: t              !< time of the zero
@@ -312,7 +313,7 @@ contains
       real(wp), intent(in) :: step           !< time over which the derivative is a difference; 1: it is none
       real(wp), intent(in) :: noise          !< rounding error of the derivative over `step`
       real(wp), intent(in) :: width          !< time: further error
-      type(sample_t), intent(out) :: zero
+      type(sample_t), intent(out) :: zero    !< with the error of its time
       real(wp) :: open
       integer :: i
 
@@ -330,10 +331,10 @@ contains
 
    !> Tells whether a value of a derivative of a column is no new extreme.
    pure logical function is_inside(column, k, value, open)
-      type(column_t), intent(in) :: column
+      type(column_t), intent(in) :: column   !< with `inside`
       integer, intent(in) :: k               !< which derivative, 0 to 2
       real(wp), intent(in) :: value          !< in the unit of the derivative
-      real(wp), intent(in) :: open           !< bound of its error
+      real(wp), intent(in) :: open           !< bound of the error of the value
 
       is_inside = value - open > column%inside(1, k) .and. value + open < column%inside(2, k)
    end function is_inside

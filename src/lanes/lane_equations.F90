@@ -21,7 +21,7 @@ contains
    !> Finds cosine and sine of an unknown, if it is an angle.
    pure subroutine set_lane_direction(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i   !< the number of the unknown
+      integer, intent(in) :: i               !< the number of the unknown
 
       if (i <= lanes%blocks%orientations) call sines(lanes%u(i)%value, lanes%u(i)%c, lanes%u(i)%s)
    end subroutine set_lane_direction
@@ -29,7 +29,7 @@ contains
    !> Solves a direct block: the own unknown of a drive.
    pure subroutine find_lane_direct(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i   !< the number of the block
+      integer, intent(in) :: i               !< the number of the block
 
       associate (b => lanes%blocks, first_row => lanes%blocks%list(i)%first_row)
          associate (u => b%unknown(b%list(i)%first))
@@ -43,7 +43,7 @@ contains
    !> Finds what earlier blocks give to the loops of a block: place, velocity, acceleration.
    pure subroutine find_lane_known(lanes, i)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i   !< the number of the block
+      integer, intent(in) :: i               !< the number of the block
 
       associate (b => lanes%blocks, block => lanes%blocks%list(i))
          call find_known(block%first_loop, block%last_loop, b%loops, lanes%numbers, &

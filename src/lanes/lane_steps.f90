@@ -113,8 +113,8 @@ contains
    !> Solves a block: position, velocities, accelerations.
    subroutine solve_block(lanes, i, n, check)
       type(lanes_t), intent(inout) :: lanes
-      integer, intent(in) :: i   !< the number of the block
-      integer, intent(in) :: n   !< its unknowns
+      integer, intent(in) :: i               !< the number of the block
+      integer, intent(in) :: n               !< its unknowns
       type(step_check_t), intent(inout) :: check
       ! Of fixed size: arrays that are made for each block take longer than its elimination.
       real(wp) :: a(lane_count, max_order**2), d(lane_count, max_order), v(lane_count, max_order), &

@@ -229,7 +229,7 @@ contains
    !> Writes an animated attribute; nothing if it has one value only.
    subroutine draw_moving(canvas, element, values, smooth)
       type(canvas_t), intent(in) :: canvas
-      character(*), intent(in) :: element   !< of SVG, with the name of the attribute
+      character(*), intent(in) :: element    !< of SVG, with the name of the attribute
       real(wp), intent(in) :: values(:, :)   !< (1 or 2, keys) of the attribute, in turn: pixels, degrees or opacity
       logical, intent(in) :: smooth          !< values between keys are interpolated
 

@@ -19,11 +19,13 @@ module rows
    type :: other_row_t
       character(56) :: word = ''             !< WORST, RSS, PER and a number, or ASSEMBLY and its number
       type(row_t) :: row
-      real(wp) :: doubt(3, 0:2) = 0.0_wp     !< of tolerances: the rounding error of the value
+      real(wp) :: doubt(3, 0:2) = 0.0_wp     !< of tolerances: the rounding error of the value, in the units of `row`
    end type other_row_t
 
+   !> The words of the further rows by tolerances: their worst case, and the root of the sum of their squares.
    character(*), parameter :: word_worst = 'WORST', word_rss = 'RSS'
 
+   !> A row, and what its printed digits and its further rows need. Errors have the units of the value.
    type, extends(row_t) :: finished_row_t
       integer :: part = 1                    !< the independent mechanism whose digits it has
       integer :: shown = 0                   !< its form in the listing
@@ -84,9 +86,10 @@ contains
       end do
    end subroutine find_rows
 
-   !> Finds the numbers of a row with a known digit: the error is below a tenth of the number or of a usual one.
+   !> Finds which numbers of a row have a known digit: the error is at most a tenth of the number, or of a usual one if
+   !> that is larger.
    pure subroutine find_digits(row, length, rate, degrees)
-      type(finished_row_t), intent(inout) :: row
+      type(finished_row_t), intent(inout) :: row   !< with `doubt`; gets `has_digit`
       real(wp), intent(in) :: length         !< characteristic length of the mechanism
       real(wp), intent(in) :: rate           !< its characteristic rate, 1 over the unit of time
       logical, intent(in) :: degrees         !< the deck's unit of angles
@@ -101,12 +104,13 @@ contains
    end subroutine find_digits
 
    !> Finds the further rows of a row: the effect of tolerances, and its value in each assembly at the first instant.
+   !> A row without tolerances, and with assemblies not asked for or a later instant, gets an empty list.
    subroutine find_others(row, motions, i, step, assemblies)
-      type(finished_row_t), intent(inout) :: row
+      type(finished_row_t), intent(inout) :: row   !< gets `others`
       type(set_motion_t), intent(in) :: motions   !< at the instant
-      integer, intent(in) :: i               !< its number among the requests of the set
+      integer, intent(in) :: i               !< the row's number among the requests of the set
       integer, intent(in) :: step            !< the number of the instant, from 0
-      type(assemblies_t), allocatable, intent(in) :: assemblies(:)   !< (parts) as `find_rows`
+      type(assemblies_t), allocatable, intent(in) :: assemblies(:)   !< (parts) at the first instant, if asked for
       integer :: k
 
       allocate (row%others(0))
@@ -149,7 +153,7 @@ contains
       end subroutine add
    end subroutine find_others
 
-   !> Gives the largest change (3, 0:2) of a row that tolerances allow.
+   !> Gives the largest change (3, 0:2) of a row that tolerances allow, in the units of the row: the sum of all changes.
    pure function worst_case(tolerances, changes) result(x)
       type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
       real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors
@@ -162,7 +166,8 @@ contains
       end do
    end function worst_case
 
-   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time.
+   !> Gives the root (3, 0:2) of the sum of the squares of the changes of a row by one tolerance at a time, in the units
+   !> of the row.
    pure function root_of_squares(tolerances, changes) result(x)
       type(tolerance_t), intent(in) :: tolerances(:)   !< (numbers)
       real(wp), intent(in) :: changes(:, 0:, :)   !< (3, 0:2, numbers) sensitivities of the row, or their errors

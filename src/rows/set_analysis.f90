@@ -43,18 +43,19 @@ module set_analysis
       enumerator :: errors_unasked, errors_in_doubt, errors_always
    end enum
 
+   !> The analyses of the parts of a set, and what goes with each.
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
       ! Of classes: the compiler then calls one procedure that frees them, instead of its code wherever a set is freed.
-      class(estimator_t), allocatable :: estimators(:)      !< (parts)
-      class(motion_prover_t), allocatable :: provers(:)     !< (parts)
+      class(estimator_t), allocatable :: estimators(:)      !< (parts) of the errors of rows
+      class(motion_prover_t), allocatable :: provers(:)     !< (parts) of the steps, for card PROVE
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, if they are asked for
       type(certificate_counts_t) :: worst                   !< of all instants, if the set has several parts
       logical, allocatable :: reported_drives(:)            !< (parts) surplus drives have been searched for
       logical :: is_in_lane = .false.                       !< a lane has found `now`; the analyses have not
-      real(wp) :: amplification = 0.0_wp                           !< then: factor of roundings; all digits are safe
-      type(path_t), allocatable :: paths(:)                 !< (parts)
+      real(wp) :: amplification = 0.0_wp                    !< then: factor by which roundings grow; no digit is lost
+      type(path_t), allocatable :: paths(:)                 !< (parts) of measures that go on and have extremes
       logical :: has_turns = .false.                        !< some measure goes on from instant to instant
       integer :: taken = 0                                  !< instants so far, if some measure does
       logical :: reported_turn = .false.                    !< a LINE that turns far in a step has been reported
@@ -62,11 +63,11 @@ module set_analysis
 
 contains
 
-   !> Makes the analysis of a set, ready for its first instant. If all assemblies are asked for, it begins in the
-   !> nearest.
+   !> Makes the analysis of a set, ready for its first instant. If all assemblies are asked for, the analysis begins in
+   !> the nearest one.
    subroutine make_set_analysis(m, set)
       type(mechanism_t), intent(in) :: m     !< the set; its equations are as many as its unknowns
-      type(set_analysis_t), intent(out) :: set
+      type(set_analysis_t), intent(out) :: set   !< ready for its first instant
       type(structure_report_t) :: structure_report
 
       structure_report = find_structure(m)
@@ -76,8 +77,8 @@ contains
    !> Makes the analysis of a set whose structure is known, ready for its first instant.
    subroutine analyze_set(m, structure_report, set)
       type(mechanism_t), intent(in) :: m     !< the set
-      type(structure_report_t), intent(inout) :: structure_report   !< its structure, which is given up
-      type(set_analysis_t), intent(out) :: set
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which loses it
+      type(set_analysis_t), intent(out) :: set   !< ready for its first instant
 
       call new_set_motion(m, set%now, structure_report)
       call begin_analysis(set, structure_report)
@@ -85,8 +86,8 @@ contains
 
    !> Begins the analysis of a set that is divided into its mechanisms.
    subroutine begin_analysis(set, structure_report)
-      type(set_analysis_t), intent(inout) :: set   !< set%now is divided
-      type(structure_report_t), intent(inout) :: structure_report   !< its structure, which is given up
+      type(set_analysis_t), intent(inout) :: set   !< `now` is divided; gets the rest
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which loses it
       integer :: c
 
       associate (n => set%now%count)
@@ -105,10 +106,11 @@ contains
       call begin_paths(set)
    end subroutine begin_analysis
 
-   !> Finds the largest closure error of all instants of a set before its run, by a run of its own: no number of the
-   !> run is known better. Without a closing tolerance, or if equations agree without it, the error is 0.
+   !> Finds the largest closure error of all instants of a set before its run, by a run of its own. Without a closing
+   !> tolerance, or if equations agree without it, the error is 0. Reason: no number of the run is known better than
+   !> the closure error.
    subroutine foresee_closure(set)
-      type(set_analysis_t), intent(inout) :: set   !< before its first instant
+      type(set_analysis_t), intent(inout) :: set   !< before its first instant; its estimators get the error
       type(analysis_t) :: trial
       type(motion_t) :: q
       integer :: c, k
@@ -128,7 +130,7 @@ contains
 
    !> Begins the paths of the set: no instant is taken yet.
    subroutine begin_paths(set)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< divided
       integer :: c
 
       set%has_turns = .false.
@@ -146,11 +148,12 @@ contains
       end do
    end subroutine begin_paths
 
-   !> Makes the analysis of the variant before ready for the first instant of a variant, with its structure and memory.
+   !> Makes the analysis of the previous variant ready for the first instant of a variant. Structure and memory of the
+   !> analysis stay.
    subroutine reuse_set_analysis(m, set, is_done)
       type(mechanism_t), intent(in) :: m     !< the variant
-      type(set_analysis_t), intent(inout) :: set   !< of the variant before, if there is one
-      logical, intent(out) :: is_done        !< structure and findings are equal; otherwise `set` is of no use
+      type(set_analysis_t), intent(inout) :: set   !< of the previous variant; new if there is none
+      logical, intent(out) :: is_done        !< the structure is equal; otherwise `set` is of no use
 
       is_done = allocated(set%list) .and. m%method == method_newton
       if (is_done) is_done = size(set%list) == 1
@@ -182,9 +185,9 @@ contains
       call begin_paths(set)
    end subroutine reuse_set_analysis
 
-   !> Solves an instant of a set.
+   !> Solves an instant of a set. Parts without a motion are flagged in `now`.
    subroutine advance_set(set, t)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant before, or at its beginning
       real(wp), intent(in) :: t              !< time
       integer :: c
 
@@ -196,9 +199,10 @@ contains
       call keep_instant(set)
    end subroutine advance_set
 
-   !> Takes an instant of a set of one mechanism, with the motion that a lane has put into the state of its analysis.
+   !> Takes an instant of a set of one mechanism, with the motion that a lane has put into the state of its analysis. If
+   !> the instant is not taken, the analysis must find its motion.
    subroutine accept_state(set, t, is_taken)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< `now` gets the motion
       real(wp), intent(in) :: t              !< time
       logical, intent(out) :: is_taken       !< its numbers are in range, and none of their digits is in doubt
       logical :: is_finite, may_lose_digits
@@ -219,7 +223,7 @@ contains
    !> other place for numbers that it keeps from instant to instant. An instant that a lane hands back comes again from
    !> the analysis. Times between two instants do not come, nor do instants of a lane if no row is asked for.
    subroutine keep_instant(set)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer :: c
 
       if (set%has_turns) then
@@ -240,7 +244,7 @@ contains
 
    !> Keeps the angles of measures that go on from instant to instant. Reports the first LINE that turns far, once.
    subroutine keep_measures(set, part)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       integer, intent(in) :: part               !< the number of the independent mechanism
       type(turned_t), allocatable :: before(:)
       integer :: i
@@ -264,9 +268,10 @@ contains
       end associate
    end subroutine keep_measures
 
-   !> Counts the certificate of an instant of several mechanisms: the worst motion has it.
+   !> Counts the certificate of an instant of several mechanisms: the part with the worst one decides. An instant
+   !> without a position of each part is not counted.
    subroutine count_worst_motion(set)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
 
       associate (counts => set%worst, kinds => set%list%branch%kind)
          counts%passed = sum(set%list%certificate_counts%passed)
@@ -282,8 +287,8 @@ contains
    !> Reports the drives of which one may be too many, at the first instant at which redundant equations are
    !> inconsistent; nothing if there are none.
    subroutine report_surplus_drives(set, part)
-      type(set_analysis_t), intent(inout) :: set
-      integer, intent(in) :: part               !< its number
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
+      integer, intent(in) :: part               !< the number of the independent mechanism
       logical :: are(size(set%now%parts(part)%drives))
 
       if (set%reported_drives(part)) return
@@ -296,12 +301,13 @@ contains
       end associate
    end subroutine report_surplus_drives
 
-   !> Finds the rows of requests of a set at its last instant, or at a time between the instants. Nothing else changes.
+   !> Finds the rows of requests of a set at its last instant, or at a time between the instants. The motion of the last
+   !> instant stays in `now`.
    subroutine rows_at(set, list, t, effort, rows, error, amplification)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at its last instant
       integer, intent(in) :: list(:)         !< the requests, all of one independent mechanism
       real(wp), intent(in) :: t              !< the time, at most that of the last instant
-      integer, intent(in) :: effort          !< errors_unasked, ...
+      integer, intent(in) :: effort          !< whether errors are estimated: errors_unasked, ...
       type(row_t), intent(inout) :: rows(size(list))   !< their `known` is -1 without a motion
       real(wp), intent(out) :: error(3, 0:2, size(list))   !< in the deck's units and rad; 0 if nothing is estimated
       real(wp), intent(out) :: amplification   !< the factor by which roundings grow; 0 if nothing is estimated
@@ -338,7 +344,7 @@ contains
 
    contains
 
-      !> Gives the angles of measures at the instant of TIME before `t`.
+      !> Gives the angles of measures at the instant of TIME before `t`, from which they go on.
       function turned_near(part) result(turned)
          integer, intent(in) :: part            !< the number of the independent mechanism
          type(turned_t), allocatable :: turned(:)   !< (measures)
@@ -352,10 +358,10 @@ contains
          turned%is_known = turned%angle < huge(1.0_wp)
       end function turned_near
 
-      !> Takes the rows of a motion of an independent mechanism, and their errors.
+      !> Finds the rows of a motion of an independent mechanism, and their errors.
       subroutine take(part, q)
-         integer, intent(in) :: part            !< its number
-         type(motion_t), intent(in) :: q
+         integer, intent(in) :: part            !< the number of the independent mechanism
+         type(motion_t), intent(in) :: q     !< the motion, of which the analysis has the state
          type(error_estimate_t) :: estimate
          integer :: i
 
@@ -377,7 +383,7 @@ contains
 
    !> Estimates the errors of the motion found last, and finds its sensitivities to numbers with tolerances.
    subroutine sample_set(set, always)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant
       logical, intent(in) :: always          !< errors are estimated even if no digit of a table is in doubt
       integer :: c
 
@@ -392,9 +398,10 @@ contains
       end do
    end subroutine sample_set
 
-   !> Proves the motion found last, and the step to it; before any other motion is looked at.
+   !> Proves the motion found last, and the step to it. Call it before the rows of any other time are found: the proof
+   !> needs the state of the last instant.
    subroutine prove_set(set, bounded)
-      type(set_analysis_t), intent(inout) :: set
+      type(set_analysis_t), intent(inout) :: set   !< at the instant; `now` gets the proofs
       logical, intent(in) :: bounded         !< bounds of all numbers are found as well
       integer :: c
 
@@ -408,7 +415,7 @@ contains
 
    !> Gives the counts of certificates of all instants of the set.
    pure type(certificate_counts_t) function set_certificates(set)
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< after its last instant
 
       set_certificates = set%worst
       if (size(set%list) == 1) set_certificates = set%list(1)%certificate_counts
@@ -417,7 +424,7 @@ contains
    !> Gives the diagnostics (any number) after the last instant: BRANCH cards after whose instants no change point was
    !> passed, in their order.
    pure function set_closing_diagnostics(set) result(list)
-      type(set_analysis_t), intent(in) :: set
+      type(set_analysis_t), intent(in) :: set   !< after its last instant
       type(diagnostic_t), allocatable :: list(:)
       logical, allocatable :: used(:)
       integer :: c, k, n

@@ -23,21 +23,21 @@ module set_motion
 
    !> The motion of a set.
    type, extends(set_t) :: set_motion_t
-      type(motion_t), allocatable :: motions(:)     !< (parts), as the next three
-      type(error_estimate_t), allocatable :: errors(:)
-      type(sensitivities_t), allocatable :: sensitivities(:)
-      type(motion_proof_t), allocatable :: proofs(:)
+      type(motion_t), allocatable :: motions(:)     !< (parts)
+      type(error_estimate_t), allocatable :: errors(:)   !< (parts) of their rows
+      type(sensitivities_t), allocatable :: sensitivities(:)   !< (parts) of their rows to numbers with tolerances
+      type(motion_proof_t), allocatable :: proofs(:)   !< (parts) for card PROVE
       logical :: has_begun = .false.                !< the first instant is taken
-      type(motion_t), allocatable :: first(:)       !< its motions; of size 0 if no extremes are asked for
+      type(motion_t), allocatable :: first(:)       !< (parts) at the first instant; none if no extremes are asked for
    end type set_motion_t
 
 contains
 
-   !> Divides a set into its parts, at rest.
+   !> Divides a set into its parts, at rest. Requests for ratios that the drive cannot move get no rows.
    subroutine new_set_motion(m, motions, structure_report)
       type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(out) :: motions
-      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which it gives up if that is divided
+      type(set_motion_t), intent(out) :: motions   !< at rest
+      type(structure_report_t), intent(inout) :: structure_report   !< of the set, which loses its division
       type(request_t), allocatable :: requests(:)
       integer :: c
 
@@ -129,7 +129,7 @@ contains
 
       !> Gives a number between 0.25 and 1.25 that has nothing to do with those of others.
       elemental real(wp) function arbitrary(k)
-         integer, intent(in) :: k            !< of an unknown, or any other
+         integer, intent(in) :: k            !< any number
 
          arbitrary = 0.25_wp + mod(k*0.6180339887498949_wp + 0.31_wp*sin(real(k, wp))**2, 1.0_wp)
       end function arbitrary
@@ -137,14 +137,14 @@ contains
 
    !> Tells whether some part has not all of its motion.
    pure logical function is_flagged(motions)
-      type(set_motion_t), intent(in) :: motions
+      type(set_motion_t), intent(in) :: motions   !< at an instant
 
       is_flagged = any(motions%motions%flag /= flag_none)
    end function is_flagged
 
    !> Tells whether the instant has marks or diagnostics in addition to its numbers.
    pure logical function has_words(motions)
-      type(set_motion_t), intent(in) :: motions
+      type(set_motion_t), intent(in) :: motions   !< at an instant
       integer :: c
 
       has_words = .false.
@@ -155,9 +155,9 @@ contains
 
    !> Finds the row of a request of the set.
    pure subroutine find_row_in_set(motions, i, row)
-      type(set_motion_t), intent(in) :: motions
-      integer, intent(in) :: i               !< its number among the requests of the set
-      type(row_t), intent(inout) :: row
+      type(set_motion_t), intent(in) :: motions   !< at an instant
+      integer, intent(in) :: i               !< the request's number among those of the set
+      type(row_t), intent(inout) :: row      !< as far as the motion is known
 
       ! The request in its place: as the result of a function it would be copied.
       associate (c => motions%rows(i)%part)
@@ -167,10 +167,10 @@ contains
 
    !> Finds the row of a request at another position of its mechanism, without velocities.
    pure subroutine find_row_of_position(motions, i, position, row)
-      type(set_motion_t), intent(in) :: motions
-      integer, intent(in) :: i               !< its number among the requests of the set
+      type(set_motion_t), intent(in) :: motions   !< whose parts and origins it has
+      integer, intent(in) :: i               !< the request's number among those of the set
       real(wp), intent(in) :: position(:, :)   !< (3, links): x and y (length) from the motion's origin, phi (rad)
-      type(row_t), intent(inout) :: row
+      type(row_t), intent(inout) :: row      !< with its position; nothing else of it is known
       type(motion_t) :: q
 
       associate (c => motions%rows(i)%part)
@@ -182,11 +182,13 @@ contains
       end associate
    end subroutine find_row_of_position
 
-   !> Finds how far the last motion of an independent mechanism is from another one, as `motions_apart` gives it.
+   !> Finds how far the last motion of an independent mechanism is from another one at most (3): places, angles and
+   !> velocities, in characteristic lengths, rad and characteristic rates. All three are huge if no position is known.
+   !> Velocities that are not unique count as equal.
    pure function apart_from(motions, part, other) result(apart)
-      type(set_motion_t), intent(in) :: motions
-      integer, intent(in) :: part            !< its number
-      type(motion_t), intent(in) :: other
+      type(set_motion_t), intent(in) :: motions   !< at an instant
+      integer, intent(in) :: part            !< the number of the independent mechanism
+      type(motion_t), intent(in) :: other    !< of the same mechanism
       real(wp) :: apart(3)
 
       apart = motions_apart(motions%parts(part), other, motions%motions(part))

@@ -154,7 +154,7 @@ contains
       character(*), intent(in) :: path       !< the file of the deck
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets            !< how many sets the deck has
-      logical, intent(in) :: redundant    !< it has too many equations
+      logical, intent(in) :: redundant       !< it has too many equations
       integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
       type(trial_t), allocatable :: trials(:)
       type(mechanism_t), allocatable :: tried(:)
@@ -223,7 +223,7 @@ contains
    subroutine write_trial(o, trial, unit)
       type(output_t), intent(inout) :: o
       type(trial_t), intent(in) :: trial
-      real(dp), intent(in) :: unit        !< microseconds of a step by default; 0: the default misses a position
+      real(dp), intent(in) :: unit           !< microseconds of a step by default; 0: the default misses a position
       character(120) :: line
       integer :: d
 
@@ -254,7 +254,7 @@ contains
    !> compared.
    subroutine solve(m, last, trial, truth)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: last   !< the number of the last instant, counted from 0
+      integer, intent(in) :: last            !< the number of the last instant, counted from 0
       type(trial_t), intent(inout) :: trial
       type(truth_t), intent(in) :: truth
       type(set_analysis_t) :: a
@@ -384,7 +384,7 @@ contains
 
    !> Gives the median of a sample.
    pure real(dp) function median(values)
-      real(dp), intent(in) :: values(:)   !< (1 or more) in any order
+      real(dp), intent(in) :: values(:)      !< (1 or more) in any order
       integer :: twice(size(values)), i               ! twice the number of values that are no larger
 
       twice = [(2*count(values <= values(i)), i=1, size(values))]
@@ -421,7 +421,7 @@ contains
 
    !> Gives a text as one word of a shell's command.
    pure function shell_word(text) result(word)
-      character(*), intent(in) :: text   !< any characters
+      character(*), intent(in) :: text       !< any characters
       character(:), allocatable :: word
 
       word = ''''//replaced(text, '''', ['''\'''''])//''''
